@@ -1,0 +1,2 @@
+//! The carrystep command.
+fn main() {}

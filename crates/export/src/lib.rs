@@ -1,0 +1,1 @@
+//! Rust-HDL modules as readable Verilog.

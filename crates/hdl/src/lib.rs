@@ -1,0 +1,1 @@
+//! The gateware as Rust-HDL modules.

@@ -1,0 +1,1 @@
+//! One program at any level: model, Rust-HDL, Icarus, Verilator.

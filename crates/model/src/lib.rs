@@ -1,0 +1,1 @@
+//! The gateware as integer functions, tick by tick and clock by clock.

@@ -1,0 +1,1 @@
+//! Moves to integer segments that land exactly.

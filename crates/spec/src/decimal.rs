@@ -1,0 +1,64 @@
+//! Numbers as the file writes them: exact decimals, so that ten times 0.1 is one.
+
+use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
+use std::str::FromStr;
+
+/// Most digits, before and behind the point together, that a number in a file may need.
+const MAX_DIGITS: i64 = 60;
+
+/// The exact value of a TOML number literal: sign, underscores and exponent allowed.
+///
+/// `None` if it is not a finite decimal number or needs more than 60 digits.
+pub fn parse(literal: &str) -> Option<BigDecimal> {
+    let plain: String = literal.trim().chars().filter(|&c| c != '_').collect();
+    let value = if let Some(hex) = plain.strip_prefix("0x") {
+        BigDecimal::from(i64::from_str_radix(hex, 16).ok()?)
+    } else if let Some(octal) = plain.strip_prefix("0o") {
+        BigDecimal::from(i64::from_str_radix(octal, 8).ok()?)
+    } else if let Some(binary) = plain.strip_prefix("0b") {
+        BigDecimal::from(i64::from_str_radix(binary, 2).ok()?)
+    } else {
+        BigDecimal::from_str(plain.trim_start_matches('+')).ok()?
+    };
+    let scale = value.fractional_digit_count();
+    let digits = i64::try_from(value.digits()).ok()?;
+    (digits <= MAX_DIGITS && scale.checked_abs()? <= MAX_DIGITS).then_some(value)
+}
+
+/// The nearest whole number, half away from zero; `None` outside i64.
+pub fn round_half_away(value: &BigDecimal) -> Option<i64> {
+    value.with_scale_round(0, RoundingMode::HalfUp).to_i64()
+}
+
+/// The nearest float.
+pub fn to_f64(value: &BigDecimal) -> f64 {
+    value.to_f64().unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ten_tenths_are_one() {
+        let tenth = parse("0.1").unwrap();
+        let sum: BigDecimal = std::iter::repeat_n(tenth, 10).sum();
+        assert_eq!(sum, BigDecimal::from(1));
+    }
+
+    #[test]
+    fn halves_go_away_from_zero() {
+        for (text, whole) in [("0.5", 1), ("-0.5", -1), ("1.5", 2), ("2.5", 3), ("-2.5", -3), ("0.4999999", 0)] {
+            assert_eq!(round_half_away(&parse(text).unwrap()), Some(whole), "{text}");
+        }
+    }
+
+    #[test]
+    fn absurd_literals_are_refused_not_expanded() {
+        for text in ["1e999999999", "1e-999999999", "nan", "inf", "", "1e", "--1"] {
+            assert_eq!(parse(text), None, "{text}");
+        }
+        assert_eq!(parse("1_000.5e-1"), parse("100.05"));
+        assert_eq!(parse("0x10"), parse("16"));
+    }
+}

@@ -1,0 +1,24 @@
+//! The single source of carrystep's facts: number formats, segments, build parameters, faults,
+//! driver timings, machine and move files.
+//!
+//! Nothing here computes motion. Everything that two crates must agree on stands here once.
+
+pub mod build;
+pub mod decimal;
+pub mod driver;
+pub mod error;
+pub mod fault;
+pub mod fixed;
+pub mod machine;
+pub mod move_file;
+pub mod ports;
+pub mod segment;
+
+pub use bigdecimal::BigDecimal;
+pub use build::{AXES, Build, PinTiming, Timebase};
+pub use error::{InputError, Source};
+pub use fault::Faults;
+pub use fixed::StartPhase;
+pub use machine::{Axis, Machine};
+pub use move_file::{Move, MoveFile, ProfileKind};
+pub use segment::{Command, Program, Segment};

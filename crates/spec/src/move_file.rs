@@ -1,0 +1,194 @@
+//! The move file: which machine, and one move after the other.
+//!
+//! Targets add up as exact decimals; a move is the difference of two targets rounded to steps, so
+//! that rounding never accumulates.
+
+use crate::decimal;
+use crate::error::{InputError, Source};
+use crate::machine::{Machine, RawMachine, exact};
+use bigdecimal::{BigDecimal, Signed, Zero};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use toml::Spanned;
+
+/// The speed profiles of the literature that a move can ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ProfileKind {
+    /// Ranade (2009): triangle whenever possible, else trapezoid at the speed limit.
+    Ranade,
+    /// From rest to rest at the acceleration limit.
+    Trapezoid,
+    /// One speed, at most the start speed.
+    Constant,
+}
+
+impl fmt::Display for ProfileKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ranade => "ranade",
+            Self::Trapezoid => "trapezoid",
+            Self::Constant => "constant",
+        })
+    }
+}
+
+/// A checked move file.
+#[derive(Debug, Clone)]
+pub struct MoveFile {
+    /// The machine, inline or from its own file.
+    pub machine: Machine,
+    /// The moves in order.
+    pub moves: Vec<Move>,
+    /// The move file's text, for errors that are found later.
+    pub source: Source,
+}
+
+/// One move of all axes.
+#[derive(Debug, Clone)]
+pub struct Move {
+    /// Its speed profile.
+    pub profile: ProfileKind,
+    /// Seconds available; `None`: as fast as the limits allow.
+    pub time: Option<BigDecimal>,
+    /// Steps of each axis of the machine, either sign.
+    pub steps: Vec<i64>,
+    /// What rounding to steps left over so far, per axis, in steps: exact target less rounded target.
+    pub rounding: Vec<f64>,
+    /// Its place in the move file.
+    pub span: Range<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawMoveFile {
+    machine_file: Option<Spanned<PathBuf>>,
+    machine: Option<RawMachine>,
+    #[serde(default, rename = "move")]
+    moves: Vec<Spanned<RawMove>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawMove {
+    profile: ProfileKind,
+    time: Option<Spanned<f64>>,
+    to: BTreeMap<Spanned<String>, Spanned<f64>>,
+}
+
+impl MoveFile {
+    /// Reads a move file, and the machine file that it names (relative to it).
+    ///
+    /// # Errors
+    /// [`InputError`] with file, line and column.
+    pub fn load(path: &Path) -> Result<Self, InputError> {
+        Self::from_source(Source::read(path)?)
+    }
+
+    /// Checks a move file whose text is already there; `source.path` is where a relative
+    /// `machine_file` starts from.
+    ///
+    /// # Errors
+    /// [`InputError`] with file, line and column.
+    pub fn from_source(source: Source) -> Result<Self, InputError> {
+        let raw: RawMoveFile = source.parse()?;
+        let machine = match (raw.machine_file, raw.machine) {
+            (Some(file), None) => {
+                let path = source.path.parent().unwrap_or(Path::new("")).join(file.as_ref());
+                if !path.is_file() {
+                    return Err(InputError::at(
+                        &source,
+                        file.span(),
+                        format!("there is no machine file {}", path.display()),
+                    )
+                    .help("the path is relative to the move file"));
+                }
+                Machine::load(&path)?
+            }
+            (None, Some(machine)) => machine.check(&source)?,
+            (Some(file), Some(_)) => {
+                return Err(InputError::at(&source, file.span(), "both machine_file and [machine] are given")
+                    .help("keep one of them"));
+            }
+            (None, None) => {
+                return Err(InputError::at(&source, 0..0, "no machine")
+                    .help("name a machine_file, or describe the [machine] here"));
+            }
+        };
+        if raw.moves.is_empty() {
+            return Err(InputError::at(&source, 0..0, "no moves").help("add a [[move]] table"));
+        }
+        let moves = check_moves(&source, &machine, raw.moves)?;
+        Ok(Self { machine, moves, source })
+    }
+
+    /// An error about one of the moves, with its place in the file.
+    pub fn move_error(&self, index: usize, message: impl Into<String>) -> InputError {
+        match self.moves.get(index) {
+            Some(found) => InputError::at(&self.source, found.span.clone(), message),
+            None => InputError::new(message),
+        }
+    }
+}
+
+fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -> Result<Vec<Move>, InputError> {
+    let mut targets = vec![BigDecimal::zero(); machine.axes.len()];
+    let mut positions = vec![0_i64; machine.axes.len()];
+    let mut moves = Vec::with_capacity(raw.len());
+    for entry in raw {
+        let span = entry.span();
+        let RawMove { profile, time, to } = entry.into_inner();
+        let time = match &time {
+            None => None,
+            Some(value) => Some(exact(source, value, "time").and_then(|t| {
+                let fits = t.is_positive() && t <= BigDecimal::from(1_000_000);
+                if fits {
+                    Ok(t)
+                } else {
+                    Err(InputError::at(
+                        source,
+                        value.span(),
+                        format!("time = {t} s: must be over zero and at most 10^6"),
+                    ))
+                }
+            })?),
+        };
+        let before = positions.clone();
+        for (name, distance) in &to {
+            let Some(axis) = machine.axis_index(name.as_ref()) else {
+                return Err(InputError::at(
+                    source,
+                    name.span(),
+                    format!("the machine has no axis '{}'", name.as_ref()),
+                )
+                .help(format!("its axes are {}", machine.axis_names())));
+            };
+            targets[axis] += exact(source, distance, name.as_ref())?;
+            positions[axis] = decimal::round_half_away(&(&targets[axis] * &machine.axes[axis].steps_per_unit))
+                .filter(|steps| i32::try_from(*steps).is_ok() && *steps != i64::from(i32::MIN))
+                .ok_or_else(|| {
+                    InputError::at(
+                        source,
+                        distance.span(),
+                        format!("axis '{}' leaves its position register", name.as_ref()),
+                    )
+                    .help("the sum of all moves must stay within +-2147483647 steps of the start")
+                })?;
+        }
+        let rounding = targets.iter().zip(&machine.axes).zip(&positions);
+        let rounding = rounding.map(|((target, axis), &steps)| {
+            decimal::to_f64(&(target * &axis.steps_per_unit - BigDecimal::from(steps)))
+        });
+        moves.push(Move {
+            profile,
+            time,
+            steps: positions.iter().zip(&before).map(|(now, old)| now - old).collect(),
+            rounding: rounding.collect(),
+            span,
+        });
+    }
+    Ok(moves)
+}

@@ -1,0 +1,1 @@
+//! Waveforms in and out, the pulse checker and its pictures.

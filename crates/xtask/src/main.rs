@@ -1,0 +1,2 @@
+//! The ladder, one command a rung.
+fn main() {}
