@@ -1,1 +1,6 @@
-//! What the rungs share.
+//! What the rungs share: the golden vectors, an independent closed form, random programs.
+
+pub mod closed_form;
+pub mod golden;
+pub mod lockstep;
+pub mod programs;

@@ -1,2 +1,28 @@
-//! The carrystep command.
-fn main() {}
+//! The `carrystep` command: arguments in, reports out; no logic of its own.
+
+mod arguments;
+mod commands;
+mod failure;
+mod output;
+mod progress;
+mod table;
+
+use arguments::{Arguments, Subcommand};
+use clap::Parser;
+use failure::Failure;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let result = match &arguments.command {
+        Subcommand::Demo(demo) => commands::demo::run(demo),
+        Subcommand::Plan(plan) => commands::plan::run(plan),
+        Subcommand::Simulate(simulate) => commands::simulate::run(simulate),
+        Subcommand::Check(check) => commands::check::run(check),
+        Subcommand::Verilog(verilog) => commands::verilog::run(verilog),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.tell(),
+    }
+}

@@ -1,1 +1,173 @@
-//! One program at any level: model, Rust-HDL, Icarus, Verilator.
+//! One program at any level: model, Rust-HDL, the exported Verilog in Icarus and in Verilator.
+//!
+//! Every level is fed by the same host (docs/clock-by-clock.md) and reports the same thing: all
+//! outputs of the core, in each cycle in which any of them changed. Equal reports are equal pins in
+//! every clock.
+
+mod external;
+pub mod host;
+mod icarus;
+pub mod pins;
+mod tool;
+mod verilator;
+
+use carrystep_spec::ports::Outputs;
+use carrystep_spec::{Build, Program};
+use std::fmt;
+use std::str::FromStr;
+use thiserror::Error;
+
+/// Where a program is run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Level {
+    /// `crates/model`, integers in Rust.
+    Model,
+    /// `crates/hdl`, simulated by Rust-HDL itself.
+    RustHdl,
+    /// The exported Verilog in Icarus Verilog.
+    Icarus,
+    /// The exported Verilog in Verilator.
+    Verilator,
+}
+
+impl Level {
+    /// All levels, from the model down.
+    pub const ALL: [Self; 4] = [Self::Model, Self::RustHdl, Self::Icarus, Self::Verilator];
+
+    /// Its name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Model => "model",
+            Self::RustHdl => "rust-hdl",
+            Self::Icarus => "icarus",
+            Self::Verilator => "verilator",
+        }
+    }
+}
+
+impl fmt::Display for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Level {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        Self::ALL.into_iter().find(|level| level.name() == name).ok_or_else(|| format!("no level is called '{name}'"))
+    }
+}
+
+/// What is to be run.
+#[derive(Debug, Clone, Copy)]
+pub struct Job<'a> {
+    /// Build parameters of the gateware.
+    pub build: &'a Build,
+    /// What the host sends.
+    pub program: &'a Program,
+    /// Cycles in a row with nothing left to do after which the run is over; at least 1.
+    pub tail: u64,
+    /// The run fails after this many cycles.
+    pub max_clocks: u64,
+}
+
+impl<'a> Job<'a> {
+    /// A job that may take `ticks` ticks of motion, with time for the pipeline and the last pulse.
+    pub fn new(build: &'a Build, program: &'a Program, ticks: u64) -> Self {
+        let clocks = u64::from(build.timebase.clocks_per_tick());
+        let slack = 4 * clocks + build.pins.iter().map(|p| u64::from(p.width + p.gap)).max().unwrap_or(0);
+        Self { build, program, tail: slack, max_clocks: (ticks + 8) * clocks + 4 * slack }
+    }
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Outcome {
+    /// Clock cycles run.
+    pub clocks: u64,
+    /// First cycle in which the first started move's segments are loaded, if any started.
+    pub origin: Option<u64>,
+    /// The outputs in the last cycle.
+    pub last: Outputs,
+}
+
+/// Why a run failed.
+#[derive(Debug, Error)]
+pub enum LevelError {
+    /// A program that the level needs is not installed.
+    #[error("{tool} is not installed: `{install}` installs it")]
+    Missing {
+        /// Its name.
+        tool: &'static str,
+        /// The line that installs it.
+        install: &'static str,
+    },
+    /// A program failed.
+    #[error("{tool} failed: {message}")]
+    Tool {
+        /// Its name.
+        tool: &'static str,
+        /// What it said.
+        message: String,
+    },
+    /// The run did not come to its end.
+    #[error("the run was not over after {0} clocks")]
+    Endless(u64),
+    /// The gateware for these build parameters cannot be made.
+    #[error("{0}")]
+    Gateware(String),
+    /// A file could not be read or written.
+    #[error("{context}: {source}")]
+    Io {
+        /// What was tried.
+        context: String,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+}
+
+/// Hears of each cycle in which any output changed, cycle 0 included.
+pub type Observer<'a> = dyn FnMut(u64, &Outputs) + 'a;
+
+/// Runs a job at a level.
+///
+/// # Errors
+/// [`LevelError`]: a tool is missing or fails, or the run does not end.
+pub fn run(level: Level, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
+    match level {
+        Level::Model => host::run(&mut carrystep_model::SixAxis::new(job.build), job, observer),
+        Level::RustHdl => {
+            let mut core = carrystep_hdl::SixAxisSim::new(job.build).map_err(|e| LevelError::Gateware(e.to_string()))?;
+            host::run(&mut core, job, observer)
+        }
+        Level::Icarus | Level::Verilator => {
+            let verilog = carrystep_export::six_axis_verilog(job.build, "a simulation").map_err(|e| LevelError::Gateware(e.to_string()))?;
+            run_verilog(level, &verilog, job, observer)
+        }
+    }
+}
+
+/// Runs a job on Verilog text whose top is `carrystep_six_axis`, in Icarus or in Verilator.
+///
+/// # Errors
+/// [`LevelError`]: a tool is missing or fails, the level has no Verilog, or the run does not end.
+pub fn run_verilog(level: Level, verilog: &str, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
+    match level {
+        Level::Icarus => icarus::run(verilog, job, observer),
+        Level::Verilator => verilator::run(verilog, job, observer),
+        Level::Model | Level::RustHdl => Err(LevelError::Gateware(format!("the level {level} does not run Verilog"))),
+    }
+}
+
+/// Whether the tools of a level are installed.
+///
+/// # Errors
+/// [`LevelError::Missing`] names the tool and the line that installs it.
+pub fn available(level: Level) -> Result<(), LevelError> {
+    match level {
+        Level::Model | Level::RustHdl => Ok(()),
+        Level::Icarus => tool::find(&tool::ICARUS),
+        Level::Verilator => tool::find(&tool::VERILATOR),
+    }
+}

@@ -1,1 +1,13 @@
-//! The gateware as integer functions, tick by tick and clock by clock.
+//! The gateware as integer functions: `state, input -> state, output`, tick by tick for the
+//! accumulator, clock by clock for the pins.
+//!
+//! Written from docs/clock-by-clock.md and from nothing of `crates/hdl`: the two are strangers, so
+//! that their agreement proves something (docs/decisions/0004). Start with [`axis::tick`]: it is the
+//! whole idea.
+
+pub mod axis;
+pub mod phase;
+pub mod shaper;
+pub mod six_axis;
+
+pub use six_axis::SixAxis;

@@ -244,7 +244,7 @@ impl Axis {
         let per_unit = decimal::to_f64(&self.steps_per_unit);
         let half = 0.5e9 / timebase.tick_ns() as f64;
         let doubled = &self.speed_limit * BigDecimal::from(2 * timebase.tick_ns());
-        if doubled >= BigDecimal::from(1_000_000_000) {
+        if doubled >= 1_000_000_000 {
             return Err(InputError::at(
                 source,
                 span,
@@ -258,7 +258,7 @@ impl Axis {
         }
         let PinTiming { width, gap, .. } = self.pins;
         let clocks = u64::from(width) + u64::from(gap) + u64::from(timebase.clocks_per_phase());
-        if &self.speed_limit * BigDecimal::from(clocks) > BigDecimal::from(timebase.clock_hz()) {
+        if &self.speed_limit * BigDecimal::from(clocks) > timebase.clock_hz() {
             let most = timebase.clock_hz() as f64 / clocks as f64;
             return Err(InputError::at(
                 source,
@@ -277,7 +277,7 @@ impl Axis {
     /// Under half a step per tick squared, so that A fits its register.
     fn check_acceleration(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
         let tick = BigDecimal::from(timebase.tick_ns());
-        if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= BigDecimal::from(10_u64.pow(18)) {
+        if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {
             let limit = decimal::to_f64(&self.accel_limit);
             return Err(InputError::at(
                 source,

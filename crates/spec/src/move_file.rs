@@ -144,7 +144,7 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
         let time = match &time {
             None => None,
             Some(value) => Some(exact(source, value, "time").and_then(|t| {
-                let fits = t.is_positive() && t <= BigDecimal::from(1_000_000);
+                let fits = t.is_positive() && t <= 1_000_000;
                 if fits {
                     Ok(t)
                 } else {

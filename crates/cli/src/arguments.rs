@@ -1,0 +1,130 @@
+//! The command line, once: it feeds the parser and the help.
+
+use carrystep_levels::Level;
+use clap::{Args, Parser};
+use std::path::PathBuf;
+
+/// Every carry is a step: plan stepper moves for an FPGA that only adds, simulate its gateware
+/// cycle by cycle, and check every pulse.
+///
+/// Begin with `carrystep demo`. A move file names a machine and moves; `carrystep simulate` says
+/// whether every pulse is where it should be. Exit status: 0 all is well, 1 the check or the run
+/// failed, 2 bad input or an impossible move, 3 a tool is missing.
+#[derive(Debug, Parser)]
+#[command(name = "carrystep", version)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Subcommand,
+}
+
+/// The subcommands.
+#[derive(Debug, clap::Subcommand)]
+pub enum Subcommand {
+    /// The main job on the shipped six-axis machine: plan, Verilog, simulation, check, waveform, plot.
+    Demo(Demo),
+    /// Show the integer segments of a move file, the limits reached and the times.
+    Plan(Plan),
+    /// Run a move file through the gateware, cycle by cycle, and check every pulse.
+    Simulate(Simulate),
+    /// Check a VCD from any simulator or logic analyser against a move file.
+    Check(Check),
+    /// Write the gateware as Verilog.
+    Verilog(Verilog),
+}
+
+/// `carrystep demo`
+#[derive(Debug, Args)]
+pub struct Demo {
+    /// Folder for everything that the demo writes.
+    #[arg(long, default_value = "sim/out/demo", value_name = "DIR")]
+    pub out: PathBuf,
+    /// Where the gateware runs.
+    #[arg(long, default_value = "model", value_name = "LEVEL", value_parser = level())]
+    pub level: Level,
+    /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep plan`
+#[derive(Debug, Args)]
+pub struct Plan {
+    /// The move file.
+    #[arg(value_name = "MOVE.toml")]
+    pub file: PathBuf,
+    /// List every segment: ticks, V, A, J.
+    #[arg(long)]
+    pub segments: bool,
+    /// One JSON document, segments included.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep simulate`
+#[derive(Debug, Args)]
+pub struct Simulate {
+    /// The move file.
+    #[arg(value_name = "MOVE.toml")]
+    pub file: PathBuf,
+    /// Where the gateware runs.
+    #[arg(long, default_value = "model", value_name = "LEVEL", value_parser = level())]
+    pub level: Level,
+    /// Write the waveform: pins, position and V beside the float profile.
+    #[arg(long, value_name = "FILE")]
+    pub vcd: Option<PathBuf>,
+    /// Write a GTKWave save file for the waveform (needs --vcd).
+    #[arg(long, value_name = "FILE", requires = "vcd")]
+    pub save: Option<PathBuf>,
+    /// Write time, speed and error of each pulse.
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Draw speed and error of each axis as SVG.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep check`
+#[derive(Debug, Args)]
+pub struct Check {
+    /// The capture: a VCD.
+    #[arg(value_name = "CAPTURE.vcd")]
+    pub capture: PathBuf,
+    /// The move file that the pulses should follow.
+    #[arg(value_name = "MOVE.toml")]
+    pub file: PathBuf,
+    /// Where a signal is in the capture: x.step=top.la.D0. Repeat for each pin.
+    #[arg(long = "map", value_name = "AXIS.PIN=SIGNAL")]
+    pub map: Vec<String>,
+    /// Time of the move's start in the capture; default: found from the pulses, or, in our own captures, known.
+    #[arg(long, value_name = "PS", allow_negative_numbers = true)]
+    pub origin_ps: Option<i64>,
+    /// How uncertain the capture's times are (a logic analyser: one sample period).
+    #[arg(long, default_value_t = 0, value_name = "NS")]
+    pub slack_ns: u64,
+    /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep verilog`
+#[derive(Debug, Args)]
+pub struct Verilog {
+    /// The machine whose clock, phases and pin timings are built in; default: the shipped six-axis machine.
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub machine: Option<PathBuf>,
+    /// Folder for the Verilog and its lint waivers.
+    #[arg(long, default_value = "hdl-out/core", value_name = "DIR")]
+    pub out: PathBuf,
+    /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn level() -> impl clap::builder::TypedValueParser<Value = Level> {
+    use clap::builder::{PossibleValuesParser, TypedValueParser};
+    PossibleValuesParser::new(Level::ALL.map(Level::name)).try_map(|name| name.parse::<Level>())
+}

@@ -1,0 +1,42 @@
+//! A progress bar for anything longer than a second, on a terminal only.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::{Duration, Instant};
+
+/// Progress of one run, in clocks.
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    started: Instant,
+    total: u64,
+    what: &'static str,
+}
+
+impl Progress {
+    /// A run of about `total` clocks.
+    pub fn new(what: &'static str, total: u64) -> Self {
+        Self { bar: None, started: Instant::now(), total, what }
+    }
+
+    /// The run has come to this clock.
+    pub fn at(&mut self, clock: u64) {
+        if self.bar.is_none() && self.started.elapsed() > Duration::from_secs(1) {
+            // The target hides itself where standard error is no terminal.
+            let bar = ProgressBar::with_draw_target(Some(self.total), ProgressDrawTarget::stderr_with_hz(10));
+            let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {eta} left");
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar.set_message(self.what);
+            self.bar = Some(bar);
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_position(clock.min(self.total));
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

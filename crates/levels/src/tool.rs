@@ -1,0 +1,36 @@
+//! The external simulators: are they there, and what they say when they fail.
+
+use crate::LevelError;
+use std::process::{Command, Stdio};
+
+/// An external program and the line that installs it.
+pub(crate) struct Tool {
+    pub name: &'static str,
+    version: &'static str,
+    install: &'static str,
+}
+
+pub(crate) const ICARUS: Tool = Tool { name: "iverilog", version: "-V", install: "sudo apt-get install iverilog" };
+pub(crate) const VERILATOR: Tool =
+    Tool { name: "verilator", version: "--version", install: "sudo apt-get install verilator g++ make" };
+
+/// Checks that a tool can be started.
+pub(crate) fn find(tool: &Tool) -> Result<(), LevelError> {
+    let started = Command::new(tool.name).arg(tool.version).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    started.map(|_| ()).map_err(|_| LevelError::Missing { tool: tool.name, install: tool.install })
+}
+
+/// Runs a command to its end; what it prints becomes the error if it fails.
+pub(crate) fn complete(tool: &Tool, command: &mut Command) -> Result<(), LevelError> {
+    let output = command.output().map_err(|_| LevelError::Missing { tool: tool.name, install: tool.install })?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let text = [output.stdout, output.stderr].concat();
+    Err(LevelError::Tool { tool: tool.name, message: String::from_utf8_lossy(&text).trim().to_owned() })
+}
+
+/// An input or output error, with what was tried.
+pub(crate) fn io(context: impl Into<String>) -> impl FnOnce(std::io::Error) -> LevelError {
+    move |source| LevelError::Io { context: context.into(), source }
+}

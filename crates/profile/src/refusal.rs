@@ -1,0 +1,93 @@
+//! What a motor can do, and the answer when a move asks for more.
+
+use crate::profile::{Real, real};
+use std::fmt;
+use thiserror::Error;
+
+/// What one axis can do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits<F> {
+    /// Speed that the motor takes from rest, steps/s; 0..=speed.
+    pub start_speed: F,
+    /// Greatest speed, steps/s; over 0.
+    pub speed: F,
+    /// Greatest acceleration, steps/s^2; over 0.
+    pub acceleration: F,
+}
+
+impl<F: Real> Limits<F> {
+    /// Whether `time` is under `least`, rounding aside.
+    ///
+    /// Times are compared rather than speeds or accelerations: near a limit these come from differences
+    /// of nearly equal numbers, and would refuse a move for the rounding of its time.
+    pub(crate) fn too_short(&self, time: F, least: F) -> bool {
+        time < least * (F::one() - real::<F>(16.0) * F::epsilon())
+    }
+}
+
+/// A limit of an axis, by its key in the machine file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Limit {
+    /// `start_speed`, steps/s.
+    StartSpeed,
+    /// `speed_limit`, steps/s.
+    Speed,
+    /// `accel_limit`, steps/s^2.
+    Acceleration,
+}
+
+impl Limit {
+    /// Its unit.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::StartSpeed | Self::Speed => "steps/s",
+            Self::Acceleration => "steps/s^2",
+        }
+    }
+}
+
+impl fmt::Display for Limit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::StartSpeed => "start_speed",
+            Self::Speed => "speed_limit",
+            Self::Acceleration => "accel_limit",
+        })
+    }
+}
+
+/// Why a move cannot be done within the limits, and the least time in which it could.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub struct Refusal {
+    /// The limit that fails.
+    pub limit: Limit,
+    /// What the move needs, in the limit's unit; infinite where no finite value would do.
+    pub wanted: f64,
+    /// What the axis has, in the same unit.
+    pub available: f64,
+    /// Least time that would do, seconds; `None` where no time would.
+    pub least_time: Option<f64>,
+}
+
+impl Refusal {
+    pub(crate) fn new<F: Real>(limit: Limit, wanted: F, available: F, least: F) -> Self {
+        let float = |x: F| x.to_f64().unwrap_or(f64::NAN);
+        Self { limit, wanted: float(wanted), available: float(available), least_time: Some(float(least)) }
+    }
+
+    pub(crate) fn never<F: Real>(limit: Limit, available: F) -> Self {
+        let available = available.to_f64().unwrap_or(f64::NAN);
+        Self { limit, wanted: f64::MIN_POSITIVE, available, least_time: None }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { limit, wanted, available, least_time } = self;
+        let unit = limit.unit();
+        match least_time {
+            Some(least) => write!(f, "needs {wanted:.6} {unit}, over {limit} {available}; at least {least:.9} s would do"),
+            None => write!(f, "needs a {limit} over {available} {unit}; no time would do without"),
+        }
+    }
+}

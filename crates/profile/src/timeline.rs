@@ -1,0 +1,94 @@
+//! All moves of one axis, one after the other, and when each pulse is due.
+
+use crate::profile::SharedProfile;
+use carrystep_spec::StartPhase;
+
+/// The float reference of one axis over all moves.
+#[derive(Debug, Clone)]
+pub struct Timeline {
+    /// Length of a tick, seconds.
+    pub tick_seconds: f64,
+    /// Moves in which the axis travels, in order; they do not overlap.
+    pub legs: Vec<Leg>,
+}
+
+/// One move of one axis.
+#[derive(Debug, Clone)]
+pub struct Leg {
+    /// The tick, from 0, at whose beginning the profile starts.
+    pub start_tick: u64,
+    /// Which way it goes.
+    pub backward: bool,
+    /// Whole steps travelled.
+    pub steps: u64,
+    /// How.
+    pub profile: SharedProfile,
+}
+
+/// The moment at which a pulse is due.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// First tick of the leg, from 0.
+    pub start_tick: u64,
+    /// Seconds from the beginning of that tick.
+    pub seconds: f64,
+    /// Direction of the pulse.
+    pub backward: bool,
+    /// Speed there, steps/s, 0 or more.
+    pub speed: f64,
+    /// Acceleration in the direction of travel, steps/s^2.
+    pub acceleration: f64,
+}
+
+impl Leg {
+    /// When pulse `k` (1..=steps) is due.
+    pub fn crossing(&self, phase: StartPhase, k: u64) -> Crossing {
+        let x = phase.pulse_half_steps(k, self.backward) as f64 / 2.0;
+        let seconds = self.profile.crossing(x);
+        Crossing {
+            start_tick: self.start_tick,
+            seconds,
+            backward: self.backward,
+            speed: self.profile.speed(seconds),
+            acceleration: self.profile.acceleration(seconds),
+        }
+    }
+
+    fn sign(&self) -> f64 {
+        if self.backward { -1.0 } else { 1.0 }
+    }
+}
+
+impl Timeline {
+    /// All pulses in order.
+    pub fn crossings(&self, phase: StartPhase) -> impl Iterator<Item = Crossing> + '_ {
+        self.legs.iter().flat_map(move |leg| (1..=leg.steps).map(move |k| leg.crossing(phase, k)))
+    }
+
+    /// Position in steps, signed, `tick` ticks (not necessarily whole) after the origin.
+    pub fn position_at(&self, tick: f64) -> f64 {
+        let begun = self.legs.iter().take_while(|leg| leg.start_tick as f64 <= tick);
+        begun.map(|leg| leg.sign() * leg.profile.position(self.local(leg, tick))).sum()
+    }
+
+    /// Speed in steps/s, signed, `tick` ticks after the origin; 0 between moves.
+    pub fn speed_at(&self, tick: f64) -> f64 {
+        self.moving(tick).map_or(0.0, |(leg, t)| leg.sign() * leg.profile.speed(t))
+    }
+
+    /// Acceleration in steps/s^2, signed, `tick` ticks after the origin; 0 between moves.
+    pub fn acceleration_at(&self, tick: f64) -> f64 {
+        self.moving(tick).map_or(0.0, |(leg, t)| leg.sign() * leg.profile.acceleration(t))
+    }
+
+    fn moving(&self, tick: f64) -> Option<(&Leg, f64)> {
+        let after = self.legs.partition_point(|leg| leg.start_tick as f64 <= tick);
+        let leg = self.legs.get(after.checked_sub(1)?)?;
+        let t = self.local(leg, tick);
+        (t < leg.profile.duration()).then_some((leg, t))
+    }
+
+    fn local(&self, leg: &Leg, tick: f64) -> f64 {
+        ((tick - leg.start_tick as f64) * self.tick_seconds).min(leg.profile.duration())
+    }
+}

@@ -1,0 +1,58 @@
+//! Where the float profile would have each edge, measured against the edge that is there.
+
+use carrystep_profile::Crossing;
+use carrystep_spec::Timebase;
+
+/// Picoseconds in a second.
+pub(crate) const PS: f64 = 1e12;
+
+/// Picoseconds in a nanosecond.
+pub(crate) const NS: f64 = 1e3;
+
+/// A tick in ps.
+pub(crate) const fn tick_ps(timebase: &Timebase) -> u64 {
+    timebase.tick_ns() * 1000
+}
+
+/// A phase, h/Q, in ps.
+pub(crate) fn phase_ps(timebase: &Timebase) -> f64 {
+    tick_ps(timebase) as f64 / f64::from(timebase.phases())
+}
+
+/// Whole ps, and the rest that is less than half of one, from the move's load to the crossing.
+fn due(crossing: &Crossing, tick_ps: u64) -> (i128, f64) {
+    let whole = (crossing.seconds * PS).round();
+    let rest = crossing.seconds.mul_add(PS, -whole);
+    (i128::from(crossing.start_tick) * i128::from(tick_ps) + whole as i128, rest)
+}
+
+/// e = m - t in ps: how late a rising edge is. Integers are subtracted first, floats last.
+pub(crate) fn lateness_ps(rise_ps: u64, origin_ps: i64, crossing: &Crossing, tick_ps: u64) -> f64 {
+    let (whole, rest) = due(crossing, tick_ps);
+    (i128::from(rise_ps) - i128::from(origin_ps) - whole) as f64 - rest
+}
+
+/// The time in the capture, in whole ps, at which a crossing is due.
+pub(crate) fn due_ps(origin_ps: i64, crossing: &Crossing, tick_ps: u64) -> i128 {
+    i128::from(origin_ps) + due(crossing, tick_ps).0
+}
+
+/// How far, in ps, the straight line through one tick can move an edge off the parabola:
+/// h^2 |a| / (8 v), and never out of its tick.
+pub(crate) fn curvature_ps(crossing: &Crossing, timebase: &Timebase) -> f64 {
+    let tick = timebase.tick_seconds();
+    let shift = tick * tick * crossing.acceleration.abs() / (8.0 * crossing.speed);
+    // 0 / 0, a crossing at rest without acceleration, cannot be in a profile that moves
+    if shift.is_nan() { tick * PS } else { shift.min(tick) * PS }
+}
+
+/// A time of the capture for a sentence.
+pub(crate) fn moment(ps: impl TryInto<i128>) -> String {
+    let ps = ps.try_into().unwrap_or(0) as f64;
+    match ps.abs() {
+        small if small < 1e6 => format!("{:.3} ns", ps / 1e3),
+        small if small < 1e9 => format!("{:.6} us", ps / 1e6),
+        small if small < 1e12 => format!("{:.9} ms", ps / 1e9),
+        _ => format!("{:.9} s", ps / 1e12),
+    }
+}

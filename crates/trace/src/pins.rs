@@ -1,0 +1,141 @@
+//! Pin timings of one axis: the shortest high, low, set-up and hold that a capture shows.
+
+use crate::edge::{Pin, PinChange};
+
+/// What a driver asks for, or what a capture shows at its shortest, in ps.
+///
+/// ```text
+/// DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
+///          :<-setup->:<-- hold ->:
+/// STEP ______________/^^^^^^^\________/^^^^^^\__________
+///                    :< high >:< low >:
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Shortest {
+    /// STEP high.
+    pub high: Option<Stretch>,
+    /// STEP low between two pulses.
+    pub low: Option<Stretch>,
+    /// DIR stable before a rising STEP.
+    pub setup: Option<Stretch>,
+    /// DIR stable after a rising STEP.
+    pub hold: Option<Stretch>,
+}
+
+/// A measured time, and where it ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stretch {
+    /// Its length in ps.
+    pub ps: u64,
+    /// The pulse that it belongs to, from 1.
+    pub pulse: u64,
+    /// When it ends, in ps of the capture.
+    pub end: u64,
+}
+
+/// Watches the two pins of one axis.
+#[derive(Debug, Clone, Default)]
+pub struct PinWatch {
+    step: bool,
+    dir: bool,
+    pulses: u64,
+    rise: Option<u64>,
+    fall: Option<u64>,
+    turn: Option<u64>,
+    shortest: Shortest,
+}
+
+fn shorten(slot: &mut Option<Stretch>, from: Option<u64>, end: u64, pulse: u64) {
+    let Some(from) = from else { return };
+    let ps = end.saturating_sub(from);
+    if slot.is_none_or(|old| ps < old.ps) {
+        *slot = Some(Stretch { ps, pulse, end });
+    }
+}
+
+impl PinWatch {
+    /// The level that a pin has when the capture begins.
+    pub fn initial(&mut self, pin: Pin, level: bool) {
+        match pin {
+            Pin::Step => self.step = level,
+            Pin::Dir => self.dir = level,
+        }
+    }
+
+    /// Takes a change of either pin; true where it is a rising STEP.
+    pub fn change(&mut self, change: PinChange) -> bool {
+        let PinChange { ps, level, .. } = change;
+        match (change.pin, level) {
+            (Pin::Dir, _) if level != self.dir => {
+                self.dir = level;
+                shorten(&mut self.shortest.hold, self.rise, ps, self.pulses);
+                self.turn = Some(ps);
+            }
+            (Pin::Step, true) if !self.step => {
+                self.step = true;
+                self.pulses += 1;
+                shorten(&mut self.shortest.low, self.fall, ps, self.pulses);
+                shorten(&mut self.shortest.setup, self.turn, ps, self.pulses);
+                self.rise = Some(ps);
+                return true;
+            }
+            (Pin::Step, false) if self.step => {
+                self.step = false;
+                // a pulse that was high when the capture began has no known width
+                shorten(&mut self.shortest.high, self.rise, ps, self.pulses);
+                self.fall = Some(ps);
+            }
+            _ => {}
+        }
+        false
+    }
+
+    /// Level of STEP.
+    pub fn step(&self) -> bool {
+        self.step
+    }
+
+    /// Level of DIR: true is backward.
+    pub fn backward(&self) -> bool {
+        self.dir
+    }
+
+    /// Rising edges so far.
+    pub fn pulses(&self) -> u64 {
+        self.pulses
+    }
+
+    /// The shortest of each so far.
+    pub fn shortest(&self) -> Shortest {
+        self.shortest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shortest_of_each_is_kept() {
+        let mut watch = PinWatch::default();
+        let mut at = |ps, pin, level| watch.change(PinChange { ps, axis: 0, pin, level });
+        assert!(!at(100, Pin::Dir, true));
+        assert!(at(350, Pin::Step, true));
+        at(400, Pin::Step, false);
+        assert!(at(600, Pin::Step, true));
+        at(640, Pin::Step, false);
+        at(660, Pin::Dir, false);
+        let Shortest { high, low, setup, hold } = watch.shortest();
+        let lengths = [high, low, setup, hold].map(|stretch| stretch.map(|s| (s.ps, s.pulse)));
+        assert_eq!(lengths, [Some((40, 2)), Some((200, 2)), Some((250, 1)), Some((60, 2))]);
+    }
+
+    #[test]
+    fn a_pulse_in_flight_at_the_start_has_no_width() {
+        let mut watch = PinWatch::default();
+        watch.initial(Pin::Step, true);
+        watch.change(PinChange { ps: 5, axis: 0, pin: Pin::Step, level: false });
+        assert_eq!(watch.shortest().high, None);
+        assert_eq!(watch.pulses(), 0);
+    }
+}

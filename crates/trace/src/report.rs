@@ -1,0 +1,185 @@
+//! What the checker found: figures with stable names, sentences, and a table for a terminal.
+
+use serde::Serialize;
+use std::fmt;
+
+/// Where the times of a capture are counted from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum OriginKind {
+    /// Our own capture: the load of the first move plus the latency L.
+    Known,
+    /// A foreign capture: one offset for all axes, the midpoint of least and greatest error.
+    Midpoint,
+    /// Given by the user.
+    Fixed,
+}
+
+/// The check of one capture.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// Whether every axis passed.
+    pub passed: bool,
+    /// How the origin was found.
+    pub origin: OriginKind,
+    /// Time zero of the profile, in ps of the capture.
+    pub origin_ps: i64,
+    /// Uncertainty of the capture's times, ns: widens every bound.
+    pub slack_ns: f64,
+    /// The grid that edges stand on, h/Q, ns.
+    pub phase_ns: f64,
+    /// One entry an axis, in the machine's order.
+    pub axes: Vec<AxisReport>,
+}
+
+/// The check of one axis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AxisReport {
+    /// The axis' name.
+    pub axis: String,
+    /// Whether there is no failure.
+    pub passed: bool,
+    /// Pulses that the move asks for.
+    pub pulses_expected: u64,
+    /// Rising edges of STEP.
+    pub pulses_found: u64,
+    /// Steps forward less steps back that the move asks for.
+    pub position_expected: i64,
+    /// Steps forward less steps back on the pins.
+    pub position_found: i64,
+    /// Pulses with DIR the other way than the profile goes.
+    pub pulses_wrong_direction: u64,
+    /// Least e = edge less profile: negative is early.
+    pub error_min_ns: Option<f64>,
+    /// Greatest e.
+    pub error_max_ns: Option<f64>,
+    /// Root mean square of e.
+    pub error_rms_ns: Option<f64>,
+    /// Standard deviation of e about its mean.
+    pub error_std_ns: Option<f64>,
+    /// What rounding down to the phase grid alone gives: h/Q / sqrt(12).
+    pub error_std_theory_ns: f64,
+    /// h/Q + h^2 max(|a| / (8 v)) + 2 ns + slack: |e| must not exceed it.
+    pub error_bound_ns: f64,
+    /// Shortest STEP high.
+    pub high_min_ns: Option<f64>,
+    /// What the driver asks for.
+    pub high_required_ns: f64,
+    /// Shortest STEP low between pulses.
+    pub low_min_ns: Option<f64>,
+    /// What the driver asks for.
+    pub low_required_ns: f64,
+    /// Shortest time from a DIR change to the next rising STEP.
+    pub setup_min_ns: Option<f64>,
+    /// What the driver asks for.
+    pub setup_required_ns: f64,
+    /// Shortest time from a rising STEP to the next DIR change.
+    pub hold_min_ns: Option<f64>,
+    /// What the driver asks for.
+    pub hold_required_ns: f64,
+    /// Greatest |period on the pins - period of the profile|.
+    pub period_jitter_max_ns: Option<f64>,
+    /// At constant speed one phase at most; beside it twice the curvature term.
+    pub period_jitter_theory_ns: f64,
+    /// Greatest relative error of the speed that one period shows, percent.
+    pub speed_ripple_max_percent: Option<f64>,
+    /// One phase in the shortest period of the profile, percent.
+    pub speed_ripple_theory_percent: f64,
+    /// What is wrong, in sentences.
+    pub failures: Vec<String>,
+    /// Failures beyond those that are spelled out.
+    pub failures_omitted: u64,
+}
+
+impl Report {
+    /// Whether every axis passed.
+    pub fn passed(&self) -> bool {
+        self.passed
+    }
+
+    /// All failures that are spelled out, axis after axis.
+    pub fn failures(&self) -> impl Iterator<Item = &str> {
+        self.axes.iter().flat_map(|axis| axis.failures.iter().map(String::as_str))
+    }
+}
+
+/// Two columns that belong together, as one cell.
+fn against(found: impl fmt::Display, expected: impl fmt::Display + PartialEq) -> String {
+    format!("{found}/{expected}")
+}
+
+fn figure(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), |x| format!("{x:.1}"))
+}
+
+/// A minimum beside what the driver asks for; the latter is whole ns.
+fn minimum(found: Option<f64>, required: f64) -> String {
+    against(found.map_or_else(|| "-".to_owned(), |ns| format!("{ns:.0}")), format!("{required:.0}"))
+}
+
+impl AxisReport {
+    fn cells(&self) -> [String; 12] {
+        [
+            self.axis.clone(),
+            against(self.pulses_found, self.pulses_expected),
+            against(self.position_found, self.position_expected),
+            figure(self.error_min_ns),
+            figure(self.error_max_ns),
+            figure(self.error_rms_ns),
+            format!("{:.1}", self.error_bound_ns),
+            minimum(self.high_min_ns, self.high_required_ns),
+            minimum(self.low_min_ns, self.low_required_ns),
+            minimum(self.setup_min_ns, self.setup_required_ns),
+            minimum(self.hold_min_ns, self.hold_required_ns),
+            if self.passed { "ok" } else { "FAILED" }.to_owned(),
+        ]
+    }
+}
+
+const HEAD: [&str; 12] =
+    ["axis", "pulses", "position", "e min", "e max", "e rms", "bound", "high", "low", "set-up", "hold", ""];
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rows: Vec<[String; 12]> = self.axes.iter().map(AxisReport::cells).collect();
+        let mut widths = HEAD.map(str::len);
+        for row in &rows {
+            for (width, cell) in widths.iter_mut().zip(row) {
+                *width = cell.chars().count().max(*width);
+            }
+        }
+        let mut line = |cells: [&str; 12]| {
+            let mut text = String::new();
+            for (column, (cell, width)) in cells.into_iter().zip(widths).enumerate() {
+                // names and verdicts to the left, numbers to the right
+                match column {
+                    0 | 11 => text.push_str(&format!("{cell:<width$}  ")),
+                    _ => text.push_str(&format!("{cell:>width$}  ")),
+                }
+            }
+            writeln!(f, "{}", text.trim_end())
+        };
+        line(HEAD)?;
+        for row in &rows {
+            line(row.each_ref().map(String::as_str))?;
+        }
+        writeln!(f, "times in ns; found/required; phase {} ns", self.phase_ns)?;
+        match self.origin {
+            OriginKind::Known => {}
+            OriginKind::Midpoint => writeln!(f, "origin: one for all axes, at {} ps of the capture", self.origin_ps)?,
+            OriginKind::Fixed => writeln!(f, "origin: fixed at {} ps of the capture", self.origin_ps)?,
+        }
+        if self.slack_ns > 0.0 {
+            writeln!(f, "the capture is good to {} ns: every bound is wider by that", self.slack_ns)?;
+        }
+        for axis in &self.axes {
+            for failure in &axis.failures {
+                writeln!(f, "FAILED {failure}")?;
+            }
+            if axis.failures_omitted > 0 {
+                writeln!(f, "FAILED axis {}: and {} more", axis.axis, axis.failures_omitted)?;
+            }
+        }
+        Ok(())
+    }
+}

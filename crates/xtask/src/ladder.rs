@@ -1,0 +1,21 @@
+//! The ladder: tools, arrows, lints, then every rung as a test of its own.
+
+use crate::shell::{self, Done};
+use crate::{arrows, readme, tools};
+
+/// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an error.
+pub fn climb() -> Done {
+    tools::install()?;
+    arrows::check()?;
+    lint()?;
+    shell::run("cargo", &["test", "--release", "--workspace"])?;
+    readme::check()?;
+    shell::say("the whole ladder holds");
+    Ok(())
+}
+
+/// Formatting and lints.
+pub fn lint() -> Done {
+    shell::run("cargo", &["fmt", "--all", "--check"])?;
+    shell::run("cargo", &["clippy", "--quiet", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
+}

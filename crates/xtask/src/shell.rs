@@ -1,0 +1,51 @@
+//! Running other programs from the root of the workspace.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What a chore ends with: a sentence that says what failed.
+pub type Done = Result<(), String>;
+
+/// The root of the workspace.
+pub fn root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.ancestors().nth(2).unwrap_or(here).to_owned()
+}
+
+/// A line for the person at the terminal.
+pub fn say(line: &str) {
+    // Nobody is left to tell if this fails.
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// A command that starts in the root of the workspace.
+pub fn command(program: &str, arguments: &[&str]) -> Command {
+    let mut command = Command::new(program);
+    command.args(arguments).current_dir(root());
+    command
+}
+
+/// Runs a command, its output going to the terminal.
+pub fn run(program: &str, arguments: &[&str]) -> Done {
+    say(&format!("$ {program} {}", arguments.join(" ")));
+    let status = command(program, arguments).status().map_err(|error| format!("cannot start {program}: {error}"))?;
+    if status.success() { Ok(()) } else { Err(format!("`{program} {}` failed ({status})", arguments.join(" "))) }
+}
+
+/// Runs a command and takes what it prints.
+pub fn read(program: &str, arguments: &[&str]) -> Result<String, String> {
+    let output =
+        command(program, arguments).output().map_err(|error| format!("cannot start {program}: {error}"))?;
+    if !output.status.success() {
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        return Err(format!("`{program} {}` failed ({}): {stderr}", arguments.join(" "), output.status));
+    }
+    String::from_utf8(output.stdout).map_err(|_| format!("{program} printed something that is not text"))
+}
+
+/// Whether a program can be started.
+pub fn is_there(program: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| folder.join(program).is_file())
+}

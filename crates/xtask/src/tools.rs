@@ -1,0 +1,45 @@
+//! The tools that the tests need beside Cargo, installed by apt where that is possible.
+
+use crate::shell::{self, Done};
+
+/// Program, and the Debian package that brings it.
+const NEEDED: [(&str, &str); 6] = [
+    ("iverilog", "iverilog"),
+    ("vvp", "iverilog"),
+    ("verilator", "verilator"),
+    ("g++", "g++"),
+    ("make", "make"),
+    ("yosys", "yosys"),
+];
+
+/// Installs what is missing, or says exactly what to install.
+pub fn install() -> Done {
+    let missing = missing();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let line = format!("apt-get install -y --no-install-recommends {}", missing.join(" "));
+    let advice = format!("missing for the tests: {}\n  install: sudo {line}", missing.join(", "));
+    if !shell::is_there("apt-get") {
+        return Err(format!("{advice}\n  (this system has no apt-get: use its own packages of these names)"));
+    }
+    let root = shell::read("id", &["-u"]).is_ok_and(|id| id.trim() == "0");
+    let before: &[&str] = if root { &[] } else { &["sudo", "-n"] };
+    let apt = |arguments: &[&str]| {
+        let words: Vec<&str> = before.iter().chain(&["apt-get"]).chain(arguments).copied().collect();
+        shell::run(words[0], &words[1..])
+    };
+    let packages: Vec<&str> = ["install", "-y", "--no-install-recommends"].into_iter().chain(missing).collect();
+    apt(&["update"]).and_then(|()| apt(&packages)).map_err(|error| format!("{error}\n{advice}"))?;
+    match self::missing().as_slice() {
+        [] => Ok(()),
+        still => Err(format!("still missing after apt-get: {}\n{advice}", still.join(", "))),
+    }
+}
+
+fn missing() -> Vec<&'static str> {
+    let mut packages: Vec<&str> =
+        NEEDED.iter().filter(|(program, _)| !shell::is_there(program)).map(|&(_, package)| package).collect();
+    packages.dedup();
+    packages
+}

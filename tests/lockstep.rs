@@ -1,0 +1,64 @@
+//! Two levels on the same program, every output in every clock.
+
+use carrystep_levels::{Job, Level, LevelError, Outcome, run};
+use carrystep_spec::ports::Outputs;
+use carrystep_spec::{AXES, Build, PinTiming, Program, StartPhase, Timebase};
+
+/// All outputs in each cycle in which any of them changed, and how the run ended.
+#[derive(Debug, PartialEq)]
+pub struct Record {
+    /// Cycle and outputs.
+    pub changes: Vec<(u64, Outputs)>,
+    /// The end.
+    pub outcome: Outcome,
+}
+
+/// Runs a job at a level and keeps everything.
+pub fn record(level: Level, job: &Job<'_>) -> Result<Record, LevelError> {
+    let mut changes = Vec::new();
+    let outcome = run(level, job, &mut |cycle, outputs| changes.push((cycle, *outputs)))?;
+    Ok(Record { changes, outcome })
+}
+
+/// What is different between two records, first difference first; `None` if nothing is.
+pub fn difference(expected: &Record, found: &Record) -> Option<String> {
+    let pairs = expected.changes.iter().zip(&found.changes);
+    if let Some((e, f)) = pairs.into_iter().find(|(e, f)| e != f) {
+        let cycle = e.0.min(f.0);
+        return Some(format!("first difference in cycle {cycle}:\n expected {e:?}\n found    {f:?}"));
+    }
+    if expected.changes.len() != found.changes.len() {
+        return Some(format!("{} changes expected, {} found", expected.changes.len(), found.changes.len()));
+    }
+    (expected.outcome != found.outcome).then(|| format!("{:?} expected, {:?} found", expected.outcome, found.outcome))
+}
+
+/// Panics at the first clock in which a level differs from the model.
+pub fn assert_equals_model(level: Level, job: &Job<'_>) {
+    let expected = record(Level::Model, job).expect("the model");
+    let found = record(level, job).unwrap_or_else(|error| panic!("{level}: {error}"));
+    if let Some(difference) = difference(&expected, &found) {
+        panic!("{level} is not the model: {difference}\n program {:?}", job.program);
+    }
+}
+
+/// A job for a program whose length is not known: time for whatever the generators make.
+pub fn job<'a>(build: &'a Build, program: &'a Program) -> Job<'a> {
+    Job { max_clocks: 4_000_000, ..Job::new(build, program, 0) }
+}
+
+/// A build for random programs: the fewest clocks per tick, axes with very different pins, so that
+/// overruns, waiting for set-up and waiting for hold all happen.
+pub fn tight_build(phases: u32, phase: StartPhase) -> Build {
+    let timebase = Timebase::new(16_000_000, 1000, phases).expect("a fine timebase");
+    let pins = |width, gap, setup, hold| PinTiming { width, gap, setup, hold };
+    let pins: [PinTiming; AXES] = [
+        PinTiming::SHORTEST,
+        pins(2, 3, 1, 1),
+        pins(8, 8, 20, 1),
+        pins(1, 17, 3, 40),
+        pins(19, 1, 1, 2),
+        pins(5, 5, 33, 21),
+    ];
+    Build { timebase, phase, pins }
+}
