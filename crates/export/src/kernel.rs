@@ -1,0 +1,199 @@
+//! A module's kernel, sorted by how Verilog says it.
+//!
+//! Rust-HDL has one combinational block per module. Here every signal that is assigned once becomes a
+//! continuous assignment, every statement that writes registers only goes under the clock, and what is
+//! left (defaults with overrides) stays combinational, one block for each set of signals written
+//! together. Nothing is reordered that writes the same signal, so the meaning is the kernel's.
+
+use crate::ExportError;
+use crate::expression::Translator;
+use crate::names::{Name, Names, Role};
+use crate::netlist::Module;
+use rust_hdl::prelude::Verilog;
+use rust_hdl::prelude::ast::{
+    VerilogBlock, VerilogBlockOrConditional as Otherwise, VerilogConditional, VerilogExpression,
+    VerilogStatement as Statement,
+};
+use std::collections::BTreeSet;
+
+/// A statement, translated.
+#[derive(Debug, Clone)]
+pub(crate) enum Step {
+    Assign { target: Name, value: String },
+    If { test: String, then: Vec<Step>, otherwise: Vec<Step> },
+}
+
+/// A kernel, sorted; each list in the kernel's order.
+#[derive(Debug, Default)]
+pub(crate) struct Kernel {
+    /// Assigned once.
+    pub(crate) wires: Vec<(Name, String)>,
+    /// Combinational blocks.
+    pub(crate) blocks: Vec<Vec<Step>>,
+    /// Under the clock.
+    pub(crate) clocked: Vec<Step>,
+}
+
+impl Kernel {
+    pub(crate) fn new(module: &Module, names: &Names) -> Result<Self, ExportError> {
+        let translator = Translator { module: &module.instance, names, counter: None };
+        let Verilog::Combinatorial(code) = &module.code else {
+            return Err(translator.unsupported("a module without a kernel"));
+        };
+        let steps = without_overwritten(block(translator, code)?);
+        let mut kernel = Self::default();
+        let mut clocked = Vec::new();
+        for group in groups(steps) {
+            let registers = group.iter().all(|(_, step)| step.targets().iter().all(|name| name.role == Role::Next));
+            match group.as_slice() {
+                _ if registers => clocked.extend(group),
+                [(_, Step::Assign { target, value })] => kernel.wires.push((target.clone(), value.clone())),
+                _ => kernel.blocks.push(group.into_iter().map(|(_, step)| step).collect()),
+            }
+        }
+        clocked.sort_by_key(|(place, _)| *place);
+        kernel.clocked = clocked.into_iter().map(|(_, step)| step).filter(|step| !step.is_hold()).collect();
+        Ok(kernel)
+    }
+
+    /// What the combinational blocks write.
+    pub(crate) fn block_targets(&self) -> Vec<Name> {
+        let mut seen = BTreeSet::new();
+        let all = self.blocks.iter().flatten().flat_map(Step::targets);
+        all.filter(|name| seen.insert(name.text.clone())).collect()
+    }
+}
+
+impl Step {
+    /// Every signal that it may write.
+    fn targets(&self) -> Vec<Name> {
+        match self {
+            Self::Assign { target, .. } => vec![target.clone()],
+            Self::If { then, otherwise, .. } => then.iter().chain(otherwise).flat_map(Self::targets).collect(),
+        }
+    }
+
+    fn writes(&self, signal: &str) -> bool {
+        self.targets().iter().any(|target| target.text == signal)
+    }
+
+    fn reads(&self, signal: &str) -> bool {
+        match self {
+            Self::Assign { value, .. } => mentions(value, signal),
+            Self::If { test, then, otherwise } => {
+                mentions(test, signal) || then.iter().chain(otherwise).any(|step| step.reads(signal))
+            }
+        }
+    }
+
+    /// The default of a register, to keep its value: under the clock that goes without saying.
+    fn is_hold(&self) -> bool {
+        matches!(self, Self::Assign { target, value } if target.text == format!("{value}_next"))
+    }
+}
+
+/// Whether the text names the signal.
+pub(crate) fn mentions(text: &str, signal: &str) -> bool {
+    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|word| word == signal)
+}
+
+fn block(translator: Translator<'_>, code: &VerilogBlock) -> Result<Vec<Step>, ExportError> {
+    let mut steps = Vec::new();
+    for statement in code {
+        match statement {
+            Statement::Assignment(target, value) => steps.extend(assignment(translator, target, value)?),
+            Statement::If(condition) => steps.push(conditional(translator, condition)?),
+            Statement::Macro(inner) => steps.extend(block(translator, inner)?),
+            Statement::Loop(counted) => {
+                for value in counted.from.as_usize()..counted.to.as_usize() {
+                    let counter = Some((counted.index.as_str(), value));
+                    steps.extend(block(Translator { counter, ..translator }, &counted.block)?);
+                }
+            }
+            Statement::Comment(_) => {}
+            Statement::SliceAssignment { .. } => return Err(translator.unsupported("assignment to some bits")),
+            Statement::Match(_) => return Err(translator.unsupported("match")),
+            Statement::Link(_) => return Err(translator.unsupported("link or join")),
+        }
+    }
+    Ok(steps)
+}
+
+/// `None` for a clock: those are wired, not computed.
+fn assignment(
+    translator: Translator<'_>,
+    target: &VerilogExpression,
+    value: &VerilogExpression,
+) -> Result<Option<Step>, ExportError> {
+    let VerilogExpression::Signal(signal) = target else {
+        return Err(translator.unsupported("assignment to an expression"));
+    };
+    let target = translator.names.get(translator.module, &translator.flat(signal))?;
+    let value = translator.expression(value)?;
+    if target.role == Role::Clock {
+        return if value.text == "clock" { Ok(None) } else { Err(translator.unsupported("a derived clock")) };
+    }
+    if target.width != value.width {
+        return Err(translator.unsupported(&format!(
+            "{} ({} bits) = {} ({} bits)",
+            target.text, target.width, value.text, value.width
+        )));
+    }
+    Ok(Some(Step::Assign { target: target.clone(), value: value.text }))
+}
+
+fn conditional(translator: Translator<'_>, condition: &VerilogConditional) -> Result<Step, ExportError> {
+    let otherwise = match &condition.otherwise {
+        Otherwise::Block(code) => block(translator, code)?,
+        Otherwise::Conditional(statement) => match statement.as_ref() {
+            Statement::If(inner) => vec![conditional(translator, inner)?],
+            _ => return Err(translator.unsupported("else")),
+        },
+        Otherwise::None => Vec::new(),
+    };
+    let test = translator.expression(&condition.test)?.text;
+    Ok(Step::If { test, then: block(translator, &condition.then)?, otherwise })
+}
+
+/// Drops a default that is overwritten before anything reads it.
+fn without_overwritten(steps: Vec<Step>) -> Vec<Step> {
+    let dead = |place: usize, signal: &str| {
+        for step in &steps[place + 1..] {
+            match step {
+                _ if step.reads(signal) => return false,
+                Step::Assign { target, .. } if target.text == signal => return true,
+                Step::If { .. } if step.writes(signal) => return false,
+                _ => {}
+            }
+        }
+        false
+    };
+    let keep: Vec<bool> = steps
+        .iter()
+        .enumerate()
+        .map(|(place, step)| !matches!(step, Step::Assign { target, .. } if dead(place, &target.text)))
+        .collect();
+    steps.into_iter().zip(keep).filter_map(|(step, keep)| keep.then_some(step)).collect()
+}
+
+/// Statements that write a signal in common, directly or through others, with their places.
+fn groups(steps: Vec<Step>) -> Vec<Vec<(usize, Step)>> {
+    let mut groups: Vec<(BTreeSet<String>, Vec<(usize, Step)>)> = Vec::new();
+    for (place, step) in steps.into_iter().enumerate() {
+        let mut targets: BTreeSet<String> = step.targets().into_iter().map(|name| name.text).collect();
+        let mut members = Vec::new();
+        groups.retain_mut(|(written, earlier)| {
+            let apart = written.is_disjoint(&targets);
+            if !apart {
+                targets.append(written);
+                members.append(earlier);
+            }
+            apart
+        });
+        members.push((place, step));
+        members.sort_by_key(|(place, _)| *place);
+        groups.push((targets, members));
+    }
+    groups.sort_by_key(|(_, members)| members[0].0);
+    groups.into_iter().map(|(_, members)| members).collect()
+}

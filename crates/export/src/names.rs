@@ -1,0 +1,153 @@
+//! From Rust-HDL's flat names to Verilog's: `axis$0$go` becomes `axis_0_go`, register `left$q` is `left`,
+//! and an array of ports is one vector.
+
+use crate::ExportError;
+use crate::netlist::{Module, Number};
+use rust_hdl::prelude::AtomKind;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What a name in a kernel stands for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// An input port, a constant, or the output of a child.
+    Given,
+    /// A local signal or an output port.
+    Driven,
+    /// The value of a register.
+    Value,
+    /// The next value of a register.
+    Next,
+    /// The input of a child.
+    ChildInput,
+    /// A clock, of this module, a register or a child.
+    Clock,
+}
+
+/// A name's Verilog.
+#[derive(Debug, Clone)]
+pub(crate) struct Name {
+    pub(crate) text: String,
+    pub(crate) width: usize,
+    pub(crate) role: Role,
+}
+
+/// A port of the module as Verilog has it.
+#[derive(Debug, Clone)]
+pub(crate) struct Port {
+    pub(crate) name: String,
+    pub(crate) width: usize,
+    pub(crate) output: bool,
+}
+
+/// All names of a module.
+#[derive(Debug, Default)]
+pub(crate) struct Names {
+    pub(crate) ports: Vec<Port>,
+    pub(crate) locals: Vec<(String, usize)>,
+    pub(crate) constants: Vec<(String, Number)>,
+    known: BTreeMap<String, Name>,
+}
+
+impl Names {
+    pub(crate) fn new(module: &Module) -> Result<Self, ExportError> {
+        let mut names = Self::default();
+        for atom in &module.atoms {
+            let (base, index) = split_index(&atom.name);
+            match atom.kind {
+                AtomKind::InputParameter | AtomKind::OutputParameter => {
+                    let output = atom.kind == AtomKind::OutputParameter;
+                    let role = match (atom.is_clock, output) {
+                        (true, _) => Role::Clock,
+                        (_, true) => Role::Driven,
+                        _ => Role::Given,
+                    };
+                    let text = names.port(base, index, atom.width, output);
+                    names.add(&atom.name, text, atom.width, role);
+                }
+                AtomKind::LocalSignal => {
+                    let text = plain(&atom.name);
+                    names.locals.push((text.clone(), atom.width));
+                    names.add(&atom.name, text, atom.width, Role::Driven);
+                }
+                AtomKind::Constant => {
+                    let text = plain(&atom.name).to_uppercase();
+                    names.constants.push((text.clone(), atom.value));
+                    names.add(&atom.name, text, atom.width, Role::Given);
+                }
+                _ => return Err(ExportError::unsupported(&module.instance, format!("signal {}", atom.name))),
+            }
+        }
+        for register in &module.registers {
+            let (name, text) = (&register.name, plain(&register.name));
+            names.add(&format!("{name}$q"), text.clone(), register.width, Role::Value);
+            names.add(&format!("{name}$d"), format!("{text}_next"), register.width, Role::Next);
+            names.add(&format!("{name}$clock"), "clock".into(), 1, Role::Clock);
+        }
+        for child in &module.children {
+            for atom in child.atoms.iter().filter(|atom| atom.kind.is_parameter()) {
+                let flat = format!("{}${}", child.instance, atom.name);
+                let role = match (atom.is_clock, atom.kind) {
+                    (true, _) => Role::Clock,
+                    (_, AtomKind::InputParameter) => Role::ChildInput,
+                    _ => Role::Given,
+                };
+                names.add(&flat, plain(&flat), atom.width, role);
+            }
+        }
+        names.check(&module.instance)?;
+        Ok(names)
+    }
+
+    /// What a name in the kernel of `module` stands for.
+    pub(crate) fn get(&self, module: &str, flat: &str) -> Result<&Name, ExportError> {
+        self.known.get(flat).ok_or_else(|| ExportError::unsupported(module, format!("name {flat}")))
+    }
+
+    fn add(&mut self, flat: &str, text: String, width: usize, role: Role) {
+        self.known.insert(flat.to_owned(), Name { text, width, role });
+    }
+
+    /// Adds a port, or one more element to a vector; the text of a reference to it.
+    fn port(&mut self, base: &str, index: Option<usize>, width: usize, output: bool) -> String {
+        let name = plain(base);
+        let Some(index) = index else {
+            self.ports.push(Port { name: name.clone(), width, output });
+            return name;
+        };
+        match self.ports.iter_mut().find(|port| port.name == name) {
+            Some(port) => port.width += width,
+            None => self.ports.push(Port { name: name.clone(), width, output }),
+        }
+        slice(&name, index * width, width)
+    }
+
+    /// No two things of one name.
+    fn check(&self, module: &str) -> Result<(), ExportError> {
+        let mut seen = BTreeSet::new();
+        let signals = self.known.values().filter(|name| name.role != Role::Clock).map(|name| &name.text);
+        for text in signals {
+            if !seen.insert(text) {
+                return Err(ExportError::unsupported(module, format!("two signals called {text}")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// `name[7]` or `name[31:0]`.
+pub(crate) fn slice(name: &str, low: usize, width: usize) -> String {
+    if width == 1 { format!("{name}[{low}]") } else { format!("{name}[{}:{low}]", low + width - 1) }
+}
+
+/// `axis$0` without its `$`.
+pub(crate) fn plain(flat: &str) -> String {
+    flat.replace('$', "_")
+}
+
+/// `axis$0` is element 0 of `axis`.
+pub(crate) fn split_index(flat: &str) -> (&str, Option<usize>) {
+    match flat.rsplit_once('$').map(|(base, index)| (base, index.parse())) {
+        Some((base, Ok(index))) => (base, Some(index)),
+        _ => (flat, None),
+    }
+}

@@ -1,0 +1,263 @@
+//! Reads pin changes from any VCD: our own, another simulator's, a logic analyser's.
+
+use crate::edge::{Pin, PinChange, PinSink};
+use crate::error::{ReadError, TraceError};
+use crate::signal_map::{Signal, SignalMap};
+use crate::vcd_own::{self, OwnCapture};
+use std::collections::HashMap;
+use std::fmt;
+use std::io::{self, BufRead};
+use vcd::{Command, IdCode, ParseError, Parser, TimescaleUnit, Value, Vector};
+
+/// Deeper scopes than any design has.
+const MAX_DEPTH: usize = 256;
+
+/// A VCD whose header has been read and whose pins have been found.
+pub struct VcdReader<R> {
+    parser: Parser<R>,
+    unit: Unit,
+    own: Option<OwnCapture>,
+    /// The pins that a signal carries, each with its bit from the least significant.
+    pins: HashMap<IdCode, Vec<(u32, usize)>>,
+    count: usize,
+}
+
+/// What was read, beside the pin changes themselves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Played {
+    /// The last time in the file, ps.
+    pub end_ps: u64,
+    /// Pin changes.
+    pub changes: u64,
+    /// Times a pin became unknown or floating (x, z) after its first level; it was taken to stay as it was.
+    pub unknown: u64,
+}
+
+/// A file's unit of time as a fraction of ps.
+#[derive(Debug, Clone, Copy)]
+struct Unit {
+    numerator: u128,
+    denominator: u128,
+}
+
+impl Unit {
+    fn new(quantity: u32, unit: TimescaleUnit) -> Self {
+        let (numerator, denominator) = match unit {
+            TimescaleUnit::S => (1_000_000_000_000, 1),
+            TimescaleUnit::MS => (1_000_000_000, 1),
+            TimescaleUnit::US => (1_000_000, 1),
+            TimescaleUnit::NS => (1000, 1),
+            TimescaleUnit::PS => (1, 1),
+            TimescaleUnit::FS => (1, 1000),
+        };
+        Self { numerator: numerator * u128::from(quantity), denominator }
+    }
+
+    /// The nearest ps.
+    fn ps(self, time: u64) -> Option<u64> {
+        let exact = u128::from(time).checked_mul(self.numerator)?;
+        u64::try_from((exact + self.denominator / 2) / self.denominator).ok()
+    }
+}
+
+impl<R> fmt::Debug for VcdReader<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("VcdReader").field("own", &self.own).field("pins", &self.pins).finish_non_exhaustive()
+    }
+}
+
+/// The parser's errors, sorted.
+fn sorted(error: io::Error, line: u64, missing: &'static str) -> ReadError {
+    if error.kind() == io::ErrorKind::UnexpectedEof {
+        return ReadError::Truncated { line, missing };
+    }
+    match error.get_ref().and_then(|inner| inner.downcast_ref::<ParseError>()) {
+        Some(parse) => ReadError::Syntax { line: parse.line(), message: format!("{:?}", parse.kind()) },
+        None => ReadError::Io(error),
+    }
+}
+
+impl<R: BufRead> VcdReader<R> {
+    /// Reads the header and finds STEP and DIR of every axis.
+    ///
+    /// # Errors
+    /// The file is no VCD, ends in its header, has no unit of time, or lacks a signal.
+    pub fn new(reader: R, axes: &[&str], map: &SignalMap) -> Result<Self, ReadError> {
+        const MISSING: &str = "the header has no end";
+        let mut parser = Parser::new(reader);
+        let mut scopes: Vec<String> = Vec::new();
+        let mut signals = Vec::new();
+        let mut unit = None;
+        let mut own = None;
+        loop {
+            let line = parser.line();
+            let Some(command) = parser.next() else {
+                return Err(ReadError::Truncated { line, missing: MISSING });
+            };
+            match command.map_err(|error| sorted(error, line, MISSING))? {
+                Command::Enddefinitions => break,
+                Command::Comment(text) => own = own.or_else(|| text.parse().ok()),
+                Command::Timescale(quantity, scale) => unit = Some(Unit::new(quantity, scale)),
+                Command::ScopeDef(_, name) => {
+                    scopes.push(name);
+                    if scopes.len() > MAX_DEPTH {
+                        return Err(ReadError::Depth { line, limit: MAX_DEPTH });
+                    }
+                }
+                Command::Upscope => {
+                    scopes.pop();
+                }
+                Command::VarDef(_, bits, code, name, index) => {
+                    signals.push(Signal::new(&scopes, &name, index, code, bits));
+                }
+                Command::Date(_) | Command::Version(_) => {}
+                _ => {
+                    let message = "values before the end of the header".to_owned();
+                    return Err(ReadError::Syntax { line, message });
+                }
+            }
+        }
+        let unit = unit.ok_or(ReadError::NoTimescale)?;
+        let mut pins: HashMap<IdCode, Vec<(u32, usize)>> = HashMap::new();
+        let sources = map.resolve(&signals, axes)?;
+        for (slot, source) in sources.iter().flatten().enumerate() {
+            pins.entry(source.code).or_default().push((source.place, slot));
+        }
+        Ok(Self { parser, unit, own, pins, count: 2 * axes.len() })
+    }
+
+    /// What a capture of our own says about itself; `None` for a foreign one.
+    pub fn own(&self) -> Option<OwnCapture> {
+        self.own
+    }
+
+    /// Plays the whole capture into a sink.
+    ///
+    /// The values of the first moment are initial levels, not edges. A pin without one is low.
+    ///
+    /// # Errors
+    /// The file is broken, cut off or runs back in time; or the sink cannot write.
+    pub fn play(mut self, sink: &mut dyn PinSink) -> Result<Played, TraceError> {
+        let mut player = Player::new(sink, self.count);
+        let mut time = None;
+        let mut whole = self.own.is_none();
+        loop {
+            let line = self.parser.line();
+            let Some(command) = self.parser.next() else {
+                if !whole {
+                    let missing = "the last line of a carrystep capture is missing";
+                    return Err(ReadError::Truncated { line, missing }.into());
+                }
+                return player.finish();
+            };
+            match command.map_err(|error| sorted(error, line, "a value or a time is incomplete"))? {
+                Command::Timestamp(now) => {
+                    if let Some(from) = time.filter(|&from| now < from) {
+                        return Err(ReadError::TimeBackwards { line, from, to: now }.into());
+                    }
+                    time = Some(now);
+                    player.time(self.unit.ps(now).ok_or(ReadError::TimeRange { line, time: now })?)?;
+                }
+                Command::ChangeScalar(code, value) => {
+                    for &(place, slot) in self.pins.get(&code).into_iter().flatten() {
+                        player.value(slot, if place == 0 { value } else { Value::V0 })?;
+                    }
+                }
+                Command::ChangeVector(code, vector) => {
+                    for &(place, slot) in self.pins.get(&code).into_iter().flatten() {
+                        player.value(slot, bit(&vector, place))?;
+                    }
+                }
+                Command::Comment(text) => whole |= text == vcd_own::END,
+                _ => {}
+            }
+        }
+    }
+}
+
+/// A bit counted from the least significant; what a short vector leaves out is 0, or x or z as its first bit.
+fn bit(vector: &Vector, place: u32) -> Value {
+    let place = place as usize;
+    match vector.len().checked_sub(place + 1) {
+        Some(index) => vector.get(index).unwrap_or(Value::X),
+        None => vector.get(0).filter(|&first| first != Value::V1).unwrap_or(Value::V0),
+    }
+}
+
+/// Turns values into levels and edges.
+struct Player<'s> {
+    sink: &'s mut dyn PinSink,
+    ps: Option<u64>,
+    levels: Vec<Option<bool>>,
+    /// The first moment is over: values are changes from now on.
+    settled: bool,
+    changes: u64,
+    unknown: u64,
+}
+
+impl<'s> Player<'s> {
+    fn new(sink: &'s mut dyn PinSink, count: usize) -> Self {
+        Self { sink, ps: None, levels: vec![None; count], settled: false, changes: 0, unknown: 0 }
+    }
+
+    fn at(&self, slot: usize, level: bool) -> PinChange {
+        let pin = if slot.is_multiple_of(2) { Pin::Step } else { Pin::Dir };
+        PinChange { ps: self.ps.unwrap_or(0), axis: (slot / 2) as u8, pin, level }
+    }
+
+    fn time(&mut self, ps: u64) -> Result<(), TraceError> {
+        let first = self.ps.unwrap_or(if self.levels.iter().any(Option::is_some) { 0 } else { ps });
+        if ps > first {
+            self.settle()?;
+        }
+        self.ps = Some(ps);
+        Ok(())
+    }
+
+    fn settle(&mut self) -> Result<(), TraceError> {
+        if !self.settled {
+            self.settled = true;
+            for slot in 0..self.levels.len() {
+                if let Some(level) = self.levels[slot] {
+                    self.sink.initial(self.at(slot, level))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn value(&mut self, slot: usize, value: Value) -> Result<(), TraceError> {
+        let level = match value {
+            Value::V0 => false,
+            Value::V1 => true,
+            Value::X | Value::Z => {
+                self.unknown += u64::from(self.levels[slot].is_some());
+                return Ok(());
+            }
+        };
+        let old = self.levels[slot].replace(level);
+        if !self.settled {
+            match old {
+                // two levels in the first moment: the second one is an edge
+                Some(old) if old != level => {
+                    self.levels[slot] = Some(old);
+                    self.settle()?;
+                    self.levels[slot] = Some(level);
+                }
+                _ => return Ok(()),
+            }
+        }
+        if old.unwrap_or(false) != level {
+            self.changes += 1;
+            self.sink.change(self.at(slot, level))?;
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Played, TraceError> {
+        self.settle()?;
+        let end_ps = self.ps.unwrap_or(0);
+        self.sink.end(end_ps)?;
+        Ok(Played { end_ps, changes: self.changes, unknown: self.unknown })
+    }
+}
