@@ -3,6 +3,7 @@
 mod arguments;
 mod commands;
 mod failure;
+mod job;
 mod output;
 mod progress;
 mod table;

@@ -32,16 +32,6 @@ pub enum HdlError {
         /// What was asked for.
         clocks: u32,
     },
-    /// Ticks so short that the bisection does not fit.
-    #[error("{clocks} clocks per tick: {phases} phases need at least {least}")]
-    Tick {
-        /// Clocks per tick.
-        clocks: u32,
-        /// Q.
-        phases: u32,
-        /// The fewest there can be.
-        least: u32,
-    },
     /// Q is not 1, 4 or 16.
     #[error("{0} phases: a tick has 1, 4 or 16 phases")]
     Phases(u32),

@@ -77,7 +77,7 @@ impl Refusal {
 
     pub(crate) fn never<F: Real>(limit: Limit, available: F) -> Self {
         let available = available.to_f64().unwrap_or(f64::NAN);
-        Self { limit, wanted: f64::MIN_POSITIVE, available, least_time: None }
+        Self { limit, wanted: f64::INFINITY, available, least_time: None }
     }
 }
 
