@@ -16,6 +16,9 @@ pub const CORE_NAME: &str = "carrystep_six_axis";
 /// Verilator's waivers for the core, each with its reason.
 pub const CORE_WAIVERS: &str = include_str!("carrystep_six_axis.vlt");
 
+/// The workspace pins it.
+const RUST_HDL: &str = "0.46.0";
+
 /// What each module is for, in a line.
 const PURPOSES: [(&str, &str); 6] = [
     ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
@@ -125,7 +128,7 @@ fn header(build: &Build, description: &str) -> String {
 // {CORE_NAME}: step and direction for six axes. Generated: change the generator, not this file.
 //
 // Made from    {description}
-// Made by      carrystep-export {version}, with Rust-HDL 0.46.0
+// Made by      carrystep-export {version}, with Rust-HDL {RUST_HDL}
 // Clock        {clock} Hz
 // Tick         {tick} ns, {clocks} clocks in {phases} phases
 // Latency      {latency} clocks from the load of a move to the edge of its tick 1, phase 0

@@ -2,6 +2,8 @@
 //!
 //! Read [`axis`] first: the accumulator whose every carry is a step. [`shaper`] keeps the pins' promises,
 //! [`tick`] gives the beat, [`six_axis`] puts them together, [`sim`] runs them.
+//!
+//! A module's `Default` is its skeleton, all parameters zero: build modules with `new`.
 
 pub mod axis;
 pub mod constant;

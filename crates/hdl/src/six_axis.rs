@@ -75,7 +75,7 @@ pub struct SixAxis {
     /// Axes start at the end of this cycle.
     pub started: Signal<Out, Bit>,
     tick: Tick,
-    axis: [Axis; AXES],
+    pub(crate) axis: [Axis; AXES],
     shaper: [Shaper; AXES],
     armed: Register<Bit>,
     mask: Register<Word<6>>,

@@ -62,6 +62,7 @@ fn the_first_edge_comes_after_the_latency() {
     assert_eq!(edge, loaded + 3 * C + 15 * 3 + 2 * C + 1);
     bench.until(|o| o.idle);
     assert_eq!(bench.rest().position, [0, 0, 1, 0, 0, 0]);
+    assert_eq!(bench.core.fractions(), [1 << 63; AXES]);
 }
 
 #[test]

@@ -83,12 +83,12 @@ pub enum Broken {
 
 impl PlanError {
     /// The move that it is about, from 0: [`carrystep_spec::MoveFile::move_error`] shows its place.
-    pub const fn move_index(&self) -> usize {
+    pub const fn move_index(&self) -> Option<usize> {
         match self {
             Self::Refused { index, .. }
             | Self::NotWholeTicks { index, .. }
             | Self::TooLong { index, .. }
-            | Self::Broken { index, .. } => *index,
+            | Self::Broken { index, .. } => Some(*index),
         }
     }
 }

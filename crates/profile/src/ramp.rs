@@ -130,11 +130,7 @@ impl<F: Real> Profile<F> for Ramp<F> {
     }
 
     fn crossing(&self, x: F) -> F {
-        if x + x <= self.distance {
-            self.head_time(x)
-        } else {
-            self.duration - self.head_time(self.distance - x)
-        }
+        if x + x <= self.distance { self.head_time(x) } else { self.duration - self.head_time(self.distance - x) }
     }
 
     fn breakpoints(&self) -> &[F] {

@@ -141,7 +141,7 @@ fn trains() -> impl Strategy<Value = Vec<PinChange>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(20000))]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
     fn random_trains_read_back_identical(train in trains()) {
