@@ -116,7 +116,12 @@ pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Resul
     };
     let mut vcd = vcd_file.as_mut().map(|out| VcdWriter::new(out, waves()));
     let mut csv = csv_file.as_mut().map(|out| CsvWriter::new(out, &timebase, plan.build.phase, origin_ps, named()));
-    let mut plot = wanted.plot.as_ref().map(|_| Plot::new(plot_setup(plan, origin_ps, named())));
+    let title = file.source.path.display().to_string();
+    let mut plot = wanted.plot.as_ref().map(|_| {
+        let axes = named().map(|(name, timeline)| PlotAxis { name, timeline }).collect();
+        let (phase, total_ticks) = (plan.build.phase, plan.total_ticks());
+        Plot::new(PlotSetup { title: &title, timebase, phase, origin_ps, total_ticks, axes })
+    });
 
     let started = Instant::now();
     let outcome = {
@@ -163,7 +168,7 @@ pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Resul
     let faults = outcome.last.faults;
     let landed = positions.iter().zip(&check.axes).all(|(&found, axis)| i64::from(found) == axis.position_expected);
     Ok(Done {
-        passed: check.passed() && limits.kept && !faults.any() && landed,
+        passed: check.passed() && limits.landed() && !faults.any() && landed,
         level: level.name(),
         clocks: outcome.clocks,
         run_s,

@@ -10,7 +10,6 @@ mod table;
 
 use arguments::{Arguments, Subcommand};
 use clap::Parser;
-use failure::Failure;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
