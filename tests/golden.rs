@@ -1,6 +1,6 @@
 //! The golden engine vectors: programs of one axis with every edge hashed.
 
-use carrystep_spec::Segment;
+use carrystep_spec::{Segment, StartPhase};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
@@ -56,6 +56,13 @@ impl Case {
     /// P after the last tick.
     pub fn p_end(&self) -> u64 {
         self.p_end.parse().expect("P_end")
+    }
+
+    /// Where in a step the case starts.
+    pub fn phase(&self) -> StartPhase {
+        let phase = if self.p0() == 0 { StartPhase::Zero } else { StartPhase::Half };
+        assert_eq!(phase.start_value(), self.p0(), "{}: a start value that builds have", self.name);
+        phase
     }
 
     /// The segments; the last one is marked `last`, which stops the axis after the edges that count.

@@ -1,6 +1,8 @@
 //! What the rungs share: the golden vectors, an independent closed form, random programs.
 
+pub mod axis_bench;
 pub mod closed_form;
 pub mod golden;
 pub mod lockstep;
+pub mod moves;
 pub mod programs;

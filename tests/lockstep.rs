@@ -1,5 +1,6 @@
 //! Two levels on the same program, every output in every clock.
 
+use crate::golden::Edge;
 use carrystep_levels::{Job, Level, LevelError, Outcome, run};
 use carrystep_spec::ports::Outputs;
 use carrystep_spec::{AXES, Build, PinTiming, Program, StartPhase, Timebase};
@@ -51,18 +52,44 @@ pub fn job<'a>(build: &'a Build, program: &'a Program) -> Job<'a> {
     Job { max_clocks: 50_000, ..Job::new(build, program, 0) }
 }
 
+/// The edges of a golden case, seen on the pins of the axis that ran it.
+pub fn edges_on_the_pins(build: &Build, record: &Record, axis: usize) -> Vec<Edge> {
+    let time = &build.timebase;
+    let outcome = record.outcome.as_ref().expect("the run ended");
+    let zero = outcome.origin.expect("the program started") + time.latency_clocks();
+    let (tick, phase) = (u64::from(time.clocks_per_tick()), u64::from(time.clocks_per_phase()));
+    let mut before = false;
+    let mut edges = Vec::new();
+    for (cycle, outputs) in &record.changes {
+        let step = outputs.step >> axis & 1 == 1;
+        if step && !before {
+            let since = cycle - zero;
+            assert_eq!(since % tick % phase, 0, "an edge off its phase");
+            let backward = outputs.dir >> axis & 1 == 1;
+            edges.push((since / tick + 1, (since % tick / phase) as u32, if backward { -1 } else { 1 }));
+        }
+        before = step;
+    }
+    edges
+}
+
 /// A build for random programs: the fewest clocks per tick, axes with very different pins, so that
 /// overruns, waiting for set-up and waiting for hold all happen.
 pub fn tight_build(phases: u32, phase: StartPhase) -> Build {
-    let timebase = Timebase::new(16_000_000, 1000, phases).expect("a fine timebase");
     let pins = |width, gap, setup, hold| PinTiming { width, gap, setup, hold };
     let pins: [PinTiming; AXES] = [
         PinTiming::SHORTEST,
         pins(2, 3, 1, 1),
         pins(8, 8, 20, 1),
-        pins(1, 17, 3, 40),
+        pins(1, 37, 3, 40),
         pins(19, 1, 1, 2),
         pins(5, 5, 33, 21),
     ];
-    Build { timebase, phase, pins }
+    Build { pins, ..quick_build(phases, phase) }
+}
+
+/// The fewest clocks per tick, and pins that delay nothing.
+pub fn quick_build(phases: u32, phase: StartPhase) -> Build {
+    let timebase = Timebase::new(16_000_000, 1000, phases).expect("a fine timebase");
+    Build { timebase, phase, pins: [PinTiming::SHORTEST; AXES] }
 }

@@ -4,11 +4,13 @@
 use carrystep_levels::{Level, run};
 use carrystep_model::shaper;
 use carrystep_spec::ports::Outputs;
-use carrystep_spec::{AXES, Build, Command, Program, StartPhase};
+use carrystep_spec::{AXES, Build, Command, Faults, Program, StartPhase};
 use carrystep_tests::{closed_form, lockstep, programs};
 use num_bigint::BigInt;
 use num_integer::Integer;
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
 
 /// What one axis has done so far.
 #[derive(Clone, Copy, Default)]
@@ -75,6 +77,33 @@ fn whole_steps(program: &Program, axis: u8, phase: StartPhase) -> BigInt {
     };
     let sum: BigInt = program.iter().map(distance).sum();
     (sum + phase.start_value()).div_floor(&(BigInt::from(1) << 64))
+}
+
+/// A generator that never gets anywhere near trouble would prove nothing.
+#[test]
+fn random_programs_meet_every_fault() {
+    let mut runner = TestRunner::deterministic();
+    let build = lockstep::tight_build(16, StartPhase::Half);
+    let (mut pulses, mut turns, mut cleared, mut ended) = (0, 0, 0, 0);
+    let mut faults = Faults::default();
+    for _ in 0..200 {
+        let program = programs::program().new_tree(&mut runner).expect("a program").current();
+        let mut before = Outputs::default();
+        let outcome = run(Level::Model, &lockstep::job(&build, &program), &mut |_, now| {
+            pulses += (now.step & !before.step).count_ones();
+            turns += (now.dir ^ before.dir).count_ones();
+            cleared += u32::from(before.faults.any() && !now.faults.any());
+            faults.overrun |= now.faults.overrun;
+            faults.overspeed |= now.faults.overspeed;
+            faults.underrun |= now.faults.underrun;
+            faults.protocol |= now.faults.protocol;
+            before = *now;
+        });
+        ended += u32::from(outcome.is_ok());
+    }
+    assert!(pulses > 5000 && turns > 1000 && cleared > 30, "{pulses} pulses, {turns} turns, {cleared} clears");
+    assert!(ended > 150, "only {ended} of 200 programs come to an end");
+    assert!(faults.overrun.count_ones() >= 1 && faults.overspeed == 0x3f && faults.underrun == 0x3f && faults.protocol, "{faults}");
 }
 
 proptest! {

@@ -4,6 +4,8 @@
 //! Edges are read off the segments here by arithmetic of its own: sums in i128, and the edge phase bit
 //! by bit as the arithmetic contract defines it.
 
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
 use carrystep_plan::{Plan, PlanError, plan};
 use carrystep_profile::Profile;
 use carrystep_spec::{BigDecimal, MoveFile, Segment, Source, StartPhase};
@@ -163,11 +165,11 @@ fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_spec::Axis, tick_ns: 
             let last = i128::from(s.v) + (i128::from(s.ticks) - 1) * i128::from(s.a);
             for v in [i128::from(s.v), last] {
                 assert!(v * i128::from(moved.steps.signum()) >= 0, "the speed never changes sign: {s:?}");
-                assert!(BigDecimal::from(v.abs()) <= &speed + &tolerance, "speed: {s:?}");
+                assert!(&speed + &tolerance >= v.abs(), "speed: {s:?}");
                 assert!(v.unsigned_abs() as u64 <= moved.peaks.speed, "peaks");
             }
             let a = i128::from(s.a).abs();
-            assert!(BigDecimal::from(a - 1) <= acceleration, "acceleration: {s:?}");
+            assert!(a == 0 || acceleration >= a - 1, "acceleration: {s:?}");
             if std::mem::take(&mut first) {
                 // 2 v = 2 V - A; a first tick of its own may contain the ramp.
                 let slope = if s.ticks == 1 { acceleration.clone() } else { BigDecimal::from(a) };
@@ -274,7 +276,11 @@ impl Case {
         let planned = plan::<f64>(&fast).unwrap_or_else(|error| panic!("{error}\n{}", self.text(&[])));
         let times: Vec<Option<String>> = (self.moves.iter().zip(&planned.moves))
             .map(|((_, _, stretch), planned)| {
-                let ns = planned.seconds * 1e9 * (*stretch)?;
+                // A file gives 10^6 s at most.
+                if planned.seconds > 0.9e6 {
+                    return None;
+                }
+                let ns = (planned.seconds * 1e9 * (*stretch)?).min(1e15);
                 let ticks = (ns / self.tick_ns as f64).ceil() * self.tick_ns as f64;
                 Some(if self.zero { format!("{:.9}", ticks / 1e9) } else { format!("{:.12}", ns / 1e9) })
             })
@@ -327,7 +333,11 @@ proptest! {
                 Ok(plan) => verify(&file, &plan, None),
                 // A time that is just enough may round to one that is not.
                 Err(PlanError::Refused { .. }) => {}
-                Err(error) => panic!("{error}"),
+                Err(error) => {
+                    // Times that f32 cannot tell apart: then no plan is given, never a wrong one.
+                    let long = plan::<f64>(&file).unwrap().moves[error.move_index().unwrap()].ticks > 1 << 24;
+                    assert!(long && matches!(error, PlanError::Broken { .. }), "{error}");
+                }
             }
         }
     }

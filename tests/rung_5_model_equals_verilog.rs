@@ -1,8 +1,10 @@
-//! Rung 5: the exported Verilog, in Icarus and in Verilator, is the model, every output in every clock.
+//! Rung 5: the exported Verilog, in Icarus and in Verilator, is the model: random programs and the demo,
+//! every output in every clock; the golden vectors to the last edge and phase.
 
-use carrystep_levels::Level;
+use carrystep_levels::{Job, Level};
 use carrystep_spec::StartPhase;
-use carrystep_tests::{lockstep, programs};
+use carrystep_tests::golden::{Case, engine_vectors};
+use carrystep_tests::{axis_bench, lockstep, moves, programs};
 use proptest::test_runner::{Config, TestRunner};
 
 fn random_programs(level: Level, phases: u32, phase: StartPhase, cases: u32) {
@@ -15,9 +17,14 @@ fn random_programs(level: Level, phases: u32, phase: StartPhase, cases: u32) {
     held.unwrap_or_else(|error| panic!("{error}"));
 }
 
+fn demo(level: Level) {
+    let plan = moves::demo();
+    lockstep::assert_equals_model(level, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+}
+
 #[test]
 fn random_programs_in_verilator_at_16_phases() {
-    random_programs(Level::Verilator, 16, StartPhase::Half, 300);
+    random_programs(Level::Verilator, 16, StartPhase::Half, 500);
 }
 
 #[test]
@@ -33,4 +40,40 @@ fn random_programs_in_icarus_at_16_phases() {
 #[test]
 fn random_programs_in_icarus_at_1_phase() {
     random_programs(Level::Icarus, 1, StartPhase::Half, 60);
+}
+
+#[test]
+fn the_demo_in_verilator() {
+    demo(Level::Verilator);
+}
+
+#[test]
+fn the_demo_in_icarus() {
+    demo(Level::Icarus);
+}
+
+/// On the pins: the cases of one start phase side by side, one on each axis.
+#[test]
+fn golden_vectors_in_verilator() {
+    let all = engine_vectors();
+    for phase in [StartPhase::Half, StartPhase::Zero] {
+        let cases: Vec<&Case> = all.iter().filter(|case| case.phase() == phase).collect();
+        let build = lockstep::quick_build(16, phase);
+        let (program, ticks) = moves::side_by_side(&cases);
+        let record = lockstep::record(Level::Verilator, &Job::new(&build, &program, ticks)).expect("Verilator");
+        for (axis, case) in cases.iter().enumerate() {
+            case.assert_edges(&lockstep::edges_on_the_pins(&build, &record, axis));
+        }
+    }
+}
+
+/// The axis alone: Icarus would take hours for the pins of three million ticks.
+#[test]
+fn golden_vectors_in_icarus() {
+    for case in engine_vectors() {
+        let build = lockstep::quick_build(16, case.phase());
+        let (edges, p) = axis_bench::edges_in_icarus(&build, &case.segments());
+        case.assert_edges(&edges);
+        assert_eq!(p, case.p_end(), "{}: P at the end", case.name);
+    }
 }

@@ -54,15 +54,18 @@ pub(crate) fn observe(
             }
             Some(('E', cycle, last)) => end = Some(Outcome { clocks: cycle + 1, origin, last }),
             _ if line.starts_with('X') => return Err(LevelError::Endless(job.max_clocks)),
-            _ => odd = Some(line),
+            _ => odd = odd.or(Some(line)),
         }
     }
     let status = child.wait().map_err(tool::io(format!("waiting for the {} simulation", tool.name)))?;
     let failed = || LevelError::Tool {
         tool: tool.name,
-        message: odd.unwrap_or_else(|| format!("the simulation stopped without a report ({status})")),
+        message: match &odd {
+            Some(line) => format!("cannot read what the simulation reports: {line}"),
+            None => format!("the simulation stopped without a report ({status})"),
+        },
     };
-    end.ok_or_else(failed)
+    end.filter(|_| odd.is_none()).ok_or_else(failed)
 }
 
 /// One line: letter, cycle, seg_ready start_ready step dir idle started overrun overspeed underrun protocol,

@@ -66,17 +66,8 @@ fn start_speed(first: &Segment, limits: &ExactLimits) -> i128 {
     let sixfold = if first.v < 0 { -sixfold } else { sixfold };
     // A tick of its own says only how far it goes, not how fast it began.
     let explained = if first.ticks == 1 { 3 * limits.acceleration } else { 0 };
-    (sixfold - explained).max(0).div_ceil_signed(6)
-}
-
-trait DivCeil {
-    fn div_ceil_signed(self, by: i128) -> i128;
-}
-
-impl DivCeil for i128 {
-    fn div_ceil_signed(self, by: i128) -> i128 {
-        -(-self).div_euclid(by)
-    }
+    let sixfold = (sixfold - explained).max(0);
+    (sixfold + 5) / 6
 }
 
 /// V in the first and last tick, and on either side of where A changes sign.

@@ -16,6 +16,9 @@ use std::sync::Arc;
 
 /// Plans all moves of a file, in floats of type `F`.
 ///
+/// Whatever `F` is, a plan lands exactly. f32 cannot tell ticks apart beyond 2^24: a longer move may
+/// then fail the exact check instead of passing a limit unseen.
+///
 /// # Errors
 /// [`PlanError`] names the move, the axis, the limit and what would do.
 pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {

@@ -8,7 +8,7 @@ use crate::units;
 use carrystep_profile::{Profile, Real};
 use carrystep_spec::{Segment, StartPhase};
 
-/// How far the rounding of A may move an edge, seconds; the rest of 2 ns is for the 32-bit bisection.
+/// How far the rounding of A and V may move an edge, seconds; the rest of 2 ns is for the 32-bit bisection.
 const EDGE_SHIFT: f64 = 0.5e-9;
 
 /// Speeds below this, steps/s, are held to [`EDGE_SHIFT`] as if they were this fast.
@@ -52,7 +52,7 @@ impl<F: Real> Writer<'_, F> {
         Ok(Slope { units: clamped, lost: (exact - clamped as f64).abs() })
     }
 
-    /// Halves a piece until the rounding of A moves no edge by more than [`EDGE_SHIFT`].
+    /// Halves a piece until the rounding of A and V moves no edge by more than [`EDGE_SHIFT`].
     ///
     /// The slower half gets its distance from the profile, the faster one what remains: float rounding
     /// is relative to a distance, so this keeps it small where edges are far apart.
@@ -82,7 +82,8 @@ impl<F: Real> Writer<'_, F> {
         let slowest = wide(self.profile.speed(begin).min(self.profile.speed(end)));
         // From rest, the first edge comes half a step later, at speed sqrt(a).
         let at_edge = slowest.max(wide(self.profile.acceleration(begin).abs().sqrt())).max(SLOWEST);
-        let shift = lost * length * length / 8.0 * 2_f64.powi(-64) / at_edge;
+        // The second term: V is ahead by up to a unit a tick.
+        let shift = (lost * length / 8.0 + 1.0) * length * 2_f64.powi(-64) / at_edge;
         shift <= EDGE_SHIFT || !self.has_edge(wide(self.profile.position(begin)), wide(self.profile.position(end)))
     }
 
@@ -102,8 +103,11 @@ impl<F: Real> Writer<'_, F> {
         let sign = if self.backward { -1 } else { 1 };
         let distance = sign * units - self.ahead;
         let pairs = n * (n - 1) / 2;
-        // Under this |A| the speed cannot change sign, whatever floats have made of the distance.
-        let most = if pairs == 0 { 0 } else { distance.abs() / pairs };
+        // Under this |A| the speed neither changes sign nor passes its limit at either end, whatever
+        // floats have made of the distance.
+        let fastest = n * (self.limits.speed + self.limits.tolerance);
+        let room = distance.abs().min(fastest - distance.abs()).max(0);
+        let most = if pairs == 0 { 0 } else { room / pairs };
         let a = sign * slope.clamp(-most, most);
         let level = distance - pairs * a;
         let v = level.div_euclid(n);

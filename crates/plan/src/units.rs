@@ -21,9 +21,9 @@ fn scaled<F: Real>(steps: F, round: bool) -> Option<i128> {
     let shift = i32::from(exponent) + FRACTION_BITS.cast_signed();
     let mantissa = i128::from(mantissa);
     let magnitude = match shift {
-        0..=62 => mantissa << shift,
-        63.. if mantissa == 0 => 0,
-        63.. => return None,
+        0..=73 => mantissa << shift,
+        74.. if mantissa == 0 => 0,
+        74.. => return None,
         ..-64 => 0,
         _ => {
             let down = shift.unsigned_abs();

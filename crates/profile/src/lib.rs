@@ -21,7 +21,7 @@ pub use refusal::{Limit, Limits, Refusal};
 pub use timeline::{Crossing, Leg, Timeline};
 pub use widened::Widened;
 
-/// Ranade's rule: triangle whenever possible, else trapezoid at the speed limit, else refusal.
+/// From distance, time and limits to a profile, or to a refusal; and the least time for each.
 pub mod rule {
     pub use crate::constant::{constant, constant_least_time};
     pub use crate::ranade::{ranade, ranade_least_time};

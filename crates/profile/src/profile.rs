@@ -50,19 +50,21 @@ pub trait Profile<F: Real>: Debug + Send + Sync {
 
     /// Mean speed between two times, steps/s, without taking the difference of two positions.
     ///
-    /// Provided by Simpson's rule from breakpoint to breakpoint: exact for pieces up to constant jerk.
+    /// Provided by Gauss' rule of two points from breakpoint to breakpoint: exact up to constant jerk, and
+    /// its points lie inside the pieces, so that a rounded breakpoint costs nothing.
     fn mean_speed(&self, from: F, to: F) -> F {
         let whole = to - from;
         if whole <= F::zero() {
             return self.speed(from);
         }
-        let (four, six) = (real::<F>(4.0), real::<F>(6.0));
+        let two = real::<F>(2.0);
         let inner = self.breakpoints().iter().copied().filter(|&b| b > from && b < to);
         let mut left = from;
         let mut sum = F::zero();
         for right in inner.chain(std::iter::once(to)) {
-            let middle = left + (right - left) / (F::one() + F::one());
-            let mean = (self.speed(left) + four * self.speed(middle) + self.speed(right)) / six;
+            let (middle, half) = (left + (right - left) / two, (right - left) / two);
+            let offset = half / real::<F>(3.0).sqrt();
+            let mean = (self.speed(middle - offset) + self.speed(middle + offset)) / two;
             sum = sum + mean * ((right - left) / whole);
             left = right;
         }

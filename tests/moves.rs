@@ -1,0 +1,60 @@
+//! Move files and golden cases as programs.
+
+use crate::golden::Case;
+use carrystep_levels::Job;
+use carrystep_plan::Plan;
+use carrystep_profile::Timeline;
+use carrystep_spec::{AXES, Command, MoveFile, Program, Segment};
+use carrystep_trace::{AxisSetup, Origin, Setup};
+use std::path::Path;
+
+/// The root of the workspace.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests/ is in the workspace")
+}
+
+/// The demo's moves, planned.
+pub fn demo() -> Plan {
+    let file = MoveFile::load(&root().join("sim/demo.toml")).expect("the demo's move file");
+    carrystep_plan::plan::<f64>(&file).expect("the demo's plan")
+}
+
+/// Golden cases side by side, case i on axis i, started on one tick; and their greatest length in ticks.
+pub fn side_by_side(cases: &[&Case]) -> (Program, u64) {
+    assert!(cases.len() <= AXES);
+    let mut due: Vec<(u64, u8, Segment)> = Vec::new();
+    for (axis, case) in (0..).zip(cases) {
+        let mut tick = 0;
+        for segment in case.segments() {
+            due.push((tick, axis, segment));
+            tick += u64::from(segment.ticks);
+        }
+    }
+    due.sort_by_key(|&(tick, axis, _)| (tick, axis));
+    let mut program: Program = due.into_iter().map(|(_, axis, segment)| Command::Segment { axis, segment }).collect();
+    program.insert(cases.len(), Command::Start { mask: (1 << cases.len()) - 1 });
+    (program, cases.iter().map(|case| case.total_ticks).max().unwrap_or(0))
+}
+
+/// What the pins of a planned move file are checked against, in a run of `job`.
+pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], job: &Job<'_>) -> Setup<'a> {
+    let time = plan.build.timebase;
+    let load = carrystep_levels::origin(job).expect("the program starts");
+    let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_spec::Axis, &'a Timeline))| {
+        let steps = plan.moves.iter().map(|m| m.axes[i].steps);
+        AxisSetup {
+            name: &axis.name,
+            timeline,
+            pins_ns: axis.pins_ns,
+            expected_pulses: steps.clone().map(i64::unsigned_abs).sum(),
+            expected_position: steps.sum(),
+        }
+    };
+    Setup {
+        timebase: time,
+        phase: plan.build.phase,
+        axes: file.machine.axes.iter().zip(timelines).enumerate().map(axis).collect(),
+        origin: Origin::Known { ps: time.clock_to_ps(load + time.latency_clocks()).cast_signed() },
+        slack_ps: 0,
+    }
+}
