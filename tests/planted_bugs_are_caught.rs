@@ -18,13 +18,29 @@ struct Bug {
 
 /// Bugs that rung 5 must catch: the lock-step of the exported Verilog with the model.
 const GATEWARE: [Bug; 9] = [
-    Bug { name: "a dropped carry: backward steps never come", text: "sum[64] ^ backward", becomes: "sum[64] & !backward" },
-    Bug { name: "the new V is added to P instead of the old one", text: "{1'b0, position} + {1'b0, speed}", becomes: "{1'b0, position} + {1'b0, faster}" },
-    Bug { name: "a segment is loaded one tick late", text: "active & (left == ONE)", becomes: "active & (left == 32'd0)" },
+    Bug {
+        name: "a dropped carry: backward steps never come",
+        text: "sum[64] ^ backward",
+        becomes: "sum[64] & !backward",
+    },
+    Bug {
+        name: "the new V is added to P instead of the old one",
+        text: "{1'b0, position} + {1'b0, speed}",
+        becomes: "{1'b0, position} + {1'b0, faster}",
+    },
+    Bug {
+        name: "a segment is loaded one tick late",
+        text: "active & (left == ONE)",
+        becomes: "active & (left == 32'd0)",
+    },
     Bug { name: "the gap is one clock short", text: "BUSY_LOAD = 17'd4;", becomes: "BUSY_LOAD = 17'd3;" },
     Bug { name: "the hold is one clock short", text: "HOLD_LOAD = 16'd39;", becomes: "HOLD_LOAD = 16'd38;" },
     Bug { name: "the set-up is one clock short", text: "SETUP_LOAD = 16'd19;", becomes: "SETUP_LOAD = 16'd18;" },
-    Bug { name: "the bisection halves without the sign", text: "(bisect_v >> BY_ONE) | (bisect_v & SIGN)", becomes: "bisect_v >> BY_ONE" },
+    Bug {
+        name: "the bisection halves without the sign",
+        text: "(bisect_v >> BY_ONE) | (bisect_v & SIGN)",
+        becomes: "bisect_v >> BY_ONE",
+    },
     Bug { name: "A does not change within a segment", text: "accel <= accel + jerk;", becomes: "accel <= accel;" },
     Bug { name: "an overrun is not latched", text: "late <= 1'b1;", becomes: "late <= late;" },
 ];

@@ -64,7 +64,11 @@ impl fmt::Display for Done {
             writeln!(f, "wrote {}", file.display())?;
         }
         let speed = self.clocks as f64 / self.run_s / 1e6;
-        writeln!(f, "{}: {} clocks in {:.2} s ({speed:.1} million/s), faults: {}", self.level, self.clocks, self.run_s, self.faults)?;
+        writeln!(
+            f,
+            "{}: {} clocks in {:.2} s ({speed:.1} million/s), faults: {}",
+            self.level, self.clocks, self.run_s, self.faults
+        )?;
         f.write_str(if self.passed { "ALL HOLDS\n" } else { "FAILED\n" })
     }
 }
@@ -153,7 +157,8 @@ pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Resul
     files.extend(vcd_file.map(OutputFile::keep).transpose()?);
     if let (Some(save), Some(vcd)) = (&wanted.save, &wanted.vcd) {
         let names: Vec<&str> = named().map(|(name, _)| name).collect();
-        let text = save_file(&seen_from(save, vcd), &names, timebase.clock_to_ps(outcome.clocks)).map_err(sink_failed)?;
+        let text =
+            save_file(&seen_from(save, vcd), &names, timebase.clock_to_ps(outcome.clocks)).map_err(sink_failed)?;
         write_file(save, &text)?;
         files.push(save.clone());
     }

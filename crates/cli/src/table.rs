@@ -37,13 +37,10 @@ pub struct AxisLimits {
 
 /// Measures a plan against its machine.
 pub fn limits(file: &MoveFile, plan: &Plan) -> Limits {
-    let axes: Vec<AxisLimits> = file.machine.axes.iter().enumerate().map(|(i, axis)| axis_limits(i, axis, plan)).collect();
+    let axes: Vec<AxisLimits> =
+        file.machine.axes.iter().enumerate().map(|(i, axis)| axis_limits(i, axis, plan)).collect();
     let total_ticks = plan.total_ticks();
-    Limits {
-        total_ticks,
-        total_s: total_ticks as f64 * plan.build.timebase.tick_seconds(),
-        axes,
-    }
+    Limits { total_ticks, total_s: total_ticks as f64 * plan.build.timebase.tick_seconds(), axes }
 }
 
 fn axis_limits(index: usize, axis: &Axis, plan: &Plan) -> AxisLimits {
@@ -53,7 +50,8 @@ fn axis_limits(index: usize, axis: &Axis, plan: &Plan) -> AxisLimits {
     let (v, a, start) = (greatest(|p| p.speed), greatest(|p| p.acceleration), greatest(|p| p.start_speed));
     let steps: i64 = planned().map(|a| a.steps).sum();
     let travelled: i128 = plan.axis_segments(index).map(|(_, segment)| distance(&segment)).sum();
-    let per_second = |units: u64, power: u32| units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power.cast_signed());
+    let per_second =
+        |units: u64, power: u32| units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power.cast_signed());
     AxisLimits {
         axis: axis.name.clone(),
         segments: planned().map(|a| a.segments.len()).sum(),

@@ -46,7 +46,9 @@ impl<'a> Host<'a> {
     /// What is driven in this cycle; nothing but `clear` and waiting while the core is frozen.
     fn inputs(&self, fault: bool) -> Inputs {
         match self.current {
-            Some(Command::Segment { axis, segment }) if !fault => Inputs { segment: Some((axis, segment)), ..Inputs::default() },
+            Some(Command::Segment { axis, segment }) if !fault => {
+                Inputs { segment: Some((axis, segment)), ..Inputs::default() }
+            }
             Some(Command::Start { mask }) if !fault => Inputs { start: Some(mask), ..Inputs::default() },
             Some(Command::Clear) => Inputs { clear: true, ..Inputs::default() },
             _ => Inputs::default(),

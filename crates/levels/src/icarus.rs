@@ -10,7 +10,8 @@ pub(crate) fn run(verilog: &str, job: &Job<'_>, observer: &mut Observer<'_>) -> 
     tool::find(&ICARUS)?;
     let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
     let path = |name: &str| folder.path().join(name);
-    let write = |name: &str, text: &str| std::fs::write(path(name), text).map_err(tool::io(format!("cannot write {name}")));
+    let write =
+        |name: &str, text: &str| std::fs::write(path(name), text).map_err(tool::io(format!("cannot write {name}")));
     write("core.v", verilog)?;
     write("bench.v", BENCH)?;
     write("program.txt", &external::program_text(job))?;

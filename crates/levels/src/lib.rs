@@ -138,11 +138,13 @@ pub fn run(level: Level, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<O
     match level {
         Level::Model => host::run(&mut carrystep_model::SixAxis::new(job.build), job, observer),
         Level::RustHdl => {
-            let mut core = carrystep_hdl::SixAxisSim::new(job.build).map_err(|e| LevelError::Gateware(e.to_string()))?;
+            let mut core =
+                carrystep_hdl::SixAxisSim::new(job.build).map_err(|e| LevelError::Gateware(e.to_string()))?;
             host::run(&mut core, job, observer)
         }
         Level::Icarus | Level::Verilator => {
-            let verilog = carrystep_export::six_axis_verilog(job.build, "a simulation").map_err(|e| LevelError::Gateware(e.to_string()))?;
+            let verilog = carrystep_export::six_axis_verilog(job.build, "a simulation")
+                .map_err(|e| LevelError::Gateware(e.to_string()))?;
             run_verilog(level, &verilog, job, observer)
         }
     }
@@ -152,7 +154,12 @@ pub fn run(level: Level, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<O
 ///
 /// # Errors
 /// [`LevelError`]: a tool is missing or fails, the level has no Verilog, or the run does not end.
-pub fn run_verilog(level: Level, verilog: &str, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
+pub fn run_verilog(
+    level: Level,
+    verilog: &str,
+    job: &Job<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Outcome, LevelError> {
     match level {
         Level::Icarus => icarus::run(verilog, job, observer),
         Level::Verilator => verilator::run(verilog, job, observer),

@@ -18,6 +18,10 @@ pub fn run(arguments: &Simulate) -> Result<(), Failure> {
         plot: arguments.plot.clone(),
     };
     let done = job::run(&file, &plan, arguments.level, &wanted)?;
-    if arguments.json { output::print_json(&done)? } else { output::print(&done.to_string())? }
+    if arguments.json {
+        output::print_json(&done)?
+    } else {
+        output::print(&done.to_string())?
+    }
     done.verdict()
 }
