@@ -3,8 +3,10 @@
 use carrystep_levels::LevelError;
 use carrystep_plan::PlanError;
 use carrystep_spec::{InputError, MoveFile};
-use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
-use std::io::Write as _;
+use carrystep_trace::TraceError;
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report};
+use std::io::{IsTerminal as _, Write as _};
+use std::ops::Range;
 use std::process::ExitCode;
 
 /// Why the command did not do what was asked.
@@ -23,12 +25,17 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// Status 2, without a line of a file to show.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::Input(InputError::new(message))
+    }
+
     /// Tells the user, and gives the exit status.
     pub fn tell(self) -> ExitCode {
         let (status, text) = match self {
             Self::ReaderGone => return ExitCode::SUCCESS,
             Self::Check => return ExitCode::from(1),
-            Self::Run(message) => (1, format!("error: {message}")),
+            Self::Run(message) => (1, format!("error: {}", harmless(&message))),
             Self::Input(error) => (2, render(&error)),
             Self::Tool(message) => (3, format!("error: {message}")),
         };
@@ -40,22 +47,44 @@ impl Failure {
 
 /// What is wrong, then file, line and column, and the line itself with what is wrong in it.
 fn render(error: &InputError) -> String {
-    let mut diagnostic = MietteDiagnostic::new(error.message.clone());
-    if let Some(help) = &error.help {
-        diagnostic = diagnostic.with_help(help.clone());
+    let Some((source, span)) = error.place.as_ref().filter(|(source, _)| !source.text.is_empty()) else {
+        return format!("error: {}", harmless(&error.to_string()));
+    };
+    let mut diagnostic = MietteDiagnostic::new(harmless(&error.message));
+    diagnostic.help = error.help.as_deref().map(harmless);
+    let label = LabeledSpan::underline(shorten(&source.text, span.clone()));
+    let code = NamedSource::new(source.path.display().to_string(), harmless(&source.text));
+    format!("error:\n{}", drawn(diagnostic.with_label(label), code))
+}
+
+/// Colours and lines on a terminal; elsewhere plain ASCII, and no message broken into lines.
+fn drawn(diagnostic: MietteDiagnostic, code: NamedSource<String>) -> String {
+    let report = Report::new(diagnostic).with_source_code(code);
+    if std::io::stderr().is_terminal() {
+        return format!("{report:?}");
     }
-    match &error.place {
-        Some((source, span)) if !source.text.is_empty() => {
-            let label = LabeledSpan::underline(shorten(&source.text, span.clone()));
-            let code = NamedSource::new(source.path.display().to_string(), source.text.to_string());
-            format!("error:\n{:?}", Report::new(diagnostic.with_label(label)).with_source_code(code))
+    let mut text = String::new();
+    let plain = GraphicalReportHandler::new_themed(GraphicalTheme::none()).with_wrap_lines(false);
+    // Writing to a string cannot fail.
+    let _ = plain.render_report(&mut text, report.as_ref());
+    text
+}
+
+/// No control characters of a file reach the terminal; each byte keeps its place.
+fn harmless(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\r' | '\t' => safe.push(c),
+            c if c.is_control() => safe.extend(std::iter::repeat_n('?', c.len_utf8())),
+            c => safe.push(c),
         }
-        _ => format!("error: {error}"),
     }
+    safe
 }
 
 /// Only the first line of a long span: a whole [[move]] table underlined says nothing.
-fn shorten(text: &str, span: std::ops::Range<usize>) -> std::ops::Range<usize> {
+fn shorten(text: &str, span: Range<usize>) -> Range<usize> {
     let end = text.get(span.clone()).and_then(|s| s.find('\n')).map_or(span.end, |newline| span.start + newline);
     span.start..end
 }
@@ -72,6 +101,12 @@ impl From<LevelError> for Failure {
             LevelError::Missing { .. } => Self::Tool(error.to_string()),
             _ => Self::Run(error.to_string()),
         }
+    }
+}
+
+impl From<TraceError> for Failure {
+    fn from(error: TraceError) -> Self {
+        Self::Input(InputError::new(error.to_string()))
     }
 }
 

@@ -7,6 +7,7 @@ mod job;
 mod output;
 mod progress;
 mod table;
+mod wanted;
 
 use arguments::{Arguments, Subcommand};
 use clap::Parser;

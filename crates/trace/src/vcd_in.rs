@@ -6,7 +6,7 @@ use crate::signal_map::{Signal, SignalMap};
 use crate::vcd_own::{self, OwnCapture};
 use std::collections::HashMap;
 use std::fmt;
-use std::io::{self, BufRead};
+use std::io::{self, BufRead, Chain};
 use vcd::{Command, IdCode, ParseError, Parser, TimescaleUnit, Value, Vector};
 
 /// Deeper scopes than any design has.
@@ -14,7 +14,7 @@ const MAX_DEPTH: usize = 256;
 
 /// A VCD whose header has been read and whose pins have been found.
 pub struct VcdReader<R> {
-    parser: Parser<R>,
+    parser: Parser<Chain<R, &'static [u8]>>,
     unit: Unit,
     own: Option<OwnCapture>,
     /// The pins that a signal carries, each with its bit from the least significant.
@@ -84,7 +84,8 @@ impl<R: BufRead> VcdReader<R> {
     /// The file is no VCD, ends in its header, has no unit of time, or lacks a signal.
     pub fn new(reader: R, axes: &[&str], map: &SignalMap) -> Result<Self, ReadError> {
         const MISSING: &str = "the header has no end";
-        let mut parser = Parser::new(reader);
+        // Not every program ends its last line: a token that the end of the file ends is whole.
+        let mut parser = Parser::new(reader.chain(&b" "[..]));
         let mut scopes: Vec<String> = Vec::new();
         let mut signals = Vec::new();
         let mut unit = None;

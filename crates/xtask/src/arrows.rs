@@ -29,7 +29,9 @@ pub fn check() -> Done {
             .filter(|reached| *reached != name)
             .collect();
         if let Some(wrong) = reached.iter().find(|reached| !allowed.contains(reached)) {
-            return Err(format!("crates/{name} reaches crates/{wrong}: that arrow is not allowed (docs/architecture.md)"));
+            return Err(format!(
+                "crates/{name} reaches crates/{wrong}: that arrow is not allowed (docs/architecture.md)"
+            ));
         }
     }
     shell::say("arrows: one way");
