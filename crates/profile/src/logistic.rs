@@ -141,10 +141,12 @@ fn bend<F: Real>(f: F) -> F {
     slope(f) * (F::one() - f - f)
 }
 
-/// ln(1 + f (e^y - 1)), f in 0..=1: the distance, in w/k, from speed f w in the time y/k.
-fn gain<F: Real>(f: F, y: F) -> F {
+/// ln(1 + f (e^y - 1)), given ln f: the distance, in w/k, from speed f w in the time y/k. Neither f nor e^y
+/// need fit into a float.
+fn gain<F: Real>(ln_f: F, y: F) -> F {
+    let f = ln_f.exp();
     let grown = f * y.exp_m1();
-    if grown.is_finite() { grown.ln_1p() } else { softplus(f.ln() + ln_exp_m1(y)) }
+    if f.is_normal() && grown.is_finite() { grown.ln_1p() } else { softplus(ln_f + ln_exp_m1(y)) }
 }
 
 impl<F: Real> Profile<F> for LogisticRamp<F> {
@@ -162,12 +164,7 @@ impl<F: Real> Profile<F> for LogisticRamp<F> {
 
     fn position(&self, t: F) -> F {
         let y = self.steepness * self.clamped(t);
-        // Where the start speed underflows, its logarithm does not.
-        let grown = if self.start < F::min_positive_value() {
-            softplus(ln_exp_m1(y) - self.ln_start)
-        } else {
-            gain(self.start, y)
-        };
+        let grown = gain(-self.ln_start, y);
         (self.asymptote / self.steepness * grown).min(self.distance)
     }
 
@@ -187,6 +184,8 @@ impl<F: Real> Profile<F> for LogisticRamp<F> {
     fn crossing(&self, x: F) -> F {
         if x <= F::zero() {
             return F::zero();
+        } else if x >= self.distance {
+            return self.duration;
         }
         let y = self.steepness * x / self.asymptote;
         let grown = self.ln_start.exp() * y.exp_m1();
@@ -200,7 +199,8 @@ impl<F: Real> Profile<F> for LogisticRamp<F> {
 
     fn mean_speed(&self, from: F, to: F) -> F {
         let y = self.steepness * (to - from);
-        if y > F::zero() { self.asymptote * (gain(self.fraction(from), y) / y) } else { self.speed(from) }
+        let ln_from = -softplus(self.steepness * (self.centre - from));
+        if y > F::zero() { self.asymptote * (gain(ln_from, y) / y) } else { self.speed(from) }
     }
 }
 

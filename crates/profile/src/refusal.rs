@@ -92,9 +92,7 @@ impl fmt::Display for Refusal {
         let Self { limit, wanted, available, least_time } = self;
         let unit = limit.unit();
         match least_time {
-            Some(least) => {
-                write!(f, "needs {wanted:.6} {unit}, over {limit} {available}; at least {least:.9} s would do")
-            }
+            Some(least) => write!(f, "needs {wanted:.6} {unit}, over {limit} {available}; at least {least:.9} s would do"),
             None => write!(f, "needs a {limit} over {available} {unit}; no time would do without"),
         }
     }

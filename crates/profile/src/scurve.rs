@@ -219,12 +219,12 @@ impl<F: Real> Profile<F> for ScurveRamp<F> {
 
     fn breakpoints(&self) -> &[F] {
         let [held, released] = self.breakpoints;
-        if held <= F::zero() {
-            &[]
-        } else if released > held {
-            &self.breakpoints
-        } else {
-            &self.breakpoints[..1]
+        // A jerk segment may be too short to be told from the end of a long ramp.
+        let inside = |t: F| t > F::zero() && t < self.duration;
+        match (inside(held), inside(released) && released > held) {
+            (true, true) => &self.breakpoints,
+            (true, false) => &self.breakpoints[..1],
+            (false, _) => &[],
         }
     }
 }

@@ -93,7 +93,7 @@ impl<F: Real> Profile<F> for SineRamp<F> {
 
     fn speed(&self, t: F) -> F {
         let y = self.angle(t);
-        self.top / real(2.0 * PI) * x_minus_sin(y + y)
+        (self.top / real(2.0 * PI) * x_minus_sin(y + y)).min(self.top)
     }
 
     fn acceleration(&self, t: F) -> F {
@@ -109,8 +109,10 @@ impl<F: Real> Profile<F> for SineRamp<F> {
     fn crossing(&self, x: F) -> F {
         if x <= F::zero() {
             return F::zero();
+        } else if x >= self.distance() {
+            return self.duration;
         }
-        let c = real::<F>(PI * PI) * (x / self.distance()).min(F::one());
+        let c = real::<F>(PI * PI) * (x / self.distance());
         (self.duration * (angle_of_path(c) / real(PI))).min(self.duration)
     }
 

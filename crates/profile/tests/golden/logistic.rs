@@ -73,6 +73,8 @@ fn the_trapezoid_beside_it() {
     let longer = ScurveRamp::new(0.0, (2.0 * a * n).sqrt(), a, f64::INFINITY).unwrap();
     source.check("/trap/c_last", longer.delay(n - 1.0));
     source.check("/trap/c_total", longer.crossing(n));
+    source.golden.check("/seed_code_in_double/1000/trap_total", longer.crossing(n), TIGHT);
+    assert_eq!(source.golden.number("/seed_code_in_double/1000/trap_n"), n);
 }
 
 #[test]
@@ -127,6 +129,11 @@ fn step_times_and_delays() {
     source.check("/sigmoid/profile_code/c_total_s", end);
     source.check("/sigmoid/profile_code/omega_at_c_total_over_omega", ramp.speed(end) / ramp.asymptote());
     source.check("/sigmoid/profile_code/theta_check_quad_steps", ramp.position(end));
+    // What the listing itself prints, in doubles.
+    source.golden.check("/seed_code_in_double/1000/sig_c0", ramp.delay(0.0), TIGHT);
+    source.golden.check("/seed_code_in_double/1000/sig_clast", ramp.delay(n - 1.0), TIGHT);
+    source.golden.check("/seed_code_in_double/1000/sig_total", end, TIGHT);
+    assert_eq!(source.golden.number("/seed_code_in_double/1000/sig_n"), n);
 }
 
 #[test]
@@ -159,5 +166,7 @@ fn no_overflow_at_slow_speeds() {
             assert!((back / n - 1.0).abs() <= tolerance, "{slower} {part}: {n:e} became {back:e}");
         }
         assert!((ramp.speed(ramp.centre()) / w - 0.5).abs() < tolerance);
+        let mean = ramp.mean_speed(0.0, ramp.duration());
+        assert!((mean * ramp.duration() / ramp.distance() - 1.0).abs() < tolerance, "{slower}: {mean:e}");
     }
 }

@@ -1,5 +1,7 @@
 //! The golden numbers of the literature (`tests/golden/*.json`, 20 digits), to 1e-12 and better.
 
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
+
 mod logistic;
 mod sinusoid;
 mod trapezoid;

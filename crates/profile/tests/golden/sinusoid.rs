@@ -62,19 +62,34 @@ fn the_printed_step_is_wrong() {
     golden.check("/seed_error_2pi_over_N/ratio_correct_over_seed", PI, TIGHT);
 }
 
-/// Greatest error of a table of `entries` (u at even steps of s^(1/root)), read by linear interpolation at the
-/// steps of the ramp; the step as well.
-fn table_error(ramp: &SineRamp<f64>, entries: usize, root: i32) -> (f64, usize) {
-    let (steps, unit) = (ramp.distance(), ramp.duration());
-    let entry = |i: usize| ramp.crossing((i as f64 / entries as f64).powi(root) * steps) / unit;
-    let table: Vec<f64> = (0..=entries).map(entry).collect();
-    let error = |n: usize| {
-        let at = (n as f64 / steps).powf(f64::from(root).recip()) * entries as f64;
-        let left = (at as usize).min(entries - 1);
-        let read = table[left] + (table[left + 1] - table[left]) * (at - left as f64);
-        (read - ramp.crossing(n as f64) / unit).abs()
-    };
-    (1..=steps as usize).map(|n| (error(n), n)).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
+/// A table of u at even steps of s^(1/root), read by linear interpolation.
+struct Table<'a> {
+    ramp: &'a SineRamp<f64>,
+    root: i32,
+    entries: Vec<f64>,
+}
+
+impl<'a> Table<'a> {
+    fn new(ramp: &'a SineRamp<f64>, size: usize, root: i32) -> Self {
+        let entry = |i: usize| (i as f64 / size as f64).powi(root) * ramp.distance();
+        let entries = (0..=size).map(|i| ramp.crossing(entry(i)) / ramp.duration()).collect();
+        Self { ramp, root, entries }
+    }
+
+    /// How wrong its u is at position `x`.
+    fn error(&self, x: f64) -> f64 {
+        let last = self.entries.len() - 1;
+        let at = (x / self.ramp.distance()).powf(f64::from(self.root).recip()) * last as f64;
+        let left = (at as usize).min(last - 1);
+        let (low, high) = (self.entries[left], self.entries[left + 1]);
+        (low + (high - low) * (at - left as f64) - self.ramp.crossing(x) / self.ramp.duration()).abs()
+    }
+
+    /// Its greatest error at the steps of the ramp, and the step.
+    fn worst_step(&self) -> (f64, usize) {
+        let steps = 1..=self.ramp.distance() as usize;
+        steps.map(|n| (self.error(n as f64), n)).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
+    }
 }
 
 /// The golden numbers of this test have 16 digits, and an error of 1e-7 is a difference of numbers near 1.
@@ -84,13 +99,16 @@ fn the_small_table_is_wrong_near_rest() {
     let milli = 1e3 * ramp.duration();
     for entries in [64, 256, 1024] {
         let at = |key: &str| format!("/table_lookup_linear_interp/{entries}/{key}");
-        let (error, step) = table_error(&ramp, entries, 1);
+        let table = Table::new(&ramp, entries, 1);
+        let (error, step) = table.worst_step();
         golden.check(&at("max_abs_err_u_at_steps_N1000"), error, 1e-9);
         golden.check(&at("max_err_ms_T0.2s"), error * milli, 1e-9);
         assert_eq!(step as f64, golden.number(&at("at_step")));
+        let worst = ramp.position(golden.number(&at("at_u")) * ramp.duration());
+        golden.check(&at("max_abs_err_u"), table.error(worst), 1e-9);
 
         let at = |key: &str| format!("/table_lookup_linear_interp_in_fourth_root_of_s/{entries}/{key}");
-        let (error, _) = table_error(&ramp, entries, 4);
+        let (error, _) = Table::new(&ramp, entries, 4).worst_step();
         golden.check(&at("max_abs_err_u_at_steps_N1000"), error, 1e-9);
         golden.check(&at("max_err_us_T0.2s"), error * milli * 1e3, 1e-9);
     }

@@ -101,8 +101,7 @@ fn delays_and_their_recurrence() {
     let recurrence = |start: f64, n: u32| (1..=n).fold(start, |c, n| c - 2.0 * c / f64::from(4 * n + 1));
     let c0 = delay(0);
     source.check("/austin/c0_exact_ticks", c0);
-    let short = [0, 1, 2, 10];
-    for n in short {
+    for n in [0, 1, 2, 10] {
         source.check(&format!("/austin/exact_c_n/{n}"), delay(n));
     }
     // Step 100 is past the ramp of this move: the same acceleration, in its least time.
@@ -113,6 +112,8 @@ fn delays_and_their_recurrence() {
         source.check(&format!("/austin/rec_from_c0/{n}"), recurrence(c0, n));
         source.check(&format!("/austin/rec_from_0.676c0/{n}"), recurrence(0.676 * c0, n));
     }
+    let (c6, c7) = (recurrence(c0, 6), recurrence(c0, 7));
+    source.check("/decel_mirror/check_m=7", c7 * 29.0 / 27.0 / c6);
     source.check("/austin/c1_over_c0_exact", delay(1) / c0);
     source.check("/austin/c1_over_c0_rec", recurrence(1.0, 1));
     source.check("/austin/c1_ratio_rec_over_exact", recurrence(c0, 1) / delay(1));
