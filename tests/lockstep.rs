@@ -4,19 +4,23 @@ use carrystep_levels::{Job, Level, LevelError, Outcome, run};
 use carrystep_spec::ports::Outputs;
 use carrystep_spec::{AXES, Build, PinTiming, Program, StartPhase, Timebase};
 
-/// All outputs in each cycle in which any of them changed, and how the run ended.
+/// All outputs in each cycle in which any of them changed, and how the run ended; a host can block
+/// itself for ever (a start that can never be), and then there is no end.
 #[derive(Debug, PartialEq)]
 pub struct Record {
     /// Cycle and outputs.
     pub changes: Vec<(u64, Outputs)>,
-    /// The end.
-    pub outcome: Outcome,
+    /// The end, if it came before the job's last clock.
+    pub outcome: Option<Outcome>,
 }
 
 /// Runs a job at a level and keeps everything.
 pub fn record(level: Level, job: &Job<'_>) -> Result<Record, LevelError> {
     let mut changes = Vec::new();
-    let outcome = run(level, job, &mut |cycle, outputs| changes.push((cycle, *outputs)))?;
+    let outcome = match run(level, job, &mut |cycle, outputs| changes.push((cycle, *outputs))) {
+        Err(LevelError::Endless(_)) => None,
+        other => Some(other?),
+    };
     Ok(Record { changes, outcome })
 }
 
@@ -42,9 +46,9 @@ pub fn assert_equals_model(level: Level, job: &Job<'_>) {
     }
 }
 
-/// A job for a program whose length is not known: time for whatever the generators make.
+/// A job for a random program: time for whatever the generators make.
 pub fn job<'a>(build: &'a Build, program: &'a Program) -> Job<'a> {
-    Job { max_clocks: 4_000_000, ..Job::new(build, program, 0) }
+    Job { max_clocks: 50_000, ..Job::new(build, program, 0) }
 }
 
 /// A build for random programs: the fewest clocks per tick, axes with very different pins, so that

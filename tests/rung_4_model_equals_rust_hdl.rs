@@ -3,7 +3,6 @@
 use carrystep_levels::Level;
 use carrystep_spec::StartPhase;
 use carrystep_tests::{lockstep, programs};
-use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
 fn random_programs(phases: u32, phase: StartPhase, cases: u32) {

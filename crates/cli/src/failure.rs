@@ -38,19 +38,17 @@ impl Failure {
     }
 }
 
-/// File, line and column in one line, then the line itself with what is wrong in it.
+/// What is wrong, then file, line and column, and the line itself with what is wrong in it.
 fn render(error: &InputError) -> String {
     let mut diagnostic = MietteDiagnostic::new(error.message.clone());
     if let Some(help) = &error.help {
         diagnostic = diagnostic.with_help(help.clone());
     }
-    match (&error.place, error.line_column()) {
-        (Some((source, span)), Some((line, column))) if !source.text.is_empty() => {
-            let shown = shorten(&source.text, span.clone());
-            let label = LabeledSpan::underline(shown);
-            let name = source.path.display().to_string();
-            let report = Report::new(diagnostic.with_label(label)).with_source_code(NamedSource::new(&name, source.text.to_string()));
-            format!("error: {name}:{line}:{column}: {}\n{report:?}", error.message)
+    match &error.place {
+        Some((source, span)) if !source.text.is_empty() => {
+            let label = LabeledSpan::underline(shorten(&source.text, span.clone()));
+            let code = NamedSource::new(source.path.display().to_string(), source.text.to_string());
+            format!("error:\n{:?}", Report::new(diagnostic.with_label(label)).with_source_code(code))
         }
         _ => format!("error: {error}"),
     }

@@ -3,13 +3,13 @@
 mod arguments;
 mod commands;
 mod failure;
+mod job;
 mod output;
 mod progress;
 mod table;
 
 use arguments::{Arguments, Subcommand};
 use clap::Parser;
-use failure::Failure;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {

@@ -57,14 +57,15 @@ impl Translator<'_> {
             }
             Expression::Paren(inner) => self.expression(inner),
             Expression::Cast(inner, width) => self.cast(&self.expression(inner)?, *width),
+            Expression::Unary(Unary::Any, inner) => self.against_zero(inner, "!="),
+            Expression::Unary(Unary::Not, inner) => match inner.as_ref() {
+                Expression::Unary(Unary::Any, inner) => self.against_zero(inner, "=="),
+                _ => self.unary(&Unary::Not, &self.expression(inner)?),
+            },
             Expression::Unary(op, inner) => self.unary(op, &self.expression(inner)?),
-            Expression::Binary(left, op, right) => {
-                self.binary(&self.expression(left)?, op, &self.expression(right)?)
-            }
+            Expression::Binary(left, op, right) => self.binary(&self.expression(left)?, op, &self.expression(right)?),
             Expression::Index(signal, index) => self.part(&self.expression(signal)?, self.number(index)?, 1),
-            Expression::Slice(signal, width, low) => {
-                self.part(&self.expression(signal)?, self.number(low)?, *width)
-            }
+            Expression::Slice(signal, width, low) => self.part(&self.expression(signal)?, self.number(low)?, *width),
             Expression::Signed(_) | Expression::Unsigned(_) => Err(self.unsupported("signed arithmetic")),
             Expression::IndexReplace(..) => Err(self.unsupported("replace_bit")),
         }
@@ -97,12 +98,14 @@ impl Translator<'_> {
         Ok(Text { text, width, bond: Bond::Closed })
     }
 
+    fn against_zero(&self, inner: &Expression, sign: &'static str) -> Result<Text, ExportError> {
+        let inner = self.expression(inner)?;
+        let zero = Number { width: inner.width, value: 0 };
+        Ok(Text { text: format!("{} {sign} {zero}", inner.closed()), width: 1, bond: Bond::Open(sign) })
+    }
+
     fn unary(&self, op: &Unary, inner: &Text) -> Result<Text, ExportError> {
         let Text { width, .. } = *inner;
-        if matches!(op, Unary::Any) {
-            let zero = Number { width, value: 0 };
-            return Ok(Text { text: format!("{} != {zero}", inner.closed()), width: 1, bond: Bond::Open("!=") });
-        }
         let (sign, width) = match op {
             Unary::Not if width == 1 => ("!", 1),
             Unary::Not => ("~", width),

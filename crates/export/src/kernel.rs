@@ -43,17 +43,40 @@ impl Kernel {
         let steps = without_overwritten(block(translator, code)?);
         let mut kernel = Self::default();
         let mut clocked = Vec::new();
-        for group in groups(steps) {
+        let groups = groups(steps);
+        if let Some(signal) = read_between_writes(&groups) {
+            return Err(translator.unsupported(&format!("a read of {signal} between two writes")));
+        }
+        for group in groups {
             let registers = group.iter().all(|(_, step)| step.targets().iter().all(|name| name.role == Role::Next));
             match group.as_slice() {
                 _ if registers => clocked.extend(group),
                 [(_, Step::Assign { target, value })] => kernel.wires.push((target.clone(), value.clone())),
+                _ if group.iter().any(|(_, step)| step.targets().iter().any(|name| name.role == Role::Next)) => {
+                    return Err(translator.unsupported("an `if` that drives registers and other signals"));
+                }
                 _ => kernel.blocks.push(group.into_iter().map(|(_, step)| step).collect()),
             }
         }
         clocked.sort_by_key(|(place, _)| *place);
         kernel.clocked = clocked.into_iter().map(|(_, step)| step).filter(|step| !step.is_hold()).collect();
         Ok(kernel)
+    }
+
+    /// What drives a signal that is assigned once.
+    pub(crate) fn wire(&self, signal: &str) -> Option<&str> {
+        self.wires.iter().find(|(target, _)| target.text == signal).map(|(_, value)| value.as_str())
+    }
+
+    /// Whether a combinational block writes the signal.
+    pub(crate) fn in_block(&self, signal: &str) -> bool {
+        self.blocks.iter().flatten().any(|step| step.writes(signal))
+    }
+
+    /// Whether anything reads the signal.
+    pub(crate) fn reads(&self, signal: &str) -> bool {
+        let steps = self.blocks.iter().flatten().chain(&self.clocked);
+        self.wires.iter().any(|(_, value)| mentions(value, signal)) || steps.into_iter().any(|s| s.reads(signal))
     }
 
     /// What the combinational blocks write.
@@ -93,7 +116,7 @@ impl Step {
 }
 
 /// Whether the text names the signal.
-pub(crate) fn mentions(text: &str, signal: &str) -> bool {
+fn mentions(text: &str, signal: &str) -> bool {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|word| word == signal)
 }
 
@@ -134,10 +157,8 @@ fn assignment(
         return if value.text == "clock" { Ok(None) } else { Err(translator.unsupported("a derived clock")) };
     }
     if target.width != value.width {
-        return Err(translator.unsupported(&format!(
-            "{} ({} bits) = {} ({} bits)",
-            target.text, target.width, value.text, value.width
-        )));
+        return Err(translator
+            .unsupported(&format!("{} ({} bits) = {} ({} bits)", target.text, target.width, value.text, value.width)));
     }
     Ok(Some(Step::Assign { target: target.clone(), value: value.text }))
 }
@@ -176,24 +197,44 @@ fn without_overwritten(steps: Vec<Step>) -> Vec<Step> {
     steps.into_iter().zip(keep).filter_map(|(step, keep)| keep.then_some(step)).collect()
 }
 
-/// Statements that write a signal in common, directly or through others, with their places.
-fn groups(steps: Vec<Step>) -> Vec<Vec<(usize, Step)>> {
-    let mut groups: Vec<(BTreeSet<String>, Vec<(usize, Step)>)> = Vec::new();
+/// Statements with their places.
+type Group = Vec<(usize, Step)>;
+
+/// Statements that write a signal in common, directly or through others.
+fn groups(steps: Vec<Step>) -> Vec<Group> {
+    let mut groups: Vec<(BTreeSet<String>, Group)> = Vec::new();
     for (place, step) in steps.into_iter().enumerate() {
-        let mut targets: BTreeSet<String> = step.targets().into_iter().map(|name| name.text).collect();
-        let mut members = Vec::new();
-        groups.retain_mut(|(written, earlier)| {
-            let apart = written.is_disjoint(&targets);
+        let mut written: BTreeSet<String> = step.targets().into_iter().map(|name| name.text).collect();
+        let mut group = vec![(place, step)];
+        groups.retain_mut(|(other_written, other)| {
+            let apart = other_written.is_disjoint(&written);
             if !apart {
-                targets.append(written);
-                members.append(earlier);
+                written.append(other_written);
+                group.append(other);
             }
             apart
         });
-        members.push((place, step));
-        members.sort_by_key(|(place, _)| *place);
-        groups.push((targets, members));
+        group.sort_by_key(|(place, _)| *place);
+        groups.push((written, group));
     }
-    groups.sort_by_key(|(_, members)| members[0].0);
-    groups.into_iter().map(|(_, members)| members).collect()
+    groups.sort_by_key(|(_, group)| group[0].0);
+    groups.into_iter().map(|(_, group)| group).collect()
+}
+
+/// Groups run side by side, so what one reads of another must be its final value.
+fn read_between_writes(groups: &[Group]) -> Option<String> {
+    let last_write =
+        |group: &Group, signal: &str| group.iter().rev().find(|(_, step)| step.writes(signal)).map(|(place, _)| *place);
+    for (owner, group) in groups.iter().enumerate() {
+        let signals: BTreeSet<String> =
+            group.iter().flat_map(|(_, step)| step.targets()).map(|name| name.text).collect();
+        for signal in signals {
+            let last = last_write(group, &signal);
+            let others = groups.iter().enumerate().filter(|(other, _)| *other != owner).flat_map(|(_, group)| group);
+            if others.into_iter().any(|(place, step)| Some(*place) < last && step.reads(&signal)) {
+                return Some(signal);
+            }
+        }
+    }
+    None
 }

@@ -1,1 +1,57 @@
 //! Rust-HDL modules as readable Verilog.
+//!
+//! Rust-HDL's own output calls every module after its place in the tree and makes a module of every
+//! flip-flop. This crate reads the same checked tree and the same kernels, and writes what a person would:
+//! one module per kind, real names, ANSI ports, registers under the clock.
+//!
+//! ```text
+//! blocks --netlist--> ports, registers, children, kernel --kernel--> wires, blocks, clocked --module--> text
+//! ```
+
+mod core;
+mod expression;
+mod kernel;
+mod module;
+mod names;
+mod netlist;
+#[cfg(test)]
+mod tests;
+
+pub use crate::core::{CORE_NAME, CORE_WAIVERS, six_axis_verilog, write_core};
+
+use carrystep_hdl::HdlError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why there is no Verilog.
+#[derive(Debug, Error)]
+pub enum ExportError {
+    /// The modules cannot be built with these parameters.
+    #[error(transparent)]
+    Hdl(#[from] HdlError),
+    /// A module says something that this crate does not translate.
+    #[error("module {module}: cannot translate {what}")]
+    Unsupported {
+        /// Instance name of the module.
+        module: String,
+        /// The construct.
+        what: String,
+    },
+    /// Two modules that differ want one name.
+    #[error("two different modules would be called {0}")]
+    SameName(String),
+    /// A file could not be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}
+
+impl ExportError {
+    pub(crate) fn unsupported(module: &str, what: impl Into<String>) -> Self {
+        Self::Unsupported { module: module.to_owned(), what: what.into() }
+    }
+}

@@ -1,10 +1,160 @@
 //! One module as text: Verilog-2005, ANSI ports, registers with their initial values.
 
 use crate::ExportError;
-use crate::kernel::{Kernel, Step, mentions};
+use crate::kernel::{Kernel, Step};
 use crate::names::{Names, Role, plain};
-use crate::netlist::{Flop, Module};
-use std::fmt::Write;
+use crate::netlist::Module;
+use rust_hdl::prelude::AtomKind;
+
+/// The text of `module` under the name `name`; `kinds` are the module names of its children.
+pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Result<String, ExportError> {
+    let names = Names::new(module)?;
+    let kernel = Kernel::new(module, &names)?;
+    let mut page = Page::default();
+    page.open(&format!("module {name} ("));
+    ports(&mut page, &names, &kernel);
+    page.close(");");
+    page.indent += 1;
+    constants(&mut page, &names);
+    declarations(&mut page, module, &names, &kernel)?;
+    wires(&mut page, &names, &kernel);
+    for block in &kernel.blocks {
+        page.gap();
+        page.open("always @(*) begin");
+        steps(&mut page, block, "=");
+        page.close("end");
+    }
+    for (child, kind) in module.children.iter().zip(kinds) {
+        page.gap();
+        instance(&mut page, &names, &kernel, child, kind)?;
+    }
+    clocked(&mut page, &kernel);
+    page.close("endmodule");
+    Ok(page.text)
+}
+
+fn ports(page: &mut Page, names: &Names, kernel: &Kernel) {
+    for (place, port) in names.ports.iter().enumerate() {
+        let kind = match port.output {
+            false => "input  wire",
+            true if kernel.in_block(&port.name) => "output reg ",
+            true => "output wire",
+        };
+        let comma = if place + 1 < names.ports.len() { "," } else { "" };
+        let range = if port.width == 1 { String::new() } else { format!("[{}:0]", port.width - 1) };
+        page.line(&format!("{kind} {range:>7} {}{comma}", port.name));
+    }
+}
+
+fn constants(page: &mut Page, names: &Names) {
+    for (name, value) in &names.constants {
+        page.line(&format!("localparam {}{name} = {value};", range(value.width)));
+    }
+}
+
+/// Registers, what combinational blocks write, and the outputs of children that the kernel reads.
+fn declarations(page: &mut Page, module: &Module, names: &Names, kernel: &Kernel) -> Result<(), ExportError> {
+    page.gap();
+    for register in &module.registers {
+        page.line(&format!("reg {}{} = {};", range(register.width), plain(&register.name), register.initial));
+    }
+    for target in kernel.block_targets() {
+        if names.ports.iter().all(|port| port.name != target.text) {
+            page.line(&format!("reg {}{};", range(target.width), target.text));
+        }
+    }
+    page.gap();
+    for child in &module.children {
+        for output in child.atoms.iter().filter(|atom| atom.kind == AtomKind::OutputParameter) {
+            let name = names.get(&module.instance, &format!("{}${}", child.instance, output.name))?;
+            if kernel.reads(&name.text) {
+                page.line(&format!("wire {}{};", range(name.width), name.text));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What is assigned once: local signals at their declaration, then the outputs.
+fn wires(page: &mut Page, names: &Names, kernel: &Kernel) {
+    let is_local = |text: &str| names.locals.iter().any(|local| local == text);
+    let driven = kernel.wires.iter().filter(|(target, _)| target.role == Role::Driven);
+    let (locals, mut outputs): (Vec<_>, Vec<_>) = driven.partition(|(target, _)| is_local(&target.text));
+    page.gap();
+    for (target, value) in locals {
+        page.line(&format!("wire {}{} = {value};", range(target.width), target.text));
+    }
+    // The elements of a vector together, as the ports have them.
+    outputs.sort_by_key(|(target, _)| {
+        names.ports.iter().position(|port| target.text.split('[').next() == Some(&port.name))
+    });
+    page.gap();
+    for (target, value) in outputs {
+        page.line(&format!("assign {} = {value};", target.text));
+    }
+}
+
+fn instance(page: &mut Page, names: &Names, kernel: &Kernel, child: &Module, kind: &str) -> Result<(), ExportError> {
+    page.open(&format!("{kind} {} (", plain(&child.instance)));
+    let ports = Names::new(child)?.ports;
+    for (place, port) in ports.iter().enumerate() {
+        let name = names.get(&child.instance, &format!("{}${}", child.instance, port.name))?;
+        let wire = match kernel.wire(&name.text) {
+            _ if name.role == Role::Clock => "clock",
+            Some(value) => value,
+            None if port.output && !kernel.reads(&name.text) => "",
+            None => &name.text,
+        };
+        let comma = if place + 1 < ports.len() { "," } else { "" };
+        page.line(&format!(".{}({wire}){comma}", port.name));
+    }
+    page.close(");");
+    Ok(())
+}
+
+fn clocked(page: &mut Page, kernel: &Kernel) {
+    if kernel.clocked.is_empty() {
+        return;
+    }
+    page.gap();
+    page.open("always @(posedge clock) begin");
+    steps(page, &kernel.clocked, "<=");
+    page.close("end");
+}
+
+/// Statements; under the clock a register is written by its own name.
+fn steps(page: &mut Page, list: &[Step], sign: &str) {
+    for step in list {
+        match step {
+            Step::Assign { target, value } => {
+                let name = if sign == "<=" { target.text.trim_end_matches("_next") } else { &target.text };
+                page.line(&format!("{name} {sign} {value};"));
+            }
+            Step::If { .. } => conditional(page, step, "", sign),
+        }
+    }
+}
+
+fn conditional(page: &mut Page, step: &Step, before: &str, sign: &str) {
+    let Step::If { test, then, otherwise } = step else { return };
+    page.open(&format!("{before}if ({test}) begin"));
+    steps(page, then, sign);
+    page.indent -= 1;
+    match otherwise.as_slice() {
+        [] => page.line("end"),
+        [next @ Step::If { .. }] => conditional(page, next, "end else ", sign),
+        rest => {
+            page.open("end else begin");
+            steps(page, rest, sign);
+            page.close("end");
+        }
+    }
+}
+
+/// `[63:0] `, or nothing for a single bit.
+fn range(width: usize) -> String {
+    if width == 1 { String::new() } else { format!("[{}:0] ", width - 1) }
+}
 
 /// Lines with their indent.
 #[derive(Debug, Default)]
@@ -15,9 +165,7 @@ struct Page {
 
 impl Page {
     fn line(&mut self, line: &str) {
-        if !line.is_empty() {
-            self.text.extend(std::iter::repeat_n("    ", self.indent));
-        }
+        self.text.extend(std::iter::repeat_n("    ", self.indent));
         self.text.push_str(line);
         self.text.push('\n');
     }
@@ -32,72 +180,10 @@ impl Page {
         self.line(line);
     }
 
-    /// An empty line before a paragraph, but not after another or at the start.
+    /// An empty line between paragraphs, one at most.
     fn gap(&mut self) {
         if !self.text.ends_with("\n\n") {
-            self.line("");
-        }
-    }
-}
-
-/// The text of `module` under the name `name`; `kinds` are the module names of its children.
-pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Result<String, ExportError> {
-    let names = Names::new(module)?;
-    let kernel = Kernel::new(module, &names)?;
-    let mut page = Page::default();
-    page.open(&format!("module {name} ("));
-    ports(&mut page, &names, &kernel);
-    page.line("");
-    page.indent += 1;
-    declarations(&mut page, module, &names, &kernel);
-    wires(&mut page, &names, &kernel);
-    for block in &kernel.blocks {
-        page.gap();
-        page.open("always @(*) begin");
-        steps(&mut page, block, Assignment::Blocking);
-        page.close("end");
-    }
-    for (child, kind) in module.children.iter().zip(kinds) {
-        page.gap();
-        instance(&mut page, &names, &kernel, child, kind)?;
-    }
-    clocked(&mut page, module, &kernel);
-    page.close("endmodule");
-    let unread = module_outputs(module, &names)?;
-    Ok(without_unread(page.text, &unread))
-}
-
-fn ports(page: &mut Page, names: &Names, kernel: &Kernel) {
-    let computed = kernel.block_targets();
-    for (place, port) in names.ports.iter().enumerate() {
-        let kind = match port.output {
-            false => "input  wire",
-            true if computed.iter().any(|target| target.text == port.name) => "output reg ",
-            true => "output wire",
-        };
-        let comma = if place + 1 < names.ports.len() { "," } else { "" };
-        page.line(&format!("{kind} {:>8}{}{comma}", range(port.width), port.name));
-    }
-    page.close(");");
-}
-
-fn declarations(page: &mut Page, module: &Module, names: &Names, kernel: &Kernel) {
-    for (name, value) in &names.constants {
-        page.line(&format!("localparam {}{name} = {value};", range(value.width)));
-    }
-    page.gap();
-    for Flop { name, width, initial } in &module.registers {
-        page.line(&format!("reg {}{} = {initial};", range(*width), plain(name)));
-    }
-    for target in kernel.block_targets() {
-        if names.ports.iter().all(|port| port.name != target.text) {
-            page.line(&format!("reg {}{};", range(target.width), target.text));
-        }
-    }
-    page.gap();
-    for child in &module.children {
-        for output in child.outputs() {
-            page.line(&format!("wire {}{};", range(output.width), plain(&format!("{}${}", child.instance, output.name))));
+            self.text.push('\n');
         }
     }
 }

@@ -43,7 +43,7 @@ pub(crate) struct Port {
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     pub(crate) ports: Vec<Port>,
-    pub(crate) locals: Vec<(String, usize)>,
+    pub(crate) locals: Vec<String>,
     pub(crate) constants: Vec<(String, Number)>,
     known: BTreeMap<String, Name>,
 }
@@ -66,7 +66,7 @@ impl Names {
                 }
                 AtomKind::LocalSignal => {
                     let text = plain(&atom.name);
-                    names.locals.push((text.clone(), atom.width));
+                    names.locals.push(text.clone());
                     names.add(&atom.name, text, atom.width, Role::Driven);
                 }
                 AtomKind::Constant => {

@@ -53,7 +53,7 @@ impl std::fmt::Display for Number {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.width {
             1 => write!(f, "1'b{}", self.value),
-            2..=32 => write!(f, "{}'d{}", self.width, self.value),
+            2..=32 if self.value <= 0xffff => write!(f, "{}'d{}", self.width, self.value),
             _ => write!(f, "{}'h{:x}", self.width, self.value),
         }
     }

@@ -79,11 +79,11 @@ pub struct Axis {
     pub p: Signal<Out, Word<64>>,
     /// To be watched: V.
     pub v: Signal<Out, Word<64>>,
-    position: Register<Word<64>>,
-    speed: Register<Word<64>>,
-    accel: Register<Word<64>>,
-    jerk: Register<Word<64>>,
-    too_fast: Register<Bit>,
+    position: Register<Word<64>>, // P
+    speed: Register<Word<64>>,    // V
+    accel: Register<Word<64>>,    // A
+    jerk: Register<Word<64>>,     // J
+    too_fast: Register<Bit>,      // `overspeed` of docs/clock-by-clock.md
     sequencer: Sequencer,
     step_edge: Edge,
     tick: Signal<Local, Bit>,
@@ -203,5 +203,66 @@ impl Logic for Axis {
         self.q.next = self.step_edge.q.val();
         self.p.next = self.position.q.val();
         self.v.next = self.speed.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::{AxisSim, assert_synthesizes};
+    use carrystep_spec::Segment;
+
+    fn started(start: StartPhase, segment: Segment) -> AxisSim {
+        let mut axis = AxisSim::new(16, start).unwrap();
+        assert!(axis.offer(&segment));
+        assert!(!axis.tick(true).crossed);
+        axis
+    }
+
+    const QUARTER: i64 = 1 << 62;
+
+    #[test]
+    fn every_carry_is_a_step() {
+        let segment = Segment { ticks: 9, v: QUARTER, a: 0, j: 0, last: true };
+        let mut axis = started(StartPhase::Zero, segment);
+        let steps: Vec<bool> = (0..12).map(|_| axis.tick(false).crossed).collect();
+        let [o, x] = [false, true];
+        assert_eq!(steps, [o, o, o, x, o, o, o, x, o, o, o, o]);
+    }
+
+    #[test]
+    fn backward_every_missing_carry_is_a_step() {
+        let segment = Segment { ticks: 5, v: -QUARTER, a: 0, j: 0, last: true };
+        let mut axis = started(StartPhase::Zero, segment);
+        let steps: Vec<bool> = (0..6).map(|_| axis.tick(false).crossed).collect();
+        assert_eq!(steps, [true, false, false, false, true, false]);
+    }
+
+    #[test]
+    fn all_sums_are_of_the_old_values() {
+        let segment = Segment { ticks: 4, v: 100, a: 10, j: 1, last: false };
+        let mut axis = started(StartPhase::Zero, segment);
+        let ticks: Vec<(u64, i64)> = (0..3).map(|_| axis.tick(false)).map(|tick| (tick.p, tick.v)).collect();
+        assert_eq!(ticks, [(100, 110), (210, 121), (331, 133)]);
+    }
+
+    #[test]
+    fn a_speed_that_does_not_fit_is_a_fault_and_stops() {
+        let segment = Segment { ticks: 9, v: QUARTER, a: QUARTER, j: 0, last: true };
+        let mut axis = started(StartPhase::Half, segment);
+        assert_eq!(axis.tick(false).v, 0);
+        assert_eq!(axis.faults(), (true, false));
+        let least = started(StartPhase::Half, Segment { v: i64::MIN, a: 0, ..segment });
+        assert_eq!(least.faults(), (true, false));
+    }
+
+    #[test]
+    fn phases_are_checked() {
+        assert!(AxisSim::new(8, StartPhase::Half).is_err());
+    }
+
+    #[test]
+    fn axis_synthesizes() {
+        assert_synthesizes(Axis::new(16, StartPhase::Half), "carrystep_axis");
     }
 }

@@ -58,19 +58,19 @@ pub struct Edge {
     pub back: Signal<Out, Bit>,
     /// Its phase, when the bisection is over.
     pub q: Signal<Out, Word<4>>,
-    tick_crossed: Register<Bit>,
-    tick_back: Register<Bit>,
+    tick_crossed: Register<Bit>, // `crossed` of docs/clock-by-clock.md
+    tick_back: Register<Bit>,    // `back`
     sign_fwd: Register<Bit>,
     sign_back: Register<Bit>,
-    bisect_p: Register<Word<32>>,
-    bisect_v: Register<Word<32>>, // halved from step to step
-    bisect_q: Register<Word<4>>,
-    weight: Register<Word<4>>, // of the phase bit in question; 0: nothing to do
+    bisect_p: Register<Word<32>>, // `bp`
+    bisect_v: Register<Word<32>>, // `bv`, halved from step to step: one shift instead of a shifter
+    bisect_q: Register<Word<4>>,  // `bq`
+    weight: Register<Word<4>>,    // of the phase bit in question; 0: nothing to do
     emit: Register<Bit>,
     emit_back: Register<Bit>,
     emit_q: Register<Word<4>>,
-    dir_fwd: Register<Bit>,
-    dir_back: Register<Bit>,
+    dir_fwd: Register<Bit>,  // `want_fwd`
+    dir_back: Register<Bit>, // `want_back`
     half: Signal<Local, Word<32>>,
     trial: Signal<Local, Word<33>>,
     trial_crosses: Signal<Local, Bit>,
@@ -132,8 +132,7 @@ impl Logic for Edge {
             self.dir_back.d.next = false;
         }
 
-        self.request.next =
-            self.emit.q.val() & self.phase_start.val() & (self.phase.val() == self.emit_q.q.val());
+        self.request.next = self.emit.q.val() & self.phase_start.val() & (self.phase.val() == self.emit_q.q.val());
         self.request_back.next = self.emit_back.q.val();
         self.want_fwd.next = self.dir_fwd.q.val();
         self.want_back.next = self.dir_back.q.val();
@@ -141,5 +140,79 @@ impl Logic for Edge {
         self.crossed.next = self.tick_crossed.q.val();
         self.back.next = self.tick_back.q.val();
         self.q.next = self.bisect_q.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::{assert_synthesizes, rising_edge, settle};
+
+    fn clock(edge: &mut Edge) {
+        edge.clock.next = false.into();
+        settle(edge);
+        edge.clock.next = true.into();
+        rising_edge(edge);
+        settle(edge);
+    }
+
+    /// An edge of Q phases after the strobe of a tick that crosses, and its bisection.
+    fn bisected(phases: u32, p: u64, v: u64) -> Edge {
+        let mut edge = Edge::new(phases);
+        edge.connect_all();
+        edge.strobe.next = true;
+        edge.crosses.next = true;
+        edge.backward.next = v >> 31 == 1;
+        edge.p.next = Word::from(p);
+        edge.v.next = Word::from(v);
+        clock(&mut edge);
+        edge.strobe.next = false;
+        edge.crosses.next = false;
+        for _ in 0..phases.ilog2() {
+            clock(&mut edge);
+        }
+        edge
+    }
+
+    #[test]
+    fn the_phase_is_where_the_carry_falls() {
+        // From 3/4 of a step at half a step per tick: half a tick. Then a late and an early carry.
+        assert_eq!(bisected(16, 0xc000_0000, 0x7fff_ffff).q.val().value(), 8);
+        assert_eq!(bisected(16, 0x8000_0001, 0x7fff_ffff).q.val().value(), 15);
+        assert_eq!(bisected(16, 0xffff_ffff, 0x7fff_ffff).q.val().value(), 0);
+        assert_eq!(bisected(4, 0xc000_0000, 0x7fff_ffff).q.val().value(), 2);
+        assert_eq!(bisected(1, 0xc000_0000, 0x7fff_ffff).q.val().value(), 0);
+    }
+
+    #[test]
+    fn backward_it_is_where_the_carry_is_missing() {
+        let edge = bisected(16, 0x4000_0000, 0x8000_0000);
+        assert_eq!(edge.q.val().value(), 8);
+        assert!(edge.back.val());
+    }
+
+    #[test]
+    fn the_request_comes_once_at_its_phase_in_the_next_tick() {
+        let mut edge = bisected(16, 0xc000_0000, 0x7fff_ffff);
+        edge.strobe.next = true;
+        clock(&mut edge);
+        edge.strobe.next = false;
+        let mut requests = Vec::new();
+        for cycle in 0..32_u64 {
+            edge.phase.next = Word::from(cycle / 2);
+            edge.phase_start.next = cycle % 2 == 0;
+            edge.clock.next = false.into();
+            settle(&mut edge);
+            if edge.request.val() {
+                requests.push(cycle);
+            }
+            clock(&mut edge);
+        }
+        assert_eq!(requests, [16]);
+    }
+
+    #[test]
+    fn edge_synthesizes() {
+        assert_synthesizes(Edge::new(16), "carrystep_step_edge");
     }
 }

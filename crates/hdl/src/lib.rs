@@ -2,6 +2,8 @@
 //!
 //! Read [`axis`] first: the accumulator whose every carry is a step. [`shaper`] keeps the pins' promises,
 //! [`tick`] gives the beat, [`six_axis`] puts them together, [`sim`] runs them.
+//!
+//! A module's `Default` is its skeleton, all parameters zero: build modules with `new`.
 
 pub mod axis;
 pub mod constant;
@@ -31,16 +33,6 @@ pub enum HdlError {
         name: &'static str,
         /// What was asked for.
         clocks: u32,
-    },
-    /// Ticks so short that the bisection does not fit.
-    #[error("{clocks} clocks per tick: {phases} phases need at least {least}")]
-    Tick {
-        /// Clocks per tick.
-        clocks: u32,
-        /// Q.
-        phases: u32,
-        /// The fewest there can be.
-        least: u32,
     },
     /// Q is not 1, 4 or 16.
     #[error("{0} phases: a tick has 1, 4 or 16 phases")]

@@ -113,8 +113,7 @@ pub struct Register<T: Synth> {
 impl<T: Synth> Register<T> {
     /// A register that configures to `initial`.
     pub fn new(initial: T) -> Self {
-        let mut d = Input::default();
-        d.next = initial;
+        let d = Input { next: initial, ..Input::default() };
         Self { d, q: Signal::new_with_default(initial), clock: Input::default(), initial }
     }
 }

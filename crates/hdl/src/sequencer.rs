@@ -61,16 +61,16 @@ pub struct Sequencer {
     pub j: Signal<Out, Word<64>>,
     /// Fault: the queue ran dry.
     pub underrun: Signal<Out, Bit>,
-    wait_full: Register<Bit>,
+    wait_full: Register<Bit>, // `waiting`
     wait_ticks: Register<Word<32>>,
     wait_v: Register<Word<64>>,
     wait_a: Register<Word<64>>,
     wait_j: Register<Word<64>>,
     wait_last: Register<Bit>,
-    active: Register<Bit>,
+    active: Register<Bit>, // `running` of docs/clock-by-clock.md
     left: Register<Word<32>>,
     last: Register<Bit>,
-    dry: Register<Bit>,
+    dry: Register<Bit>, // `underrun`
     ending: Signal<Local, Bit>,
     one: Literal<32, 1>,
 }
@@ -81,8 +81,7 @@ impl Logic for Sequencer {
         dff_setup!(self, clock, wait_full, wait_ticks, wait_v, wait_a, wait_j, wait_last, active, left, last, dry);
 
         self.ending.next = self.active.q.val() & (self.left.q.val() == self.one.val());
-        self.startable.next =
-            self.wait_full.q.val() & (!self.active.q.val() | (self.ending.val() & self.last.q.val()));
+        self.startable.next = self.wait_full.q.val() & (!self.active.q.val() | (self.ending.val() & self.last.q.val()));
         self.load.next = self.strobe.val()
             & self.wait_full.q.val()
             & ((self.ending.val() & !self.last.q.val()) | (self.startable.val() & self.go.val()));
@@ -121,5 +120,80 @@ impl Logic for Sequencer {
         self.a.next = self.wait_a.q.val();
         self.j.next = self.wait_j.q.val();
         self.underrun.next = self.dry.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::{assert_synthesizes, rising_edge, settle};
+
+    /// One clock; what the sequencer said before the edge: (load, advance).
+    fn clock(sequencer: &mut Sequencer) -> (bool, bool) {
+        sequencer.clock.next = false.into();
+        settle(sequencer);
+        let said = (sequencer.load.val(), sequencer.advance.val());
+        sequencer.clock.next = true.into();
+        rising_edge(sequencer);
+        settle(sequencer);
+        said
+    }
+
+    fn push(sequencer: &mut Sequencer, ticks: u64, last: bool) {
+        sequencer.push.next = true;
+        sequencer.strobe.next = false;
+        sequencer.seg_ticks.next = Word::from(ticks);
+        sequencer.seg_last.next = last;
+        clock(sequencer);
+        sequencer.push.next = false;
+        sequencer.strobe.next = true;
+    }
+
+    fn connected() -> Sequencer {
+        let mut sequencer = Sequencer::default();
+        sequencer.connect_all();
+        sequencer
+    }
+
+    #[test]
+    fn an_axis_at_rest_waits_for_go() {
+        let mut sequencer = connected();
+        push(&mut sequencer, 2, true);
+        assert!(sequencer.startable.val());
+        assert_eq!(clock(&mut sequencer), (false, false));
+        sequencer.go.next = true;
+        assert_eq!(clock(&mut sequencer), (true, false));
+        assert!(sequencer.running.val() && !sequencer.waiting.val());
+    }
+
+    #[test]
+    fn the_next_segment_follows_without_a_gap_and_the_last_one_rests() {
+        let mut sequencer = connected();
+        push(&mut sequencer, 2, false);
+        sequencer.go.next = true;
+        clock(&mut sequencer);
+        sequencer.go.next = false;
+        push(&mut sequencer, 1, true);
+        let said: Vec<_> = (0..3).map(|_| clock(&mut sequencer)).collect();
+        assert_eq!(said, [(false, true), (true, false), (false, false)]);
+        assert!(!sequencer.running.val() && !sequencer.underrun.val());
+    }
+
+    #[test]
+    fn a_dry_queue_is_an_underrun_until_cleared() {
+        let mut sequencer = connected();
+        push(&mut sequencer, 1, false);
+        sequencer.go.next = true;
+        clock(&mut sequencer);
+        clock(&mut sequencer);
+        assert!(sequencer.underrun.val() && !sequencer.running.val());
+        sequencer.clear.next = true;
+        clock(&mut sequencer);
+        assert!(!sequencer.underrun.val());
+    }
+
+    #[test]
+    fn sequencer_synthesizes() {
+        assert_synthesizes(Sequencer::default(), "carrystep_sequencer");
     }
 }

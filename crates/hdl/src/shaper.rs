@@ -26,6 +26,8 @@ pub struct Shaper {
     pub clock: Input<Clock>,
     /// A fault is latched: nothing new rises, DIR stays.
     pub frozen: Input<Bit>,
+    /// Forget the fault.
+    pub clear: Input<Bit>,
     /// A step is due.
     pub request: Input<Bit>,
     /// It goes backward.
@@ -46,19 +48,17 @@ pub struct Shaper {
     pub discarded: Signal<Out, Word<32>>,
     /// Fault: a second step was owed.
     pub overrun: Signal<Out, Bit>,
-    /// Forget the fault.
-    pub clear: Input<Bit>,
     step_pin: Register<Bit>,
     dir_pin: Register<Bit>,
     want: Register<Bit>,
-    due: Register<Bit>,
-    due_back: Register<Bit>,
+    due: Register<Bit>,      // `owed` of docs/clock-by-clock.md
+    due_back: Register<Bit>, // `owed_back`
     busy: Register<Word<17>>,
     hold: Register<Word<16>>,
     setup: Register<Word<16>>,
-    steps: Register<Word<32>>,
-    lost: Register<Word<32>>,
-    late: Register<Bit>,
+    steps: Register<Word<32>>, // `position`
+    lost: Register<Word<32>>,  // `discarded`
+    late: Register<Bit>,       // `overrun`
     want_now: Signal<Local, Bit>,
     pending: Signal<Local, Bit>,
     first_back: Signal<Local, Bit>,
@@ -196,3 +196,6 @@ impl Logic for Shaper {
         self.overrun.next = self.late.q.val();
     }
 }
+
+#[cfg(test)]
+mod tests;

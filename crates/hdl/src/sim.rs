@@ -78,6 +78,11 @@ impl SixAxisSim {
         rising_edge(self.core.as_mut());
     }
 
+    /// P of each axis in the present cycle: at rest after a whole move it is the start value again.
+    pub fn fractions(&self) -> [u64; AXES] {
+        std::array::from_fn(|axis| self.core.axis[axis].p.val().value() as u64)
+    }
+
     fn outputs(&self) -> Outputs {
         let core = &self.core;
         Outputs {

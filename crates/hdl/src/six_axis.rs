@@ -75,7 +75,7 @@ pub struct SixAxis {
     /// Axes start at the end of this cycle.
     pub started: Signal<Out, Bit>,
     tick: Tick,
-    axis: [Axis; AXES],
+    pub(crate) axis: [Axis; AXES],
     shaper: [Shaper; AXES],
     armed: Register<Bit>,
     mask: Register<Word<6>>,
@@ -145,13 +145,11 @@ impl Logic for SixAxis {
         self.nobody.next = self.seg_axis.val() >= self.six.val();
         self.waiting.next = false;
         for i in 0..6 {
-            self.waiting.next =
-                self.waiting.val() | (self.selected.val().get_bit(i) & self.axis[i].waiting.val());
+            self.waiting.next = self.waiting.val() | (self.selected.val().get_bit(i) & self.axis[i].waiting.val());
         }
         self.seg_ready.next = !(self.frozen.val() | self.waiting.val());
         self.taken.next = self.seg_valid.val() & self.seg_ready.val();
-        self.push.next =
-            self.taken.val() & !self.nobody.val() & (self.seg_ticks.val() != self.no_ticks.val());
+        self.push.next = self.taken.val() & !self.nobody.val() & (self.seg_ticks.val() != self.no_ticks.val());
 
         // Starts: armed until every axis of the mask can start, then all go on one strobe.
         self.start_ready.next = !(self.frozen.val() | self.armed.q.val());
@@ -159,8 +157,7 @@ impl Logic for SixAxis {
         self.unfed.next = false;
         self.all_startable.next = true;
         for i in 0..6 {
-            self.unfed.next =
-                self.unfed.val() | (self.start_mask.val().get_bit(i) & !self.axis[i].waiting.val());
+            self.unfed.next = self.unfed.val() | (self.start_mask.val().get_bit(i) & !self.axis[i].waiting.val());
             self.all_startable.next =
                 self.all_startable.val() & (!self.mask.q.val().get_bit(i) | self.axis[i].startable.val());
         }
@@ -216,5 +213,18 @@ impl Logic for SixAxis {
         self.fault.next = self.frozen.val();
         self.protocol.next = self.broken.q.val();
         self.started.next = self.go.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carrystep_spec::{PinTiming, StartPhase, Timebase};
+
+    #[test]
+    fn six_axis_synthesizes() {
+        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+        crate::sim::assert_synthesizes(SixAxis::new(&build).unwrap(), "carrystep_six_axis");
     }
 }

@@ -1,4 +1,5 @@
 //! How fast the simulation is; run with `cargo test --release -p carrystep-hdl --test speed -- --ignored --nocapture`.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_hdl::{AxisSim, SixAxisSim};
 use carrystep_spec::ports::Inputs;

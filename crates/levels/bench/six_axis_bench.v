@@ -2,7 +2,7 @@
 // every cycle in which any output changed. +program=FILE +tail=CYCLES +max=CYCLES
 `timescale 1ns / 1ps
 module six_axis_bench;
-    reg clock = 0, seg_valid = 0, seg_last = 0, start_valid = 0, clear = 0;
+    reg clock, seg_valid = 0, seg_last = 0, start_valid = 0, clear = 0;
     reg [2:0] seg_axis = 0;
     reg [31:0] seg_ticks = 0;
     reg [63:0] seg_v = 0, seg_a = 0, seg_j = 0;
@@ -51,6 +51,9 @@ module six_axis_bench;
         quiet = 0;
         over = 0;
         before = {419{1'bx}};
+        // A combinational block runs when something changes: let the clock do so before cycle 0.
+        #1 clock = 0;
+        #1;
         while (!over) begin
             // Drive: the clock is low, fault is a register and already settled.
             seg_valid = kind == SEGMENT && !fault;

@@ -72,6 +72,21 @@ impl<'a> Host<'a> {
     }
 }
 
+/// The first cycle after a start, if there is one.
+pub(crate) fn first_start(core: &mut impl Core, job: &Job<'_>) -> Option<u64> {
+    let mut host = Host::new(job.program);
+    for cycle in 0..job.max_clocks {
+        let inputs = host.inputs(false);
+        let outputs = core.outputs(&inputs);
+        if outputs.started {
+            return Some(cycle + 1);
+        }
+        host.advance(&outputs);
+        core.clock(&inputs);
+    }
+    None
+}
+
 /// Feeds a core until the program is over and the core is quiet.
 pub(crate) fn run(core: &mut impl Core, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
     let mut host = Host::new(job.program);

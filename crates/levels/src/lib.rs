@@ -160,6 +160,14 @@ pub fn run_verilog(level: Level, verilog: &str, job: &Job<'_>, observer: &mut Ob
     }
 }
 
+/// The cycle in which a job's first segments are loaded: the same at every level, so the model is asked.
+///
+/// # Errors
+/// [`LevelError::Endless`]: the program starts nothing.
+pub fn origin(job: &Job<'_>) -> Result<u64, LevelError> {
+    host::first_start(&mut carrystep_model::SixAxis::new(job.build), job).ok_or(LevelError::Endless(job.max_clocks))
+}
+
 /// Whether the tools of a level are installed.
 ///
 /// # Errors

@@ -1,1 +1,22 @@
 //! Moves to integer segments that land exactly.
+//!
+//! A float profile says where each axis should be; [`plan`] turns it into segments whose sums are exact:
+//! floats decide how the distance of a move is spread over its ticks, never how long it is.
+
+mod check;
+mod demand;
+mod direction;
+mod edges;
+mod error;
+mod limits;
+mod peaks;
+mod plan;
+mod planner;
+mod run;
+mod share;
+mod units;
+
+pub use error::{Broken, PlanError};
+pub use peaks::Peaks;
+pub use plan::{Plan, PlannedAxis, PlannedMove};
+pub use planner::plan;

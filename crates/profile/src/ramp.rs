@@ -84,7 +84,7 @@ impl<F: Real> Ramp<F> {
         }
     }
 
-    fn from_nearer_end(&self, t: F) -> F {
+    fn nearer_end(&self, t: F) -> F {
         t.min(self.duration - t).max(F::zero())
     }
 }
@@ -103,12 +103,12 @@ impl<F: Real> Profile<F> for Ramp<F> {
     }
 
     fn position(&self, t: F) -> F {
-        let near = self.from_nearer_end(t);
+        let near = self.nearer_end(t);
         if t + t <= self.duration { self.head(near) } else { self.distance - self.head(near) }
     }
 
     fn speed(&self, t: F) -> F {
-        let near = self.from_nearer_end(t);
+        let near = self.nearer_end(t);
         if near < self.ramp { (self.start + self.acceleration * near).min(self.top) } else { self.top }
     }
 
@@ -130,11 +130,7 @@ impl<F: Real> Profile<F> for Ramp<F> {
     }
 
     fn crossing(&self, x: F) -> F {
-        if x + x <= self.distance {
-            self.head_time(x)
-        } else {
-            self.duration - self.head_time(self.distance - x)
-        }
+        if x + x <= self.distance { self.head_time(x) } else { self.duration - self.head_time(self.distance - x) }
     }
 
     fn breakpoints(&self) -> &[F] {

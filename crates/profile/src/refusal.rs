@@ -83,7 +83,7 @@ impl Refusal {
 
     pub(crate) fn never<F: Real>(limit: Limit, available: F) -> Self {
         let available = available.to_f64().unwrap_or(f64::NAN);
-        Self { limit, wanted: f64::MIN_POSITIVE, available, least_time: None }
+        Self { limit, wanted: f64::INFINITY, available, least_time: None }
     }
 }
 
@@ -92,7 +92,9 @@ impl fmt::Display for Refusal {
         let Self { limit, wanted, available, least_time } = self;
         let unit = limit.unit();
         match least_time {
-            Some(least) => write!(f, "needs {wanted:.6} {unit}, over {limit} {available}; at least {least:.9} s would do"),
+            Some(least) => {
+                write!(f, "needs {wanted:.6} {unit}, over {limit} {available}; at least {least:.9} s would do")
+            }
             None => write!(f, "needs a {limit} over {available} {unit}; no time would do without"),
         }
     }

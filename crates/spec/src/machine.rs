@@ -51,9 +51,16 @@ impl Machine {
     /// # Errors
     /// [`InputError`] with file, line and column.
     pub fn load(path: &Path) -> Result<Self, InputError> {
-        let source = Source::read(path)?;
+        Self::from_source(&Source::read(path)?)
+    }
+
+    /// Checks a machine file whose text is already there.
+    ///
+    /// # Errors
+    /// [`InputError`] with file, line and column.
+    pub fn from_source(source: &Source) -> Result<Self, InputError> {
         let file: RawMachineFile = source.parse()?;
-        file.machine.check(&source)
+        file.machine.check(source)
     }
 
     /// The build parameters of this machine's gateware.

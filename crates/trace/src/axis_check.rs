@@ -26,8 +26,8 @@ pub struct AxisSetup<'a> {
 /// Times are rounded to ps and P to 32 bits; neither can add up to this, in ps.
 const ROUNDING_PS: f64 = 2000.0;
 
-/// Failures that are spelled out for each axis; the rest is counted.
-const SPELLED_OUT: usize = 12;
+/// Failures of single pulses that are spelled out for each axis; the rest is counted.
+const SPELLED_OUT: usize = 8;
 
 /// A pulse that has found its crossing.
 #[derive(Clone, Copy)]
@@ -36,6 +36,10 @@ struct Paired {
     lateness_ps: f64,
     backward: bool,
     crossing: Crossing,
+}
+
+fn greater(old: Option<f64>, new: f64) -> Option<f64> {
+    Some(old.map_or(new, |old| old.max(new)))
 }
 
 /// The state of one axis' check.
@@ -57,8 +61,11 @@ pub(crate) struct AxisCheck<'a> {
     jitter_ps: Option<f64>,
     ripple: Option<f64>,
     shortest_ideal_ps: f64,
-    failures: Vec<String>,
+    /// What single pulses did wrong, as far as it is spelled out.
+    pulse_failures: Vec<String>,
     omitted: u64,
+    /// What is wrong as a whole: a handful at most.
+    failures: Vec<String>,
 }
 
 impl<'a> AxisCheck<'a> {
@@ -81,14 +88,19 @@ impl<'a> AxisCheck<'a> {
             jitter_ps: None,
             ripple: None,
             shortest_ideal_ps: f64::INFINITY,
-            failures: Vec::new(),
+            pulse_failures: Vec::new(),
             omitted: 0,
+            failures: Vec::new(),
         }
     }
 
     fn fail(&mut self, what: &str) {
-        if self.failures.len() < SPELLED_OUT {
-            self.failures.push(format!("axis {}: {what}", self.setup.name));
+        self.failures.push(format!("axis {}: {what}", self.setup.name));
+    }
+
+    fn fail_pulse(&mut self, what: &str) {
+        if self.pulse_failures.len() < SPELLED_OUT {
+            self.pulse_failures.push(format!("axis {}: {what}", self.setup.name));
         } else {
             self.omitted += 1;
         }
@@ -125,7 +137,7 @@ impl<'a> AxisCheck<'a> {
                 k if self.next[0].is_none() => format!("after pulse {k}, the last"),
                 k => format!("after pulse {k}"),
             };
-            self.fail(&format!("one pulse too many at {}, {after}", moment(change.ps)));
+            self.fail_pulse(&format!("one pulse too many at {}, {after}", moment(change.ps)));
             return;
         }
         while self.is_missing(change.ps, origin_ps, sure) {
@@ -135,7 +147,7 @@ impl<'a> AxisCheck<'a> {
         if crossing.backward != backward {
             self.wrong_direction += 1;
             let way = |back| if back { "backward" } else { "forward" };
-            self.fail(&format!(
+            self.fail_pulse(&format!(
                 "pulse {} at {} goes {}, the profile {}",
                 self.number,
                 moment(change.ps),
@@ -184,8 +196,20 @@ impl<'a> AxisCheck<'a> {
     fn miss(&mut self, origin_ps: i64) {
         if let Some(crossing) = self.next[0] {
             let due = due_ps(origin_ps, &crossing, tick_ps(&self.timebase));
-            self.fail(&format!("pulse {} is missing, due at {}", self.number, moment(due)));
+            self.fail_pulse(&format!("pulse {} is missing, due at {}", self.number, moment(due)));
             self.advance();
+        }
+    }
+
+    /// The capture is over, the profile is not.
+    fn miss_rest(&mut self, origin_ps: i64) {
+        match self.next {
+            [Some(first), Some(_)] => {
+                let due = due_ps(origin_ps, &first, tick_ps(&self.timebase));
+                let number = self.number;
+                self.fail_pulse(&format!("pulse {number} and all behind it are missing, due from {}", moment(due)));
+            }
+            _ => self.miss(origin_ps),
         }
     }
 
@@ -196,9 +220,9 @@ impl<'a> AxisCheck<'a> {
         if let Some(last) = self.last.filter(|last| last.backward == backward) {
             let since = ps.saturating_sub(last.ps) as f64;
             let jitter = (lateness_ps - last.lateness_ps).abs();
-            self.jitter_ps = self.jitter_ps.max(Some(jitter));
+            self.jitter_ps = greater(self.jitter_ps, jitter);
             if last.crossing.start_tick == crossing.start_tick && since > 0.0 {
-                self.ripple = self.ripple.max(Some(jitter / since));
+                self.ripple = greater(self.ripple, jitter / since);
                 let ideal = (crossing.seconds - last.crossing.seconds) * PS;
                 self.shortest_ideal_ps = self.shortest_ideal_ps.min(ideal);
             }
@@ -216,9 +240,7 @@ impl<'a> AxisCheck<'a> {
         if self.watch.step() {
             self.fail("STEP is still high when the capture ends");
         }
-        while self.next[0].is_some() {
-            self.miss(origin_ps.saturating_add(shift_ps));
-        }
+        self.miss_rest(origin_ps.saturating_add(shift_ps));
         let found = self.watch.pulses();
         if found != self.setup.expected_pulses {
             self.fail(&format!("{found} pulses, {} expected", self.setup.expected_pulses));
@@ -236,6 +258,7 @@ impl<'a> AxisCheck<'a> {
         let [high_required_ns, low_required_ns, setup_required_ns, hold_required_ns] =
             self.setup.pins_ns.map(|ns| ns as f64);
         let errors = self.errors.shifted(-(shift_ps as f64));
+        self.failures.append(&mut self.pulse_failures);
         AxisReport {
             axis: self.setup.name.to_owned(),
             passed: self.failures.is_empty(),

@@ -47,12 +47,48 @@ pub(crate) fn curvature_ps(crossing: &Crossing, timebase: &Timebase) -> f64 {
 }
 
 /// A time of the capture for a sentence.
-pub(crate) fn moment(ps: impl TryInto<i128>) -> String {
-    let ps = ps.try_into().unwrap_or(0) as f64;
+pub(crate) fn moment(ps: impl Into<i128>) -> String {
+    let ps = ps.into() as f64;
     match ps.abs() {
         small if small < 1e6 => format!("{:.3} ns", ps / 1e3),
         small if small < 1e9 => format!("{:.6} us", ps / 1e6),
         small if small < 1e12 => format!("{:.9} ms", ps / 1e9),
         _ => format!("{:.9} s", ps / 1e12),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crossing(start_tick: u64, seconds: f64, speed: f64, acceleration: f64) -> Crossing {
+        Crossing { start_tick, seconds, backward: false, speed, acceleration }
+    }
+
+    #[test]
+    fn a_picosecond_counts_after_an_hour() {
+        let (tick, hour) = (1_000_000_u64, 3_600_000_000_u64);
+        for late in [-1_i64, 0, 1, 12_345] {
+            let rise = (hour * tick + 123_456_789).strict_add_signed(late) + 7;
+            let found = lateness_ps(rise, 7, &crossing(hour, 123.456_789e-6, 1.0, 0.0), tick);
+            assert!((found - late as f64).abs() < 1e-6, "{found}");
+        }
+        assert_eq!(due_ps(-7, &crossing(hour, 0.5, 1.0, 0.0), tick), 3_600_500_000_000_000 - 7);
+    }
+
+    #[test]
+    fn the_curvature_never_leaves_its_tick() {
+        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+        let cases = [(100.0, 8e6, 1e4), (0.0, 1.0, 1e6), (0.0, 0.0, 1e6), (10.0, 0.0, 0.0)];
+        for (speed, acceleration, ps) in cases {
+            let found = curvature_ps(&crossing(0, 0.0, speed, acceleration), &timebase);
+            assert!((found - ps).abs() < 1e-6, "{found} {ps}");
+        }
+    }
+
+    #[test]
+    fn moments_read_well() {
+        let texts = [12_345, 12_345_678, 12_345_678_901, 1_234_567_890_123].map(|ps: u64| moment(ps));
+        assert_eq!(texts, ["12.345 ns", "12.345678 us", "12.345678901 ms", "1.234567890 s"]);
     }
 }

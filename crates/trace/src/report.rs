@@ -104,29 +104,31 @@ impl Report {
 }
 
 /// Two columns that belong together, as one cell.
-fn against(found: impl fmt::Display, expected: impl fmt::Display + PartialEq) -> String {
+fn against(found: &impl fmt::Display, expected: &impl fmt::Display) -> String {
     format!("{found}/{expected}")
 }
 
+/// A tenth of a ns is shown; adding zero makes minus zero plus.
 fn figure(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), |x| format!("{x:.1}"))
+    value.map_or_else(|| "-".to_owned(), |x| format!("{:.1}", (x * 10.0).round() / 10.0 + 0.0))
 }
 
 /// A minimum beside what the driver asks for; the latter is whole ns.
 fn minimum(found: Option<f64>, required: f64) -> String {
-    against(found.map_or_else(|| "-".to_owned(), |ns| format!("{ns:.0}")), format!("{required:.0}"))
+    let found = found.map_or_else(|| "-".to_owned(), |ns| format!("{ns:.0}"));
+    against(&found, &required)
 }
 
 impl AxisReport {
     fn cells(&self) -> [String; 12] {
         [
             self.axis.clone(),
-            against(self.pulses_found, self.pulses_expected),
-            against(self.position_found, self.position_expected),
+            against(&self.pulses_found, &self.pulses_expected),
+            against(&self.position_found, &self.position_expected),
             figure(self.error_min_ns),
             figure(self.error_max_ns),
             figure(self.error_rms_ns),
-            format!("{:.1}", self.error_bound_ns),
+            figure(Some(self.error_bound_ns)),
             minimum(self.high_min_ns, self.high_required_ns),
             minimum(self.low_min_ns, self.low_required_ns),
             minimum(self.setup_min_ns, self.setup_required_ns),

@@ -72,7 +72,7 @@ fn sorted(error: io::Error, line: u64, missing: &'static str) -> ReadError {
         return ReadError::Truncated { line, missing };
     }
     match error.get_ref().and_then(|inner| inner.downcast_ref::<ParseError>()) {
-        Some(parse) => ReadError::Syntax { line: parse.line(), message: format!("{:?}", parse.kind()) },
+        Some(parse) => ReadError::Syntax { line: parse.line(), message: parse.kind().to_string() },
         None => ReadError::Io(error),
     }
 }
@@ -90,13 +90,14 @@ impl<R: BufRead> VcdReader<R> {
         let mut unit = None;
         let mut own = None;
         loop {
+            let command = parser.next();
             let line = parser.line();
-            let Some(command) = parser.next() else {
+            let Some(command) = command else {
                 return Err(ReadError::Truncated { line, missing: MISSING });
             };
             match command.map_err(|error| sorted(error, line, MISSING))? {
                 Command::Enddefinitions => break,
-                Command::Comment(text) => own = own.or_else(|| text.parse().ok()),
+                Command::Comment(text) => own = own.or_else(|| OwnCapture::from_comment(&text)),
                 Command::Timescale(quantity, scale) => unit = Some(Unit::new(quantity, scale)),
                 Command::ScopeDef(_, name) => {
                     scopes.push(name);
@@ -142,8 +143,9 @@ impl<R: BufRead> VcdReader<R> {
         let mut time = None;
         let mut whole = self.own.is_none();
         loop {
+            let command = self.parser.next();
             let line = self.parser.line();
-            let Some(command) = self.parser.next() else {
+            let Some(command) = command else {
                 if !whole {
                     let missing = "the last line of a carrystep capture is missing";
                     return Err(ReadError::Truncated { line, missing }.into());

@@ -247,9 +247,9 @@ fn vector<W: Write>(out: &mut vcd::Writer<W>, id: IdCode, value: i64, bits: u32)
     out.change_vector(id, (0..shown).rev().map(|bit| Value::from(raw >> bit & 1 == 1)))
 }
 
-/// To nine digits behind the point: VCD readers take numbers of 32 characters at most.
+/// To six digits behind the point: files stay small, and VCD readers take 32 characters at most.
 fn real<W: Write>(out: &mut vcd::Writer<W>, id: IdCode, value: f64) -> io::Result<()> {
-    const DIGITS: f64 = 1e9;
+    const DIGITS: f64 = 1e6;
     let short = (value * DIGITS).round() / DIGITS;
     // no minus zero, nothing that is no number
     out.change_real(id, if short.is_finite() && short != 0.0 { short } else { 0.0 })

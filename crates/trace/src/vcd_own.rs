@@ -2,7 +2,6 @@
 
 use carrystep_spec::Timebase;
 use std::fmt;
-use std::str::FromStr;
 
 /// The last comment of a capture of our own; without it the file was cut off.
 pub(crate) const END: &str = "carrystep end";
@@ -30,31 +29,21 @@ impl fmt::Display for OwnCapture {
     }
 }
 
-/// The comment is not one of ours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct NotOwn;
-
-impl FromStr for OwnCapture {
-    type Err = NotOwn;
-
-    fn from_str(comment: &str) -> Result<Self, NotOwn> {
+impl OwnCapture {
+    /// What a comment says; `None` where it is not one of ours.
+    pub fn from_comment(comment: &str) -> Option<Self> {
         let mut words = comment.split_whitespace();
-        if words.next() != Some("carrystep") {
-            return Err(NotOwn);
-        }
+        words.next().filter(|&first| first == "carrystep")?;
         let mut field = |key: &str| {
             let (name, value) = words.next()?.split_once('=')?;
-            (name == key).then(|| value.to_owned())
+            (name == key).then_some(value)
         };
-        let mut parse = || {
-            let origin_ps = field("origin_ps")?.parse().ok()?;
-            let clock_hz = field("clock_hz")?.parse().ok()?;
-            let tick_ns = field("tick_ns")?.parse().ok()?;
-            let phases = field("phases")?.parse().ok()?;
-            let timebase = Timebase::new(clock_hz, tick_ns, phases).ok()?;
-            Some(Self { origin_ps, timebase })
-        };
-        parse().ok_or(NotOwn)
+        let origin_ps = field("origin_ps")?.parse().ok()?;
+        let clock_hz = field("clock_hz")?.parse().ok()?;
+        let tick_ns = field("tick_ns")?.parse().ok()?;
+        let phases = field("phases")?.parse().ok()?;
+        let timebase = Timebase::new(clock_hz, tick_ns, phases).ok()?;
+        Some(Self { origin_ps, timebase })
     }
 }
 
@@ -65,9 +54,9 @@ mod tests {
     #[test]
     fn the_comment_reads_back() {
         let own = OwnCapture { origin_ps: -5, timebase: Timebase::new(48_000_000, 1000, 16).unwrap() };
-        assert_eq!(own.to_string().parse(), Ok(own));
+        assert_eq!(OwnCapture::from_comment(&own.to_string()), Some(own));
         for foreign in ["", "carrystep", "carrystep end", "carrystep origin_ps=1", "made by carrystep origin_ps=1"] {
-            assert_eq!(foreign.parse::<OwnCapture>(), Err(NotOwn));
+            assert_eq!(OwnCapture::from_comment(foreign), None);
         }
     }
 }

@@ -10,6 +10,8 @@ use std::fmt::Display;
 
 type Area<'b> = DrawingArea<SVGBackend<'b>, Shift>;
 
+/// Size of a panel in pixels: one alone, and one of several.
+const ALONE: (u32, u32) = (960, 560);
 const PANEL: (u32, u32) = (560, 400);
 const HEAD: u32 = 64;
 const FONT: &str = "sans-serif";
@@ -52,7 +54,8 @@ pub(super) fn svg(plot: &Plot<'_>, report: &Report) -> Result<String, TraceError
         _ => 3,
     };
     let rows = count.div_ceil(columns);
-    let size = (PANEL.0 * columns as u32, PANEL.1 * rows as u32 + HEAD);
+    let (width, height) = if count == 1 { ALONE } else { PANEL };
+    let size = (width * columns as u32, height * rows as u32 + HEAD);
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
@@ -120,7 +123,11 @@ fn panel(
 fn summary(axis: &AxisReport) -> String {
     let pulses = format!("{} of {} pulses", axis.pulses_found, axis.pulses_expected);
     match (axis.error_min_ns, axis.error_max_ns) {
-        (Some(least), Some(greatest)) => format!("{pulses}, error {least:.1} to {greatest:.1} ns"),
+        // adding zero makes minus zero plus
+        (Some(least), Some(greatest)) => {
+            let [least, greatest] = [least, greatest].map(|ns| (ns * 10.0).round() / 10.0 + 0.0);
+            format!("{pulses}, error {least:.1} to {greatest:.1} ns")
+        }
         _ => pulses,
     }
 }
@@ -185,6 +192,7 @@ fn error(
         .configure_mesh()
         .x_labels(7)
         .y_labels(5)
+        .x_label_formatter(&|t| thousands(*t))
         .y_label_formatter(&|v| thousands(*v))
         .x_desc(format!("time, {}", clock.unit))
         .y_desc("error, ns")

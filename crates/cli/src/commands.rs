@@ -1,0 +1,7 @@
+//! One file a subcommand.
+
+pub mod check;
+pub mod demo;
+pub mod plan;
+pub mod simulate;
+pub mod verilog;

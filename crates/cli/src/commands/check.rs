@@ -1,0 +1,59 @@
+//! `carrystep check`: any VCD against a move file.
+
+use crate::arguments::Check;
+use crate::failure::{Failure, refused};
+use crate::{job, output};
+use carrystep_plan::plan;
+use carrystep_spec::{InputError, MoveFile};
+use carrystep_trace::{Checker, Origin, Report, SignalMap, TraceError, VcdReader};
+use serde::Serialize;
+use std::fs::File;
+use std::io::BufReader;
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Checked<'a> {
+    passed: bool,
+    capture: &'a std::path::Path,
+    check: &'a Report,
+}
+
+/// Checks a capture.
+pub fn run(arguments: &Check) -> Result<(), Failure> {
+    let file = MoveFile::load(&arguments.file)?;
+    let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
+    let timelines = plan.timelines();
+    let report = read(arguments, &file, &plan, &timelines)?;
+    if arguments.json {
+        output::print_json(&Checked { passed: report.passed(), capture: &arguments.capture, check: &report })?;
+    } else {
+        output::print(&report.to_string())?;
+    }
+    if report.passed() { Ok(()) } else { Err(Failure::Check) }
+}
+
+fn read(
+    arguments: &Check,
+    file: &MoveFile,
+    plan: &carrystep_plan::Plan,
+    timelines: &[carrystep_profile::Timeline],
+) -> Result<Report, Failure> {
+    let unusable = |error: String| Failure::Input(InputError::new(format!("{}: {error}", arguments.capture.display())));
+    let capture = File::open(&arguments.capture).map_err(|error| unusable(error.to_string()))?;
+    let map = SignalMap::parse(&arguments.map).map_err(|error| Failure::Input(InputError::new(error.to_string())))?;
+    let names: Vec<&str> = file.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+    let reader = VcdReader::new(BufReader::new(capture), &names, &map).map_err(|error| unusable(error.to_string()))?;
+    let origin = match (arguments.origin_ps, reader.own()) {
+        (Some(ps), _) => Origin::Fixed { ps },
+        (None, Some(own)) => Origin::Known { ps: own.origin_ps },
+        (None, None) => Origin::Midpoint,
+    };
+    let mut setup = job::check_setup(file, plan, timelines, origin);
+    setup.slack_ps = arguments.slack_ns.saturating_mul(1000);
+    let mut checker = Checker::new(setup);
+    reader.play(&mut checker).map_err(|error| match error {
+        TraceError::Read(error) => unusable(error.to_string()),
+        other => Failure::Run(other.to_string()),
+    })?;
+    Ok(checker.finish())
+}

@@ -1,0 +1,48 @@
+//! `carrystep demo`: the main job on the shipped machine, into one folder.
+
+use crate::arguments::Demo;
+use crate::failure::{Failure, refused};
+use crate::job::{self, Done, Wanted};
+use crate::output::{self, write_file};
+use carrystep_plan::plan;
+use carrystep_spec::{Machine, MoveFile};
+use std::path::Path;
+
+/// The shipped machine's file name.
+pub const MACHINE_FILE: &str = "six-axis.toml";
+const MACHINE: &str = include_str!("../../../../sim/six-axis.toml");
+const MOVES: &str = include_str!("../../../../sim/demo.toml");
+
+/// The shipped machine.
+pub fn machine() -> Result<Machine, Failure> {
+    let source = carrystep_spec::Source { path: MACHINE_FILE.into(), text: MACHINE.into() };
+    Ok(Machine::from_source(&source)?)
+}
+
+/// Plans, exports, simulates, checks, writes and prints.
+pub fn run(arguments: &Demo) -> Result<(), Failure> {
+    let out = |name: &str| arguments.out.join(name);
+    write_file(&out(MACHINE_FILE), MACHINE)?;
+    write_file(&out("demo.toml"), MOVES)?;
+    let file = MoveFile::load(&out("demo.toml"))?;
+    let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
+    let verilog = carrystep_export::write_core(&arguments.out, &plan.build, MACHINE_FILE)
+        .map_err(|error| Failure::Run(error.to_string()))?;
+    let wanted = Wanted {
+        vcd: Some(out("demo.vcd")),
+        save: Some(out("demo.gtkw")),
+        csv: Some(out("demo.csv")),
+        plot: Some(out("demo.svg")),
+    };
+    let mut done = job::run(&file, &plan, arguments.level, &wanted)?;
+    done.files.splice(0..0, verilog);
+    print(&done, arguments.json, &arguments.out)?;
+    done.verdict()
+}
+
+fn print(done: &Done, json: bool, out: &Path) -> Result<(), Failure> {
+    if json {
+        return output::print_json(done);
+    }
+    output::print(&format!("{done}look: gtkwave {}\n", out.join("demo.gtkw").display()))
+}

@@ -1,0 +1,124 @@
+//! `carrystep plan`: the integer segments of a move file, or why there are none.
+
+use crate::arguments::Plan as Arguments;
+use crate::failure::{Failure, refused};
+use crate::output;
+use crate::table::{self, Limits};
+use carrystep_plan::{Plan, PlannedMove, plan};
+use carrystep_spec::{MoveFile, Segment};
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Planned<'a> {
+    passed: bool,
+    tick_ns: u64,
+    limits: Limits,
+    moves: Vec<MoveJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct MoveJson<'a> {
+    start_tick: u64,
+    rest_ticks: u64,
+    ticks: u64,
+    seconds: f64,
+    axes: Vec<AxisJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct AxisJson<'a> {
+    axis: &'a str,
+    shape: &'a str,
+    steps: i64,
+    /// Exact target less rounded target so far, steps.
+    rounding_steps: f64,
+    segments: Vec<SegmentJson>,
+}
+
+/// Numbers of 64 bits as strings: many JSON readers keep only 53.
+#[derive(Serialize)]
+struct SegmentJson {
+    ticks: u32,
+    v: String,
+    a: String,
+    j: String,
+    last: bool,
+}
+
+/// Plans a move file and shows the plan.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let file = MoveFile::load(&arguments.file)?;
+    let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
+    if arguments.json {
+        return output::print_json(&json(&file, &plan));
+    }
+    output::print(&text(&file, &plan, arguments.segments))
+}
+
+fn json<'a>(file: &'a MoveFile, plan: &'a Plan) -> Planned<'a> {
+    let segment = |s: &Segment| SegmentJson {
+        ticks: s.ticks,
+        v: s.v.to_string(),
+        a: s.a.to_string(),
+        j: s.j.to_string(),
+        last: s.last,
+    };
+    let moves = plan.moves.iter().zip(&file.moves).map(|(planned, asked)| MoveJson {
+        start_tick: planned.start_tick,
+        rest_ticks: planned.rest_ticks,
+        ticks: planned.ticks,
+        seconds: planned.seconds,
+        axes: (planned.axes.iter().zip(&file.machine.axes).zip(&asked.rounding))
+            .map(|((planned, axis), &rounding_steps)| AxisJson {
+                axis: &axis.name,
+                shape: planned.shape,
+                steps: planned.steps,
+                rounding_steps,
+                segments: planned.segments.iter().map(segment).collect(),
+            })
+            .collect(),
+    });
+    Planned {
+        passed: true,
+        tick_ns: plan.build.timebase.tick_ns(),
+        limits: table::limits(file, plan),
+        moves: moves.collect(),
+    }
+}
+
+fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
+    let mut text = String::new();
+    for (index, (planned, asked)) in plan.moves.iter().zip(&file.moves).enumerate() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}", heading(index + 1, planned, &asked.profile.to_string()));
+        for ((planned, axis), rounding) in planned.axes.iter().zip(&file.machine.axes).zip(&asked.rounding) {
+            let _ = writeln!(
+                text,
+                "  {:<4} {:>10} steps  {:<10} {:>4} segments  {:>9.0} steps/s  {:>11.0} steps/s^2  rounded by {:+.4} steps",
+                axis.name,
+                planned.steps,
+                planned.shape,
+                planned.segments.len(),
+                planned.peaks.steps_per_s(&plan.build.timebase),
+                planned.peaks.steps_per_s2(&plan.build.timebase),
+                -rounding
+            );
+            for Segment { ticks, v, a, j, last } in planned.segments.iter().filter(|_| segments) {
+                let mark = if *last { "  last" } else { "" };
+                let _ = writeln!(text, "       {ticks:>10} ticks  V {v:>20}  A {a:>20}  J {j:>12}{mark}");
+            }
+        }
+    }
+    let _ = writeln!(text, "{}", table::limits(file, plan));
+    text
+}
+
+fn heading(number: usize, planned: &PlannedMove, profile: &str) -> String {
+    let rest = match planned.rest_ticks {
+        0 => String::new(),
+        ticks => format!(" after {ticks} ticks of rest for set-up and hold"),
+    };
+    format!("move {number}: {profile}, {} s, {} ticks{rest}", planned.seconds, planned.ticks)
+}

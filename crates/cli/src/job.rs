@@ -1,0 +1,193 @@
+//! One planned move file through one level: sinks on, run, and what came of it.
+
+use crate::failure::Failure;
+use crate::output::{OutputFile, write_file};
+use crate::progress::Progress;
+use crate::table::{self, Limits};
+use carrystep_levels::pins::PinFeed;
+use carrystep_levels::{Job, Level};
+use carrystep_plan::Plan;
+use carrystep_profile::Timeline;
+use carrystep_spec::MoveFile;
+use carrystep_trace::{
+    AxisSetup, AxisWaves, Checker, CsvWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee, TraceError,
+    VcdWriter, Waves, save_file,
+};
+use serde::Serialize;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// The files that a run is to write.
+#[derive(Debug, Default)]
+pub struct Wanted {
+    pub vcd: Option<PathBuf>,
+    pub save: Option<PathBuf>,
+    pub csv: Option<PathBuf>,
+    pub plot: Option<PathBuf>,
+}
+
+/// What a run came to; `--json` prints it as it is.
+#[derive(Debug, Serialize)]
+pub struct Done {
+    /// Everything below holds.
+    pub passed: bool,
+    /// Where the gateware ran.
+    pub level: &'static str,
+    /// Clock cycles simulated.
+    pub clocks: u64,
+    /// Seconds that the simulation took, sinks included.
+    pub run_s: f64,
+    /// What the gateware latched; "none" if all is well.
+    pub faults: String,
+    /// Position registers at the end, steps.
+    pub positions: Vec<i32>,
+    /// Speeds and accelerations of the plan against the machine's limits.
+    pub limits: Limits,
+    /// The pulses against the profile.
+    pub check: Report,
+    /// What was written.
+    pub files: Vec<PathBuf>,
+}
+
+impl Done {
+    /// Failure where anything does not hold; it has been reported in full.
+    pub fn verdict(&self) -> Result<(), Failure> {
+        if self.passed { Ok(()) } else { Err(Failure::Check) }
+    }
+}
+
+impl fmt::Display for Done {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}\n{}", self.limits, self.check)?;
+        for file in &self.files {
+            writeln!(f, "wrote {}", file.display())?;
+        }
+        let speed = self.clocks as f64 / self.run_s / 1e6;
+        writeln!(f, "{}: {} clocks in {:.2} s ({speed:.1} million/s), faults: {}", self.level, self.clocks, self.run_s, self.faults)?;
+        f.write_str(if self.passed { "ALL HOLDS\n" } else { "FAILED\n" })
+    }
+}
+
+/// What a capture of this plan is checked against.
+pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], origin: Origin) -> Setup<'a> {
+    let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_spec::Axis, &'a Timeline))| {
+        let steps = plan.moves.iter().map(|m| m.axes[i].steps);
+        AxisSetup {
+            name: &axis.name,
+            timeline,
+            pins_ns: axis.pins_ns,
+            expected_pulses: steps.clone().map(i64::unsigned_abs).sum(),
+            expected_position: steps.sum(),
+        }
+    };
+    Setup {
+        timebase: plan.build.timebase,
+        phase: plan.build.phase,
+        axes: file.machine.axes.iter().zip(timelines).enumerate().map(axis).collect(),
+        origin,
+        slack_ps: 0,
+    }
+}
+
+/// Runs a plan at a level, checks every pulse and writes what is wanted.
+pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
+    carrystep_levels::available(level)?;
+    let program = plan.program();
+    let job = Job::new(&plan.build, &program, plan.total_ticks());
+    let timebase = plan.build.timebase;
+    let load = carrystep_levels::origin(&job)?;
+    let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks()).cast_signed();
+    let timelines = plan.timelines();
+
+    let mut checker = Checker::new(check_setup(file, plan, &timelines, Origin::Known { ps: origin_ps }));
+    let mut vcd_file = wanted.vcd.as_deref().map(OutputFile::create).transpose()?;
+    let mut csv_file = wanted.csv.as_deref().map(OutputFile::create).transpose()?;
+    let named = || file.machine.axes.iter().map(|axis| axis.name.as_str()).zip(&timelines);
+    let waves = || Waves {
+        timebase,
+        phase: plan.build.phase,
+        origin_ps,
+        total_ticks: plan.total_ticks(),
+        axes: named()
+            .enumerate()
+            .map(|(i, (name, timeline))| AxisWaves { name, timeline, segments: Box::new(plan.axis_segments(i)) })
+            .collect(),
+    };
+    let mut vcd = vcd_file.as_mut().map(|out| VcdWriter::new(out, waves()));
+    let mut csv = csv_file.as_mut().map(|out| CsvWriter::new(out, &timebase, plan.build.phase, origin_ps, named()));
+    let title = file.source.path.display().to_string();
+    let mut plot = wanted.plot.as_ref().map(|_| {
+        let axes = named().map(|(name, timeline)| PlotAxis { name, timeline }).collect();
+        let (phase, total_ticks) = (plan.build.phase, plan.total_ticks());
+        Plot::new(PlotSetup { title: &title, timebase, phase, origin_ps, total_ticks, axes })
+    });
+
+    let started = Instant::now();
+    let outcome = {
+        let mut tee = Tee::new();
+        tee.add(&mut checker);
+        if let Some(sink) = vcd.as_mut() {
+            tee.add(sink);
+        }
+        if let Some(sink) = csv.as_mut() {
+            tee.add(sink);
+        }
+        if let Some(sink) = plot.as_mut() {
+            tee.add(sink);
+        }
+        let mut feed = PinFeed::new(timebase, file.machine.axes.len(), &mut tee);
+        let mut progress = Progress::new(level.name(), plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
+        let outcome = carrystep_levels::run(level, &job, &mut |cycle, outputs| {
+            progress.at(cycle);
+            feed.observe(cycle, outputs);
+        })?;
+        feed.end(outcome.clocks).map_err(sink_failed)?;
+        outcome
+    };
+    let run_s = started.elapsed().as_secs_f64();
+    drop((vcd, csv));
+
+    let check = checker.finish();
+    let mut files = Vec::new();
+    files.extend(vcd_file.map(OutputFile::keep).transpose()?);
+    if let (Some(save), Some(vcd)) = (&wanted.save, &wanted.vcd) {
+        let names: Vec<&str> = named().map(|(name, _)| name).collect();
+        let text = save_file(&seen_from(save, vcd), &names, timebase.clock_to_ps(outcome.clocks)).map_err(sink_failed)?;
+        write_file(save, &text)?;
+        files.push(save.clone());
+    }
+    files.extend(csv_file.map(OutputFile::keep).transpose()?);
+    if let (Some(path), Some(plot)) = (&wanted.plot, plot) {
+        write_file(path, &plot.svg(&check).map_err(sink_failed)?)?;
+        files.push(path.clone());
+    }
+
+    let limits = table::limits(file, plan);
+    let positions: Vec<i32> = outcome.last.position[..file.machine.axes.len()].to_vec();
+    let faults = outcome.last.faults;
+    let landed = positions.iter().zip(&check.axes).all(|(&found, axis)| i64::from(found) == axis.position_expected);
+    Ok(Done {
+        passed: check.passed() && limits.landed() && !faults.any() && landed,
+        level: level.name(),
+        clocks: outcome.clocks,
+        run_s,
+        faults: faults.to_string(),
+        positions,
+        limits,
+        check,
+        files,
+    })
+}
+
+fn sink_failed(error: TraceError) -> Failure {
+    Failure::Input(carrystep_spec::InputError::new(error.to_string()))
+}
+
+/// The path of the waveform as GTKWave sees it from the save file's folder.
+fn seen_from(save: &Path, vcd: &Path) -> String {
+    let beside = save.parent() == vcd.parent();
+    let absolute = std::path::absolute(vcd).unwrap_or_else(|_| vcd.to_owned());
+    let name = vcd.file_name().filter(|_| beside).map_or(absolute, PathBuf::from);
+    name.display().to_string()
+}

@@ -1,0 +1,153 @@
+//! The six-axis core as one file: header, then every module once, children first.
+
+use crate::ExportError;
+use crate::module::module_text;
+use crate::names::split_index;
+use crate::netlist::{self, Module};
+use carrystep_hdl::{HdlError, SixAxis};
+use carrystep_spec::{Build, StartPhase};
+use rust_hdl::prelude::{Block, check_all};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Name of the core's top module and of its files.
+pub const CORE_NAME: &str = "carrystep_six_axis";
+
+/// Verilator's waivers for the core, each with its reason.
+pub const CORE_WAIVERS: &str = include_str!("carrystep_six_axis.vlt");
+
+/// The workspace pins it.
+const RUST_HDL: &str = "0.46.0";
+
+/// What each module is for, in a line.
+const PURPOSES: [(&str, &str); 6] = [
+    ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
+    ("carrystep_sequencer", "The running and the waiting segment of an axis."),
+    ("carrystep_step_edge", "When in its tick a step is due: bisection, then the request to the shaper."),
+    ("carrystep_axis", "One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched."),
+    ("carrystep_shaper", "STEP and DIR with the width, gap, set-up and hold that the driver asks for."),
+    (CORE_NAME, "Six axes on one tick, the door for segments and starts, and the freeze."),
+];
+
+/// The core of this build as Verilog-2005, top module [`CORE_NAME`]; `description` names what the build was
+/// made from, one line. The same build gives the same text.
+///
+/// # Errors
+/// [`ExportError`] where the build cannot be made.
+pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
+    let mut core = SixAxis::new(build)?;
+    core.connect_all();
+    check_all(&core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
+    let mut top = netlist::read(&core)?;
+    top.instance = "six_axis".into();
+    let mut library = Library { build, modules: Vec::new() };
+    library.add(&top)?;
+    let mut text = header(build, description);
+    for (name, module) in &library.modules {
+        let purpose = PURPOSES.iter().find(|(kind, _)| name.starts_with(kind)).map_or("", |(_, purpose)| purpose);
+        text.push_str(&format!("\n// {purpose}\n{module}"));
+    }
+    text.push_str("\n`default_nettype wire\n");
+    Ok(text)
+}
+
+/// Writes the Verilog and its waivers into `dir`; each file appears whole or not at all.
+///
+/// # Errors
+/// [`ExportError`] where the build cannot be made or a file cannot be written.
+pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<PathBuf>, ExportError> {
+    let files = [("v", six_axis_verilog(build, description)?), ("vlt", CORE_WAIVERS.to_owned())];
+    let write = |path: &Path, text: &str| {
+        std::fs::create_dir_all(dir)?;
+        let mut file = new_file(dir)?;
+        file.write_all(text.as_bytes())?;
+        file.persist(path)?;
+        Ok(())
+    };
+    files
+        .into_iter()
+        .map(|(extension, text)| {
+            let path = dir.join(CORE_NAME).with_extension(extension);
+            write(&path, &text).map_err(|source| ExportError::Io { path: path.clone(), source })?;
+            Ok(path)
+        })
+        .collect()
+}
+
+/// A file without a name yet, with the permissions of any other new file (a temporary one is its owner's only).
+fn new_file(dir: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(dir)
+}
+
+/// The modules so far, children first.
+struct Library<'a> {
+    build: &'a Build,
+    modules: Vec<(String, String)>,
+}
+
+impl Library<'_> {
+    /// Adds a module and its children; the module's name.
+    fn add(&mut self, module: &Module) -> Result<String, ExportError> {
+        let kinds = module.children.iter().map(|child| self.add(child)).collect::<Result<Vec<_>, _>>()?;
+        let name = self.name(&module.instance);
+        let text = module_text(module, &name, &kinds)?;
+        match self.modules.iter().find(|(known, _)| *known == name) {
+            None => self.modules.push((name.clone(), text)),
+            Some((_, known)) if *known == text => {}
+            Some(_) => return Err(ExportError::SameName(name)),
+        }
+        Ok(name)
+    }
+
+    /// Instances of an array are one module, but for shapers, which are named by their timing.
+    fn name(&self, instance: &str) -> String {
+        let (base, index) = split_index(instance);
+        match index.and_then(|index| self.build.pins.get(index)) {
+            Some(pins) if base == "shaper" => {
+                format!("carrystep_shaper_w{}_s{}_d{}_h{}", pins.width, pins.gap, pins.setup, pins.hold)
+            }
+            _ => format!("carrystep_{base}"),
+        }
+    }
+}
+
+fn header(build: &Build, description: &str) -> String {
+    let time = &build.timebase;
+    let start = match build.phase {
+        StartPhase::Half => "half a step",
+        StartPhase::Zero => "0",
+    };
+    let description = description.replace(['\n', '\r'], " ");
+    let mut text = format!(
+        "\
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// {CORE_NAME}: step and direction for six axes. Generated: change the generator, not this file.
+//
+// Made from    {description}
+// Made by      carrystep-export {version}, with Rust-HDL {RUST_HDL}
+// Clock        {clock} Hz
+// Tick         {tick} ns, {clocks} clocks in {phases} phases
+// Latency      {latency} clocks from the load of a move to the edge of its tick 1, phase 0
+// P starts at  {start}
+// Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
+",
+        version = env!("CARGO_PKG_VERSION"),
+        clock = time.clock_hz(),
+        tick = time.tick_ns(),
+        clocks = time.clocks_per_tick(),
+        phases = time.phases(),
+        latency = time.latency_clocks(),
+    );
+    for (axis, pins) in build.pins.iter().enumerate() {
+        text.push_str(&format!(
+            "//   axis {axis}     W {}, S {}, D {}, H {}\n",
+            pins.width, pins.gap, pins.setup, pins.hold
+        ));
+    }
+    text.push_str("\n`default_nettype none\n");
+    text
+}

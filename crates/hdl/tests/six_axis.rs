@@ -1,0 +1,140 @@
+//! The core from its ports: starts, latency, faults and clear.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+use carrystep_hdl::SixAxisSim;
+use carrystep_spec::ports::{Inputs, Outputs};
+use carrystep_spec::{AXES, Build, PinTiming, Segment, StartPhase, Timebase};
+
+const C: u64 = 48;
+const LAST: Segment = Segment { ticks: 8, v: 1 << 61, a: 0, j: 0, last: true };
+
+struct Bench {
+    core: SixAxisSim,
+    cycle: u64,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+        let pins = [PinTiming { width: 5, gap: 5, setup: 2, hold: 2 }; AXES];
+        let build = Build { timebase, phase: StartPhase::Half, pins };
+        Self { core: SixAxisSim::new(&build).unwrap(), cycle: 0 }
+    }
+
+    fn clock(&mut self, inputs: Inputs) -> Outputs {
+        let outputs = self.core.settle(&inputs);
+        self.core.clock();
+        self.cycle += 1;
+        outputs
+    }
+
+    fn rest(&mut self) -> Outputs {
+        self.clock(Inputs::default())
+    }
+
+    fn segment(&mut self, axis: u8, segment: Segment) -> bool {
+        self.clock(Inputs { segment: Some((axis, segment)), ..Inputs::default() }).seg_ready
+    }
+
+    fn start(&mut self, mask: u8) -> bool {
+        self.clock(Inputs { start: Some(mask), ..Inputs::default() }).start_ready
+    }
+
+    /// The cycle in which this first holds.
+    fn until(&mut self, what: impl Fn(&Outputs) -> bool) -> u64 {
+        for _ in 0..10_000 {
+            if what(&self.rest()) {
+                return self.cycle - 1;
+            }
+        }
+        panic!("it never happens");
+    }
+}
+
+#[test]
+fn the_first_edge_comes_after_the_latency() {
+    let mut bench = Bench::new();
+    assert!(bench.segment(2, LAST) && bench.start(1 << 2));
+    let loaded = bench.until(|o| o.started) + 1;
+    assert_eq!(loaded % C, 0);
+    // From half a step at 1/8 step per tick: tick 4 carries, at its very end.
+    let edge = bench.until(|o| o.step == 1 << 2);
+    assert_eq!(edge, loaded + 3 * C + 15 * 3 + 2 * C + 1);
+    bench.until(|o| o.idle);
+    assert_eq!(bench.rest().position, [0, 0, 1, 0, 0, 0]);
+    assert_eq!(bench.core.fractions(), [1 << 63; AXES]);
+}
+
+#[test]
+fn all_axes_of_a_mask_start_on_one_tick() {
+    let mut bench = Bench::new();
+    for axis in 0..6 {
+        let v = if axis % 2 == 0 { LAST.v } else { -LAST.v };
+        assert!(bench.segment(axis, Segment { v, ..LAST }));
+    }
+    assert!(!bench.segment(3, LAST), "one segment waits, a second is not taken");
+    assert!(bench.start(0x3f));
+    assert!(!bench.start(0), "a start is armed");
+    bench.until(|o| o.step == 0x15);
+    bench.until(|o| o.idle);
+    assert_eq!(bench.rest().position, [1, -1, 1, -1, 1, -1]);
+}
+
+#[test]
+fn a_start_of_an_axis_without_a_segment_breaks_the_protocol() {
+    let mut bench = Bench::new();
+    bench.segment(0, LAST);
+    bench.start(3);
+    let outputs = bench.rest();
+    assert!(outputs.faults.protocol && !outputs.seg_ready && !outputs.start_ready);
+    bench.clock(Inputs { clear: true, ..Inputs::default() });
+    assert!(!bench.rest().faults.any());
+    assert!(bench.segment(0, LAST), "the queue is empty after a clear");
+}
+
+#[test]
+fn a_segment_for_nobody_or_of_no_ticks_breaks_the_protocol() {
+    for (axis, ticks) in [(6, 1), (7, 1), (0, 0)] {
+        let mut bench = Bench::new();
+        assert!(bench.segment(axis, Segment { ticks, ..LAST }));
+        assert!(bench.rest().faults.protocol);
+    }
+}
+
+#[test]
+fn a_dry_queue_freezes_all_axes_and_clear_resumes() {
+    let mut bench = Bench::new();
+    bench.segment(0, Segment { last: false, ..LAST });
+    bench.segment(5, Segment { ticks: 1000, ..LAST });
+    bench.start(0x21);
+    bench.until(|o| o.faults.underrun == 1);
+    for _ in 0..3 * C {
+        bench.rest();
+    }
+    let frozen = bench.rest();
+    assert_eq!(frozen.step, 0);
+    let clear = Inputs { clear: true, ..Inputs::default() };
+    bench.clock(clear);
+    let after = bench.rest();
+    assert!(!after.faults.any() && after.idle);
+    assert_eq!((after.position, after.discarded), (frozen.position, frozen.discarded));
+}
+
+#[test]
+fn a_rate_over_width_and_gap_is_an_overrun() {
+    let mut bench = Bench::new();
+    let timebase = Timebase::new(16_000_000, 1000, 16).unwrap();
+    let pins = [PinTiming { width: 40, gap: 40, setup: 1, hold: 1 }; AXES];
+    bench.core = SixAxisSim::new(&Build { timebase, phase: StartPhase::Half, pins }).unwrap();
+    bench.segment(4, Segment { ticks: 1000, v: i64::MAX, ..LAST });
+    bench.start(1 << 4);
+    bench.until(|o| o.faults.overrun == 1 << 4);
+    bench.until(|o| o.step == 0);
+    // Every carry is a pulse or counted: 1 pulse, and what the shaper and the freeze discarded.
+    for _ in 0..C {
+        bench.rest();
+    }
+    let outputs = bench.rest();
+    assert_eq!(outputs.position[4], 1);
+    assert!(outputs.discarded[4] >= 2);
+}

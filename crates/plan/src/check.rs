@@ -1,0 +1,134 @@
+//! The exact check: nothing leaves the planner that has not passed it.
+
+use crate::edges::travel;
+use crate::error::Broken;
+use crate::limits::ExactLimits;
+use crate::peaks::Peaks;
+use carrystep_spec::Segment;
+
+/// What the segments of one axis must do in one move, the rest before it left out.
+pub(crate) struct Duty {
+    pub backward: bool,
+    /// Signed distance, 2^-64 step.
+    pub distance: i128,
+    pub ticks: u64,
+}
+
+/// Checks every segment at its ends and extrema, in integers.
+///
+/// # Errors
+/// The first rule that is broken.
+pub(crate) fn check(segments: &[Segment], duty: &Duty, limits: &ExactLimits) -> Result<Peaks, Broken> {
+    let mut peaks = [0_i128; 3];
+    let (mut ticks, mut distance) = (0_u64, 0_i128);
+    for segment in segments {
+        for v in speeds(segment) {
+            if (duty.backward && v > 0) || (!duty.backward && v < 0) {
+                return Err(Broken::Sign);
+            }
+            if v.abs() >= 1 << 63 {
+                return Err(Broken::Overspeed);
+            }
+            peaks[0] = peaks[0].max(v.abs());
+        }
+        let (a, j) = (i128::from(segment.a), i128::from(segment.j));
+        let end = a + (i128::from(segment.ticks) - 1) * j;
+        peaks[1] = peaks[1].max(a.abs()).max(end.abs());
+        peaks[2] = peaks[2].max(j.abs());
+        ticks += u64::from(segment.ticks);
+        distance += travel(segment, segment.ticks.into());
+    }
+    if ticks != duty.ticks || distance != duty.distance {
+        return Err(Broken::Landing);
+    }
+    if peaks[0] > limits.speed + limits.tolerance {
+        return Err(Broken::Speed);
+    }
+    if peaks[1] > limits.acceleration + 1 {
+        return Err(Broken::Acceleration);
+    }
+    let start = segments.first().map_or(0, |first| start_speed(first, limits));
+    if start > limits.start_speed + limits.tolerance {
+        return Err(Broken::StartSpeed);
+    }
+    let register = |value: i128| u64::try_from(value).map_err(|_| Broken::Range);
+    Ok(Peaks {
+        speed: register(peaks[0])?,
+        acceleration: register(peaks[1])?,
+        jerk: register(peaks[2])?,
+        start_speed: register(start)?,
+    })
+}
+
+/// V - A/2 + J/3 in the direction of travel, rounded up, at least 0.
+fn start_speed(first: &Segment, limits: &ExactLimits) -> i128 {
+    let sixfold = 6 * i128::from(first.v) - 3 * i128::from(first.a) + 2 * i128::from(first.j);
+    let sixfold = if first.v < 0 { -sixfold } else { sixfold };
+    // A tick of its own says only how far it goes, not how fast it began.
+    let explained = if first.ticks == 1 { 3 * limits.acceleration } else { 0 };
+    (sixfold - explained).max(0).div_ceil_signed(6)
+}
+
+trait DivCeil {
+    fn div_ceil_signed(self, by: i128) -> i128;
+}
+
+impl DivCeil for i128 {
+    fn div_ceil_signed(self, by: i128) -> i128 {
+        -(-self).div_euclid(by)
+    }
+}
+
+/// V in the first and last tick, and on either side of where A changes sign.
+fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
+    let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
+    let last = i128::from(segment.ticks) - 1;
+    let vertex = if j == 0 { 0 } else { (-a).div_euclid(j) };
+    [0, last, vertex, vertex + 1].into_iter().map(move |k| {
+        let k = k.clamp(0, last);
+        v + k * a + k * (k - 1) / 2 * j
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: ExactLimits = ExactLimits { start_speed: 1000, speed: 1_000_000, acceleration: 100, tolerance: 1 };
+
+    fn segment(ticks: u32, v: i64, a: i64, j: i64) -> Segment {
+        Segment { ticks, v, a, j, last: false }
+    }
+
+    fn checked(segment: Segment, backward: bool) -> Result<Peaks, Broken> {
+        let distance = travel(&segment, segment.ticks.into());
+        check(&[segment], &Duty { backward, distance, ticks: segment.ticks.into() }, &LIMITS)
+    }
+
+    #[test]
+    fn a_dip_inside_a_cubic_is_found() {
+        // V = 3, 1, 0, 0, 1, 3: touches zero. One less, and it dips below in the middle only.
+        assert!(checked(segment(6, 3, -2, 1), false).is_ok());
+        assert_eq!(checked(segment(6, 2, -2, 1), false), Err(Broken::Sign));
+        assert_eq!(checked(segment(6, -2, 2, -1), true), Err(Broken::Sign));
+    }
+
+    #[test]
+    fn each_limit_is_exact() {
+        assert!(checked(segment(10, 1050, 100, 0), false).is_ok());
+        assert_eq!(checked(segment(10, 1052, 100, 0), false), Err(Broken::StartSpeed));
+        assert_eq!(checked(segment(10, 1050, 102, 0), false), Err(Broken::Acceleration));
+        assert_eq!(checked(segment(10_001, 1001, 100, 0), false), Err(Broken::Speed));
+        assert!(checked(segment(9_991, 1001, 100, 0), false).is_ok());
+        assert_eq!(checked(segment(10, 1050, 100, 0), false).map(|p| p.start_speed), Ok(1000));
+        assert_eq!(checked(segment(1, 1051, 0, 0), false).map(|p| p.start_speed), Ok(1001));
+    }
+
+    #[test]
+    fn landing_is_exact() {
+        let duty = Duty { backward: false, distance: 5001, ticks: 10 };
+        assert_eq!(check(&[segment(10, 500, 0, 0)], &duty, &LIMITS), Err(Broken::Landing));
+        let duty = Duty { distance: 5000, ..duty };
+        assert!(check(&[segment(10, 500, 0, 0)], &duty, &LIMITS).is_ok());
+    }
+}

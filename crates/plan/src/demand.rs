@@ -1,0 +1,164 @@
+//! How long a move takes, and the profile of each axis in that time.
+
+use crate::error::PlanError;
+use crate::limits::float_limits;
+use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
+use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, rule};
+use carrystep_spec::{Axis, MoveFile, ProfileKind, StartPhase, Timebase};
+use std::sync::Arc;
+
+/// Most ticks of a move: closed forms over it stay well inside i128.
+const MOST_TICKS: u64 = 1 << 50;
+
+/// The time of a move, in ticks and seconds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Clock<F> {
+    /// Whole ticks, the last one perhaps used in part.
+    pub ticks: u64,
+    /// How much of the last tick is used, over 0 and at most 1.
+    pub last: F,
+    /// Seconds.
+    pub seconds: F,
+    /// Seconds in a tick.
+    pub tick: F,
+}
+
+impl<F: Real> Clock<F> {
+    /// Seconds from the start of the move to the start of tick `n`, from 0; the end of the move at most.
+    pub fn at(&self, n: u64) -> F {
+        (float::<F>(n) * self.tick).min(self.seconds)
+    }
+}
+
+/// A whole number as the nearest float.
+pub(crate) fn float<F: Real>(n: u64) -> F {
+    F::from(n).unwrap_or_else(F::nan)
+}
+
+/// The common time of all axes and their profiles.
+pub(crate) fn demand<F: Real>(file: &MoveFile, index: usize) -> Result<(Clock<F>, Vec<SharedProfile<F>>), PlanError> {
+    let timebase = file.machine.timebase;
+    let moved = &file.moves[index];
+    let axes: Vec<(&Axis, F, Limits<F>)> = (file.machine.axes.iter().zip(&moved.steps))
+        .map(|(axis, steps)| (axis, float(steps.unsigned_abs()), float_limits(axis)))
+        .collect();
+    let moving = || axes.iter().filter(|(_, steps, _)| !steps.is_zero());
+
+    let mut least = F::zero();
+    for (axis, steps, limits) in moving() {
+        match least_time(moved.profile, *steps, limits) {
+            Ok(time) => least = least.max(time),
+            Err(refusal) => {
+                return Err(PlanError::Refused { index, axis: axis.name.clone(), refusal, least_time: None });
+            }
+        }
+    }
+    let clock = match &moved.time {
+        Some(time) => given(time, &timebase, file.machine.phase, index)?,
+        None => whole(least, &timebase, index)?,
+    };
+
+    // Where several axes are refused, the slowest one is named: its time is what all can do.
+    let mut worst: Option<(&Axis, Refusal)> = None;
+    let mut profiles: Vec<SharedProfile<F>> = Vec::with_capacity(axes.len());
+    for (axis, steps, limits) in &axes {
+        if steps.is_zero() {
+            profiles.push(Arc::new(Constant::rest(clock.seconds)));
+            continue;
+        }
+        match profile(moved.profile, *steps, clock.seconds, limits) {
+            Ok(profile) => profiles.push(profile),
+            Err(refusal) => {
+                if worst.is_none_or(|(_, other)| other.least_time < refusal.least_time) {
+                    worst = Some((axis, refusal));
+                }
+            }
+        }
+    }
+    match worst {
+        None => Ok((clock, profiles)),
+        Some((axis, refusal)) => {
+            let ticks = whole(least, &timebase, index)?.ticks;
+            let least_time = Some(seconds(ticks, &timebase));
+            Err(PlanError::Refused { index, axis: axis.name.clone(), refusal, least_time })
+        }
+    }
+}
+
+fn least_time<F: Real>(kind: ProfileKind, steps: F, limits: &Limits<F>) -> Result<F, Refusal> {
+    match kind {
+        ProfileKind::Ranade => Ok(rule::ranade_least_time(steps, limits)),
+        ProfileKind::Trapezoid => Ok(rule::trapezoid_least_time(steps, limits)),
+        ProfileKind::Constant => rule::constant_least_time(steps, limits),
+    }
+}
+
+fn profile<F: Real>(kind: ProfileKind, steps: F, time: F, limits: &Limits<F>) -> Result<SharedProfile<F>, Refusal> {
+    Ok(match kind {
+        ProfileKind::Ranade => rule::ranade(steps, time, limits)?,
+        ProfileKind::Trapezoid => Arc::new(rule::trapezoid(steps, time, limits)?),
+        ProfileKind::Constant => Arc::new(rule::constant(steps, time, limits)?),
+    })
+}
+
+fn seconds(ticks: u64, timebase: &Timebase) -> f64 {
+    (u128::from(ticks) * u128::from(timebase.tick_ns())) as f64 / 1e9
+}
+
+/// `least` seconds, rounded up to a whole tick, one at least.
+fn whole<F: Real>(least: F, timebase: &Timebase, index: usize) -> Result<Clock<F>, PlanError> {
+    let tick = F::from(timebase.tick_seconds()).unwrap_or_else(F::nan);
+    let exact = least / tick;
+    let nearest = exact.round();
+    // A time that is whole ticks but for its rounding does not cost another tick.
+    let noise = F::epsilon() * float(8) * exact;
+    let rounded = if (exact - nearest).abs() <= noise { nearest } else { exact.ceil() };
+    let ticks = rounded.to_u64().unwrap_or(u64::MAX).max(1);
+    if ticks > MOST_TICKS {
+        let seconds = least.to_f64().unwrap_or(f64::NAN);
+        return Err(PlanError::TooLong { index, seconds, tick_ns: timebase.tick_ns() });
+    }
+    let seconds = F::from(seconds(ticks, timebase)).unwrap_or_else(F::nan);
+    Ok(Clock { ticks, last: F::one(), seconds, tick })
+}
+
+/// The time that the file gives: ceil(T / h) ticks, exactly.
+fn given<F: Real>(
+    time: &BigDecimal,
+    timebase: &Timebase,
+    phase: StartPhase,
+    index: usize,
+) -> Result<Clock<F>, PlanError> {
+    let tick_ns = timebase.tick_ns();
+    let ns = time * BigDecimal::from(1_000_000_000_u64);
+    let float = |value: &BigDecimal| value.to_f64().and_then(F::from).unwrap_or_else(F::nan);
+    let too_long = || PlanError::TooLong { index, seconds: time.to_f64().unwrap_or(f64::NAN), tick_ns };
+    let tick = BigDecimal::from(tick_ns);
+    // The quotient may be rounded; the remainder is exact, and puts it right.
+    let mut full = (&ns / &tick).with_scale_round(0, RoundingMode::Floor);
+    let mut rest = &ns - &full * &tick;
+    if rest < BigDecimal::zero() {
+        full -= 1;
+        rest += &tick;
+    } else if rest >= tick {
+        full += 1;
+        rest -= &tick;
+    }
+    let full = full.to_u64().filter(|&n| n < MOST_TICKS).ok_or_else(too_long)?;
+    let partial = !rest.is_zero();
+    let ticks = full + u64::from(partial);
+    if partial && phase == StartPhase::Zero {
+        return Err(PlanError::NotWholeTicks {
+            index,
+            seconds: time.to_f64().unwrap_or(f64::NAN),
+            tick_ns,
+            rounded: seconds(ticks, timebase),
+        });
+    }
+    Ok(Clock {
+        ticks,
+        last: if partial { float(&rest) / float(&tick) } else { F::one() },
+        seconds: float(time),
+        tick: F::from(timebase.tick_seconds()).unwrap_or_else(F::nan),
+    })
+}

@@ -1,0 +1,75 @@
+//! When the pins move, exactly, from the integers of a plan.
+
+use carrystep_spec::{Segment, Timebase, fixed::ONE_STEP};
+
+/// Units travelled in the first `n` ticks of a segment.
+pub(crate) fn travel(segment: &Segment, n: i128) -> i128 {
+    let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
+    let pairs = n * (n - 1) / 2;
+    // n(n-1)(n-2)/6 is whole, but n(n-1)/2 (n-2) need not fit where J is 0.
+    let triples = if j == 0 { 0 } else { n * (n - 1) * (n - 2) / 6 };
+    n * v + pairs * a + triples * j
+}
+
+/// V in tick `k`, from 0, of a segment.
+fn speed(segment: &Segment, k: i128) -> i128 {
+    let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
+    v + k * a + k * (k - 1) / 2 * j
+}
+
+/// The first tick, from 0, in which V is not 0.
+pub(crate) fn first_motion(segments: &[Segment]) -> u64 {
+    let mut before = 0;
+    for segment in segments {
+        let first = [segment.v, segment.a, segment.j].iter().position(|&r| r != 0);
+        if let Some(k) = first.and_then(|k| u32::try_from(k).ok()).filter(|&k| k < segment.ticks) {
+            return before + u64::from(k);
+        }
+        before += u64::from(segment.ticks);
+    }
+    before
+}
+
+/// Clocks from the start of the segments to the edge of pulse `k` (from 1), the latency left out.
+///
+/// The segments go one way only, from a `start` value of P. `None`: there is no such pulse.
+pub(crate) fn edge(segments: &[Segment], start: u64, backward: bool, k: u64, timebase: &Timebase) -> Option<i128> {
+    let target = i128::from(k) * ONE_STEP;
+    let passed = |p: i128| if backward { p < ONE_STEP - target } else { p >= target };
+    let mut p = i128::from(start);
+    let mut before = 0_i128;
+    for segment in segments {
+        let ticks = i128::from(segment.ticks);
+        let end = p + travel(segment, ticks);
+        if passed(end) {
+            // Smallest n with the edge at or before the end of tick n.
+            let (mut low, mut high) = (0, ticks);
+            while high - low > 1 {
+                let middle = low + (high - low) / 2;
+                *(if passed(p + travel(segment, middle)) { &mut high } else { &mut low }) = middle;
+            }
+            let old = p + travel(segment, low);
+            let q = phase(old, speed(segment, low), timebase.phase_bits());
+            let clocks = i128::from(timebase.clocks_per_tick());
+            return Some((before + low) * clocks + q * i128::from(timebase.clocks_per_phase()));
+        }
+        p = end;
+        before += ticks;
+    }
+    None
+}
+
+/// The gateware's bisection: top 32 bits of P and V, one halving of V a phase bit.
+fn phase(p: i128, v: i128, bits: u32) -> i128 {
+    let mut p = (p >> 32) & 0xffff_ffff;
+    let v = v >> 32;
+    let mut q = 0;
+    for k in 1..=bits {
+        let t = p + (v >> k);
+        if (0..1 << 32).contains(&t) {
+            p = t;
+            q |= 1 << (bits - k);
+        }
+    }
+    q
+}

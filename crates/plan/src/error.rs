@@ -1,0 +1,106 @@
+//! Why a file cannot be planned.
+
+use carrystep_profile::Refusal;
+use thiserror::Error;
+
+/// A move that cannot be done as asked, and what to do. `index` counts moves from 0, messages from 1.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PlanError {
+    /// A limit of an axis forbids it.
+    #[error("move {}, axis {axis}: {}", index + 1, refused(refusal, *least_time))]
+    Refused {
+        /// Which move.
+        index: usize,
+        /// The axis that needs most time.
+        axis: String,
+        /// Limit, wanted and available value.
+        refusal: Refusal,
+        /// Least time in which all axes can do the move, whole ticks, seconds; `None`: no time would do.
+        least_time: Option<f64>,
+    },
+    /// At phase zero the last pulse is due at the very end, so that a tick must end there.
+    #[error(
+        "move {}: time = {seconds} s is not a whole number of ticks of {tick_ns} ns, which phase = \"zero\" needs; take {rounded} s, or phase = \"half\"",
+        index + 1
+    )]
+    NotWholeTicks {
+        /// Which move.
+        index: usize,
+        /// Time asked for, seconds.
+        seconds: f64,
+        /// Tick, ns.
+        tick_ns: u64,
+        /// The next time that would do, seconds.
+        rounded: f64,
+    },
+    /// More ticks than a plan counts.
+    #[error("move {}: {seconds} s is over 2^50 ticks of {tick_ns} ns; raise the limits that make it slow, or split it", index + 1)]
+    TooLong {
+        /// Which move.
+        index: usize,
+        /// Its time, seconds.
+        seconds: f64,
+        /// Tick, ns.
+        tick_ns: u64,
+    },
+    /// The integers do not keep a promise: the plan is not given out.
+    #[error("move {}, axis {axis}: the plan breaks its own rule: {broken}; please report this move", index + 1)]
+    Broken {
+        /// Which move.
+        index: usize,
+        /// Which axis.
+        axis: String,
+        /// The rule.
+        broken: Broken,
+    },
+}
+
+/// What the exact check of the integers found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum Broken {
+    /// V has the wrong sign within a move.
+    #[error("the speed changes sign")]
+    Sign,
+    /// V is half a step per tick or more.
+    #[error("half a step per tick is reached")]
+    Overspeed,
+    /// Over `speed_limit`.
+    #[error("speed_limit is passed")]
+    Speed,
+    /// Over `accel_limit`.
+    #[error("accel_limit is passed")]
+    Acceleration,
+    /// Over `start_speed`.
+    #[error("start_speed is passed")]
+    StartSpeed,
+    /// Not the commanded distance, or not the ticks of the move.
+    #[error("it does not land exactly")]
+    Landing,
+    /// A number that should fit does not.
+    #[error("a number is out of range")]
+    Range,
+}
+
+impl PlanError {
+    /// The move that it is about, from 0: [`carrystep_spec::MoveFile::move_error`] shows its place.
+    pub const fn move_index(&self) -> Option<usize> {
+        match self {
+            Self::Refused { index, .. }
+            | Self::NotWholeTicks { index, .. }
+            | Self::TooLong { index, .. }
+            | Self::Broken { index, .. } => Some(*index),
+        }
+    }
+}
+
+fn refused(refusal: &Refusal, least_time: Option<f64>) -> String {
+    let Refusal { limit, wanted, available, .. } = refusal;
+    let unit = limit.unit();
+    match least_time {
+        None => format!("needs a {limit} over {available} {unit}; raise it, or take another profile"),
+        Some(least) if wanted.is_finite() => {
+            format!("needs {wanted:.1} {unit}, over {limit} {available}; at least {least} s would do")
+        }
+        Some(least) => format!("no {unit} would do, {limit} is {available}; at least {least} s would do"),
+    }
+}

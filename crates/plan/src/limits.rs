@@ -1,0 +1,46 @@
+//! The limits of an axis in the gateware's units, exactly, and in the profile's floats.
+
+use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
+use carrystep_profile::{Limits, Real};
+use carrystep_spec::{Axis, Timebase};
+
+/// Limits in 2^-64 step per tick, and per tick^2, rounded down from the file's decimals.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ExactLimits {
+    pub start_speed: i128,
+    pub speed: i128,
+    pub acceleration: i128,
+    /// What speeds may be over for the rounding of floats: 1e-9 of the speed limit in f64.
+    pub tolerance: i128,
+}
+
+impl ExactLimits {
+    /// `None` where a limit is beyond all registers; the machine file's check does not let one pass.
+    pub fn new<F: Real>(axis: &Axis, timebase: &Timebase) -> Option<Self> {
+        let tick = BigDecimal::new(timebase.tick_ns().into(), 9);
+        let speed = units(&axis.speed_limit, &[&tick])?;
+        let relative = F::epsilon().to_f64()? * 64.0 + 1e-9;
+        Some(Self {
+            start_speed: units(&axis.start_speed, &[&tick])?,
+            speed,
+            acceleration: units(&axis.accel_limit, &[&tick, &tick])?,
+            tolerance: (speed as f64 * relative) as i128 + 1,
+        })
+    }
+}
+
+fn units(value: &BigDecimal, ticks: &[&BigDecimal]) -> Option<i128> {
+    let one_step = BigDecimal::from(carrystep_spec::fixed::ONE_STEP);
+    let product = ticks.iter().fold(value * one_step, |product, &tick| product * tick);
+    product.with_scale_round(0, RoundingMode::Down).to_i128()
+}
+
+/// The same limits in the profile's units and floats.
+pub(crate) fn float_limits<F: Real>(axis: &Axis) -> Limits<F> {
+    let float = |value: &BigDecimal| value.to_f64().and_then(F::from).unwrap_or_else(F::nan);
+    Limits {
+        start_speed: float(&axis.start_speed),
+        speed: float(&axis.speed_limit),
+        acceleration: float(&axis.accel_limit),
+    }
+}

@@ -1,0 +1,43 @@
+//! The greatest values that a plan reaches, exactly, in the gateware's units.
+
+use carrystep_spec::Timebase;
+
+/// Greatest values over a move, in magnitude, from the integers of its segments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Peaks {
+    /// Speed V, 2^-64 step per tick.
+    pub speed: u64,
+    /// Acceleration A, 2^-64 step per tick^2.
+    pub acceleration: u64,
+    /// Jerk J, 2^-64 step per tick^3.
+    pub jerk: u64,
+    /// Speed at the very start, V - A/2 + J/3 rounded up, 2^-64 step per tick. Where the first tick is a
+    /// segment of its own: the least start speed from which the acceleration limit reaches its V.
+    pub start_speed: u64,
+}
+
+impl Peaks {
+    /// Greatest speed, steps/s.
+    pub fn steps_per_s(&self, timebase: &Timebase) -> f64 {
+        per_tick(self.speed, timebase, 1)
+    }
+
+    /// Greatest acceleration, steps/s^2.
+    pub fn steps_per_s2(&self, timebase: &Timebase) -> f64 {
+        per_tick(self.acceleration, timebase, 2)
+    }
+
+    /// Greatest jerk, steps/s^3.
+    pub fn steps_per_s3(&self, timebase: &Timebase) -> f64 {
+        per_tick(self.jerk, timebase, 3)
+    }
+
+    /// Start speed, steps/s.
+    pub fn start_steps_per_s(&self, timebase: &Timebase) -> f64 {
+        per_tick(self.start_speed, timebase, 1)
+    }
+}
+
+fn per_tick(units: u64, timebase: &Timebase, power: i32) -> f64 {
+    units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power)
+}

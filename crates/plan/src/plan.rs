@@ -1,0 +1,110 @@
+//! What planning gives: for each move and axis a profile, and the segments that follow it.
+
+use crate::peaks::Peaks;
+use carrystep_profile::{Leg, SharedProfile, Timeline};
+use carrystep_spec::{Build, Command, Program, Segment};
+
+/// All moves of a file, ready for the gateware; origin is the first tick of the first move.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The gateware that it is made for.
+    pub build: Build,
+    /// The moves, back to back.
+    pub moves: Vec<PlannedMove>,
+}
+
+/// One move of all axes.
+#[derive(Debug, Clone)]
+pub struct PlannedMove {
+    /// First tick of the motion, from 0 at the origin: the rest is over.
+    pub start_tick: u64,
+    /// Ticks of rest before it, so that direction set-up and hold fit.
+    pub rest_ticks: u64,
+    /// Ticks of the motion, the rest not counted.
+    pub ticks: u64,
+    /// Seconds of the motion as asked for; not always whole ticks.
+    pub seconds: f64,
+    /// One for each axis of the machine.
+    pub axes: Vec<PlannedAxis>,
+}
+
+/// One move of one axis.
+#[derive(Debug, Clone)]
+pub struct PlannedAxis {
+    /// Steps, either sign.
+    pub steps: i64,
+    /// Its segments, the rest before the motion included; the last one is marked.
+    pub segments: Vec<Segment>,
+    /// The float reference, in the direction of travel.
+    pub profile: SharedProfile,
+    /// What the profile is called: triangle, trapezoid, constant or rest.
+    pub shape: &'static str,
+    /// Greatest speed, acceleration, jerk and start speed, from the integers.
+    pub peaks: Peaks,
+}
+
+impl Plan {
+    /// Ticks from the origin to the end of the last move.
+    pub fn total_ticks(&self) -> u64 {
+        self.moves.last().map_or(0, |last| last.start_tick + last.ticks)
+    }
+
+    /// The segments of one axis, each with its first tick from the origin, ascending.
+    pub fn axis_segments(&self, axis: usize) -> impl Iterator<Item = (u64, Segment)> + '_ {
+        self.moves.iter().flat_map(move |planned| {
+            let segments = planned.axes.get(axis).map_or(&[][..], |a| &a.segments);
+            let mut tick = planned.start_tick - planned.rest_ticks;
+            segments.iter().map(move |&segment| {
+                let start = tick;
+                tick += u64::from(segment.ticks);
+                (start, segment)
+            })
+        })
+    }
+
+    /// What a host sends: every segment in the order in which the axes need them.
+    ///
+    /// With one segment running and one waiting on each axis this order never blocks. A move is
+    /// started while the last segments of the one before still run, so that moves follow back to back.
+    pub fn program(&self) -> Program {
+        let mut program = Program::new();
+        for planned in &self.moves {
+            let begin = planned.start_tick - planned.rest_ticks;
+            let mut due: Vec<(u64, u8, Segment)> = Vec::new();
+            for (axis, planned) in (0_u8..).zip(&planned.axes) {
+                let mut tick = begin;
+                for &segment in &planned.segments {
+                    due.push((tick, axis, segment));
+                    tick += u64::from(segment.ticks);
+                }
+            }
+            due.sort_by_key(|&(tick, axis, _)| (tick, axis));
+            let first_of_each = planned.axes.len().min(due.len());
+            let rest = due.split_off(first_of_each);
+            let send = |(_, axis, segment)| Command::Segment { axis, segment };
+            program.extend(due.into_iter().map(send));
+            program.push(Command::Start { mask: (1 << first_of_each) - 1 });
+            program.extend(rest.into_iter().map(send));
+        }
+        program
+    }
+
+    /// The float reference of each axis over all moves, for the checker and for waveforms.
+    pub fn timelines(&self) -> Vec<Timeline> {
+        let axes = self.moves.first().map_or(0, |first| first.axes.len());
+        let leg = |planned: &PlannedMove, axis: usize| {
+            let moved = planned.axes.get(axis).filter(|a| a.steps != 0)?;
+            Some(Leg {
+                start_tick: planned.start_tick,
+                backward: moved.steps < 0,
+                steps: moved.steps.unsigned_abs(),
+                profile: moved.profile.clone(),
+            })
+        };
+        let timeline = |axis| Timeline {
+            tick_seconds: self.build.timebase.tick_seconds(),
+            legs: self.moves.iter().filter_map(|planned| leg(planned, axis)).collect(),
+        };
+        (0..axes).map(timeline).collect()
+    }
+}

@@ -1,0 +1,1558 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// carrystep_six_axis: step and direction for six axes. Generated: change the generator, not this file.
+//
+// Made from    sim/six-axis.toml
+// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Clock        48000000 Hz
+// Tick         1000 ns, 48 clocks in 16 phases
+// Latency      97 clocks from the load of a move to the edge of its tick 1, phase 0
+// P starts at  half a step
+// Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
+//   axis 0     W 5, S 5, D 1, H 1
+//   axis 1     W 48, S 48, D 10, H 10
+//   axis 2     W 92, S 92, D 32, H 32
+//   axis 3     W 120, S 120, D 240, H 240
+//   axis 4     W 5, S 5, D 1, H 1
+//   axis 5     W 144, S 144, D 72, H 72
+
+`default_nettype none
+
+// The beat: a strobe in the last cycle of each tick, and the phases in between.
+module carrystep_tick (
+    input  wire         clock,
+    output wire         strobe,
+    output wire         phase_start,
+    output wire   [3:0] phase
+);
+    localparam [15:0] ZERO = 16'd0;
+    localparam [15:0] ONE = 16'd1;
+    localparam [15:0] LAST_SUB = 16'd2;
+    localparam [15:0] SUB_BITS = 16'd3;
+    localparam [3:0] FIRST_PHASE = 4'd0;
+    localparam [3:0] ONE_PHASE = 4'd1;
+    localparam [3:0] LAST_PHASE = 4'd15;
+
+    reg [15:0] sub = 16'd0;
+    reg [3:0] phases = 4'd0;
+
+    wire sub_over = sub == LAST_SUB;
+    wire phase_over = phases == LAST_PHASE;
+
+    assign strobe = sub_over & phase_over;
+    assign phase_start = sub == ZERO;
+    assign phase = phases;
+
+    always @(posedge clock) begin
+        sub <= (sub + ONE) & SUB_BITS;
+        if (sub_over) begin
+            sub <= ZERO;
+            phases <= phases + ONE_PHASE;
+            if (phase_over) begin
+                phases <= FIRST_PHASE;
+            end
+        end
+    end
+endmodule
+
+// The running and the waiting segment of an axis.
+module carrystep_sequencer (
+    input  wire         clock,
+    input  wire         strobe,
+    input  wire         frozen,
+    input  wire         stop,
+    input  wire         clear,
+    input  wire         go,
+    input  wire         push,
+    input  wire  [31:0] seg_ticks,
+    input  wire  [63:0] seg_v,
+    input  wire  [63:0] seg_a,
+    input  wire  [63:0] seg_j,
+    input  wire         seg_last,
+    output wire         waiting,
+    output wire         startable,
+    output wire         running,
+    output wire         load,
+    output wire         advance,
+    output wire  [63:0] v,
+    output wire  [63:0] a,
+    output wire  [63:0] j,
+    output wire         underrun
+);
+    localparam [31:0] ONE = 32'd1;
+
+    reg wait_full = 1'b0;
+    reg [31:0] wait_ticks = 32'd0;
+    reg [63:0] wait_v = 64'h0;
+    reg [63:0] wait_a = 64'h0;
+    reg [63:0] wait_j = 64'h0;
+    reg wait_last = 1'b0;
+    reg active = 1'b0;
+    reg [31:0] left = 32'd0;
+    reg last = 1'b0;
+    reg dry = 1'b0;
+
+    wire ending = active & (left == ONE);
+
+    assign waiting = wait_full;
+    assign startable = wait_full & (!active | (ending & last));
+    assign running = active;
+    assign load = strobe & wait_full & ((ending & !last) | (startable & go));
+    assign advance = strobe & active & !ending;
+    assign v = wait_v;
+    assign a = wait_a;
+    assign j = wait_j;
+    assign underrun = dry;
+
+    always @(posedge clock) begin
+        if (push) begin
+            wait_full <= 1'b1;
+            wait_ticks <= seg_ticks;
+            wait_v <= seg_v;
+            wait_a <= seg_a;
+            wait_j <= seg_j;
+            wait_last <= seg_last;
+        end
+        if (load) begin
+            wait_full <= 1'b0;
+            active <= 1'b1;
+            left <= wait_ticks;
+            last <= wait_last;
+        end else if (advance) begin
+            left <= left - ONE;
+        end else if (strobe) begin
+            active <= 1'b0;
+            dry <= dry | (ending & !last);
+        end
+        if (frozen | stop) begin
+            active <= 1'b0;
+        end
+        if (clear) begin
+            wait_full <= 1'b0;
+            dry <= 1'b0;
+        end
+    end
+endmodule
+
+// When in its tick a step is due: bisection, then the request to the shaper.
+module carrystep_step_edge (
+    input  wire         clock,
+    input  wire         strobe,
+    input  wire         phase_start,
+    input  wire   [3:0] phase,
+    input  wire         frozen,
+    input  wire         clear,
+    input  wire         crosses,
+    input  wire         forward,
+    input  wire         backward,
+    input  wire  [31:0] p,
+    input  wire  [31:0] v,
+    output wire         request,
+    output wire         request_back,
+    output wire         want_fwd,
+    output wire         want_back,
+    output wire         in_flight,
+    output wire         crossed,
+    output wire         back,
+    output wire   [3:0] q
+);
+    localparam [31:0] SIGN = 32'h80000000;
+    localparam [31:0] BY_ONE = 32'd1;
+    localparam [3:0] WEIGHT_BY_ONE = 4'd1;
+    localparam [3:0] FIRST_WEIGHT = 4'd8;
+    localparam [3:0] PHASE_ZERO = 4'd0;
+
+    reg tick_crossed = 1'b0;
+    reg tick_back = 1'b0;
+    reg sign_fwd = 1'b0;
+    reg sign_back = 1'b0;
+    reg [31:0] bisect_p = 32'd0;
+    reg [31:0] bisect_v = 32'd0;
+    reg [3:0] bisect_q = 4'd0;
+    reg [3:0] weight = 4'd0;
+    reg emit = 1'b0;
+    reg emit_back = 1'b0;
+    reg [3:0] emit_q = 4'd0;
+    reg dir_fwd = 1'b0;
+    reg dir_back = 1'b0;
+
+    wire [31:0] half = (bisect_v >> BY_ONE) | (bisect_v & SIGN);
+    wire [32:0] trial = {1'b0, bisect_p} + {1'b0, half};
+    wire trial_crosses = trial[32] ^ bisect_v[31];
+
+    assign request = emit & phase_start & (phase == emit_q);
+    assign request_back = emit_back;
+    assign want_fwd = dir_fwd;
+    assign want_back = dir_back;
+    assign in_flight = tick_crossed | emit;
+    assign crossed = tick_crossed;
+    assign back = tick_back;
+    assign q = bisect_q;
+
+    always @(posedge clock) begin
+        if (weight != 4'd0) begin
+            weight <= weight >> WEIGHT_BY_ONE;
+            bisect_v <= half;
+            if (!trial_crosses) begin
+                bisect_p <= trial[31:0];
+                bisect_q <= bisect_q | weight;
+            end
+        end
+        if (strobe) begin
+            emit <= tick_crossed;
+            emit_back <= tick_back;
+            emit_q <= bisect_q;
+            dir_fwd <= sign_fwd;
+            dir_back <= sign_back;
+            tick_crossed <= crosses & !frozen;
+            sign_fwd <= forward & !frozen;
+            sign_back <= backward & !frozen;
+            if (!frozen) begin
+                tick_back <= backward;
+                bisect_p <= p;
+                bisect_v <= v;
+                bisect_q <= PHASE_ZERO;
+                weight <= FIRST_WEIGHT;
+            end
+        end
+        if (clear) begin
+            sign_fwd <= 1'b0;
+            sign_back <= 1'b0;
+            dir_fwd <= 1'b0;
+            dir_back <= 1'b0;
+        end
+    end
+endmodule
+
+// One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched.
+module carrystep_axis (
+    input  wire         clock,
+    input  wire         strobe,
+    input  wire         phase_start,
+    input  wire   [3:0] phase,
+    input  wire         frozen,
+    input  wire         clear,
+    input  wire         go,
+    input  wire         push,
+    input  wire  [31:0] seg_ticks,
+    input  wire  [63:0] seg_v,
+    input  wire  [63:0] seg_a,
+    input  wire  [63:0] seg_j,
+    input  wire         seg_last,
+    output wire         waiting,
+    output wire         startable,
+    output wire         request,
+    output wire         request_back,
+    output wire         want_fwd,
+    output wire         want_back,
+    output wire         in_flight,
+    output wire         drained,
+    output wire         overspeed,
+    output wire         underrun,
+    output wire         crossed,
+    output wire         back,
+    output wire   [3:0] q,
+    output wire  [63:0] p,
+    output wire  [63:0] v
+);
+    localparam [63:0] START_VALUE = 64'h8000000000000000;
+    localparam [63:0] ZERO = 64'h0;
+    localparam [63:0] LEAST = 64'h8000000000000000;
+
+    reg [63:0] position = 64'h8000000000000000;
+    reg [63:0] speed = 64'h0;
+    reg [63:0] accel = 64'h0;
+    reg [63:0] jerk = 64'h0;
+    reg too_fast = 1'b0;
+    reg [63:0] next_speed;
+
+    wire sequencer_waiting;
+    wire sequencer_startable;
+    wire sequencer_running;
+    wire sequencer_load;
+    wire sequencer_advance;
+    wire [63:0] sequencer_v;
+    wire [63:0] sequencer_a;
+    wire [63:0] sequencer_j;
+    wire sequencer_underrun;
+    wire step_edge_request;
+    wire step_edge_request_back;
+    wire step_edge_want_fwd;
+    wire step_edge_want_back;
+    wire step_edge_in_flight;
+    wire step_edge_crossed;
+    wire step_edge_back;
+    wire [3:0] step_edge_q;
+
+    wire tick = strobe & !frozen;
+    wire [64:0] sum = {1'b0, position} + {1'b0, speed};
+    wire backward = speed[63];
+    wire [63:0] faster = speed + accel;
+    wire overflow = (backward == accel[63]) & (backward != faster[63]);
+    wire off_limits = tick & ((next_speed == LEAST) | (sequencer_advance & overflow));
+
+    assign waiting = sequencer_waiting;
+    assign startable = sequencer_startable;
+    assign request = step_edge_request;
+    assign request_back = step_edge_request_back;
+    assign want_fwd = step_edge_want_fwd;
+    assign want_back = step_edge_want_back;
+    assign in_flight = step_edge_in_flight;
+    assign drained = !(sequencer_running | sequencer_waiting | step_edge_in_flight);
+    assign overspeed = too_fast;
+    assign underrun = sequencer_underrun;
+    assign crossed = step_edge_crossed;
+    assign back = step_edge_back;
+    assign q = step_edge_q;
+    assign p = position;
+    assign v = speed;
+
+    always @(*) begin
+        next_speed = ZERO;
+        if (sequencer_load) begin
+            next_speed = sequencer_v;
+        end else if (sequencer_advance) begin
+            next_speed = faster;
+        end
+    end
+
+    carrystep_sequencer sequencer (
+        .clock(clock),
+        .strobe(tick),
+        .frozen(frozen),
+        .stop(off_limits),
+        .clear(clear),
+        .go(go),
+        .push(push),
+        .seg_ticks(seg_ticks),
+        .seg_v(seg_v),
+        .seg_a(seg_a),
+        .seg_j(seg_j),
+        .seg_last(seg_last),
+        .waiting(sequencer_waiting),
+        .startable(sequencer_startable),
+        .running(sequencer_running),
+        .load(sequencer_load),
+        .advance(sequencer_advance),
+        .v(sequencer_v),
+        .a(sequencer_a),
+        .j(sequencer_j),
+        .underrun(sequencer_underrun)
+    );
+
+    carrystep_step_edge step_edge (
+        .clock(clock),
+        .strobe(strobe),
+        .phase_start(phase_start),
+        .phase(phase),
+        .frozen(frozen),
+        .clear(clear),
+        .crosses(sum[64] ^ backward),
+        .forward((speed != 64'h0) & !backward),
+        .backward(backward),
+        .p(position[63:32]),
+        .v(speed[63:32]),
+        .request(step_edge_request),
+        .request_back(step_edge_request_back),
+        .want_fwd(step_edge_want_fwd),
+        .want_back(step_edge_want_back),
+        .in_flight(step_edge_in_flight),
+        .crossed(step_edge_crossed),
+        .back(step_edge_back),
+        .q(step_edge_q)
+    );
+
+    always @(posedge clock) begin
+        if (tick) begin
+            position <= sum[63:0];
+        end
+        if (tick) begin
+            speed <= next_speed;
+        end
+        if (sequencer_load) begin
+            accel <= sequencer_a;
+            jerk <= sequencer_j;
+        end else if (sequencer_advance) begin
+            accel <= accel + jerk;
+        end else if (tick) begin
+            accel <= ZERO;
+            jerk <= ZERO;
+        end
+        if (off_limits | frozen) begin
+            speed <= ZERO;
+            accel <= ZERO;
+            jerk <= ZERO;
+        end
+        too_fast <= too_fast | off_limits;
+        if (clear) begin
+            position <= START_VALUE;
+            too_fast <= 1'b0;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_shaper_w5_s5_d1_h1 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         clear,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         want_fwd,
+    input  wire         want_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire  [31:0] position,
+    output wire  [31:0] discarded,
+    output wire         overrun
+);
+    localparam [16:0] GAP = 17'd5;
+    localparam [16:0] BUSY_LOAD = 17'd9;
+    localparam [16:0] BUSY_BITS = 17'd15;
+    localparam [15:0] HOLD_LOAD = 16'd0;
+    localparam [15:0] HOLD_BITS = 16'd0;
+    localparam [15:0] SETUP_LOAD = 16'd0;
+    localparam [15:0] SETUP_BITS = 16'd0;
+    localparam [16:0] BUSY_ONE = 17'd1;
+    localparam [15:0] TIMER_ONE = 16'd1;
+    localparam [31:0] ONE = 32'd1;
+    localparam [31:0] TWO = 32'd2;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] busy = 17'd0;
+    reg [15:0] hold = 16'd0;
+    reg [15:0] setup = 16'd0;
+    reg [31:0] steps = 32'd0;
+    reg [31:0] lost = 32'd0;
+    reg late = 1'b0;
+    reg first_back;
+    reg aim;
+
+    wire want_now = want_back | (want & !want_fwd);
+    wire pending = due | request;
+    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
+    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
+    wire second = due & request;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign position = steps;
+    assign discarded = lost;
+    assign overrun = late;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want_now;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(posedge clock) begin
+        want <= want_now;
+        step_pin <= rise | (step_pin & (busy != GAP));
+        dir_pin <= dir_pin ^ turn;
+        if (rise) begin
+            busy <= BUSY_LOAD;
+        end else if (busy != 17'd0) begin
+            busy <= (busy - BUSY_ONE) & BUSY_BITS;
+        end
+        if (rise) begin
+            hold <= HOLD_LOAD;
+        end else if (hold != 16'd0) begin
+            hold <= (hold - TIMER_ONE) & HOLD_BITS;
+        end
+        if (turn) begin
+            setup <= SETUP_LOAD;
+        end else if (setup != 16'd0) begin
+            setup <= (setup - TIMER_ONE) & SETUP_BITS;
+        end
+        if (rise) begin
+            if (dir_pin) begin
+                steps <= steps - ONE;
+            end else begin
+                steps <= steps + ONE;
+            end
+        end
+        due <= pending & !rise;
+        if (rise) begin
+            due <= second;
+        end
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if (frozen) begin
+            due <= 1'b0;
+            due_back <= due_back;
+            if (second) begin
+                lost <= lost + TWO;
+            end else if (pending) begin
+                lost <= lost + ONE;
+            end
+        end else if (second & !rise) begin
+            late <= 1'b1;
+            lost <= lost + ONE;
+        end
+        if (clear) begin
+            late <= 1'b0;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_shaper_w48_s48_d10_h10 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         clear,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         want_fwd,
+    input  wire         want_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire  [31:0] position,
+    output wire  [31:0] discarded,
+    output wire         overrun
+);
+    localparam [16:0] GAP = 17'd48;
+    localparam [16:0] BUSY_LOAD = 17'd95;
+    localparam [16:0] BUSY_BITS = 17'd127;
+    localparam [15:0] HOLD_LOAD = 16'd9;
+    localparam [15:0] HOLD_BITS = 16'd15;
+    localparam [15:0] SETUP_LOAD = 16'd9;
+    localparam [15:0] SETUP_BITS = 16'd15;
+    localparam [16:0] BUSY_ONE = 17'd1;
+    localparam [15:0] TIMER_ONE = 16'd1;
+    localparam [31:0] ONE = 32'd1;
+    localparam [31:0] TWO = 32'd2;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] busy = 17'd0;
+    reg [15:0] hold = 16'd0;
+    reg [15:0] setup = 16'd9;
+    reg [31:0] steps = 32'd0;
+    reg [31:0] lost = 32'd0;
+    reg late = 1'b0;
+    reg first_back;
+    reg aim;
+
+    wire want_now = want_back | (want & !want_fwd);
+    wire pending = due | request;
+    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
+    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
+    wire second = due & request;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign position = steps;
+    assign discarded = lost;
+    assign overrun = late;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want_now;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(posedge clock) begin
+        want <= want_now;
+        step_pin <= rise | (step_pin & (busy != GAP));
+        dir_pin <= dir_pin ^ turn;
+        if (rise) begin
+            busy <= BUSY_LOAD;
+        end else if (busy != 17'd0) begin
+            busy <= (busy - BUSY_ONE) & BUSY_BITS;
+        end
+        if (rise) begin
+            hold <= HOLD_LOAD;
+        end else if (hold != 16'd0) begin
+            hold <= (hold - TIMER_ONE) & HOLD_BITS;
+        end
+        if (turn) begin
+            setup <= SETUP_LOAD;
+        end else if (setup != 16'd0) begin
+            setup <= (setup - TIMER_ONE) & SETUP_BITS;
+        end
+        if (rise) begin
+            if (dir_pin) begin
+                steps <= steps - ONE;
+            end else begin
+                steps <= steps + ONE;
+            end
+        end
+        due <= pending & !rise;
+        if (rise) begin
+            due <= second;
+        end
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if (frozen) begin
+            due <= 1'b0;
+            due_back <= due_back;
+            if (second) begin
+                lost <= lost + TWO;
+            end else if (pending) begin
+                lost <= lost + ONE;
+            end
+        end else if (second & !rise) begin
+            late <= 1'b1;
+            lost <= lost + ONE;
+        end
+        if (clear) begin
+            late <= 1'b0;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_shaper_w92_s92_d32_h32 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         clear,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         want_fwd,
+    input  wire         want_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire  [31:0] position,
+    output wire  [31:0] discarded,
+    output wire         overrun
+);
+    localparam [16:0] GAP = 17'd92;
+    localparam [16:0] BUSY_LOAD = 17'd183;
+    localparam [16:0] BUSY_BITS = 17'd255;
+    localparam [15:0] HOLD_LOAD = 16'd31;
+    localparam [15:0] HOLD_BITS = 16'd31;
+    localparam [15:0] SETUP_LOAD = 16'd31;
+    localparam [15:0] SETUP_BITS = 16'd31;
+    localparam [16:0] BUSY_ONE = 17'd1;
+    localparam [15:0] TIMER_ONE = 16'd1;
+    localparam [31:0] ONE = 32'd1;
+    localparam [31:0] TWO = 32'd2;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] busy = 17'd0;
+    reg [15:0] hold = 16'd0;
+    reg [15:0] setup = 16'd31;
+    reg [31:0] steps = 32'd0;
+    reg [31:0] lost = 32'd0;
+    reg late = 1'b0;
+    reg first_back;
+    reg aim;
+
+    wire want_now = want_back | (want & !want_fwd);
+    wire pending = due | request;
+    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
+    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
+    wire second = due & request;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign position = steps;
+    assign discarded = lost;
+    assign overrun = late;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want_now;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(posedge clock) begin
+        want <= want_now;
+        step_pin <= rise | (step_pin & (busy != GAP));
+        dir_pin <= dir_pin ^ turn;
+        if (rise) begin
+            busy <= BUSY_LOAD;
+        end else if (busy != 17'd0) begin
+            busy <= (busy - BUSY_ONE) & BUSY_BITS;
+        end
+        if (rise) begin
+            hold <= HOLD_LOAD;
+        end else if (hold != 16'd0) begin
+            hold <= (hold - TIMER_ONE) & HOLD_BITS;
+        end
+        if (turn) begin
+            setup <= SETUP_LOAD;
+        end else if (setup != 16'd0) begin
+            setup <= (setup - TIMER_ONE) & SETUP_BITS;
+        end
+        if (rise) begin
+            if (dir_pin) begin
+                steps <= steps - ONE;
+            end else begin
+                steps <= steps + ONE;
+            end
+        end
+        due <= pending & !rise;
+        if (rise) begin
+            due <= second;
+        end
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if (frozen) begin
+            due <= 1'b0;
+            due_back <= due_back;
+            if (second) begin
+                lost <= lost + TWO;
+            end else if (pending) begin
+                lost <= lost + ONE;
+            end
+        end else if (second & !rise) begin
+            late <= 1'b1;
+            lost <= lost + ONE;
+        end
+        if (clear) begin
+            late <= 1'b0;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_shaper_w120_s120_d240_h240 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         clear,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         want_fwd,
+    input  wire         want_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire  [31:0] position,
+    output wire  [31:0] discarded,
+    output wire         overrun
+);
+    localparam [16:0] GAP = 17'd120;
+    localparam [16:0] BUSY_LOAD = 17'd239;
+    localparam [16:0] BUSY_BITS = 17'd255;
+    localparam [15:0] HOLD_LOAD = 16'd239;
+    localparam [15:0] HOLD_BITS = 16'd255;
+    localparam [15:0] SETUP_LOAD = 16'd239;
+    localparam [15:0] SETUP_BITS = 16'd255;
+    localparam [16:0] BUSY_ONE = 17'd1;
+    localparam [15:0] TIMER_ONE = 16'd1;
+    localparam [31:0] ONE = 32'd1;
+    localparam [31:0] TWO = 32'd2;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] busy = 17'd0;
+    reg [15:0] hold = 16'd0;
+    reg [15:0] setup = 16'd239;
+    reg [31:0] steps = 32'd0;
+    reg [31:0] lost = 32'd0;
+    reg late = 1'b0;
+    reg first_back;
+    reg aim;
+
+    wire want_now = want_back | (want & !want_fwd);
+    wire pending = due | request;
+    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
+    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
+    wire second = due & request;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign position = steps;
+    assign discarded = lost;
+    assign overrun = late;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want_now;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(posedge clock) begin
+        want <= want_now;
+        step_pin <= rise | (step_pin & (busy != GAP));
+        dir_pin <= dir_pin ^ turn;
+        if (rise) begin
+            busy <= BUSY_LOAD;
+        end else if (busy != 17'd0) begin
+            busy <= (busy - BUSY_ONE) & BUSY_BITS;
+        end
+        if (rise) begin
+            hold <= HOLD_LOAD;
+        end else if (hold != 16'd0) begin
+            hold <= (hold - TIMER_ONE) & HOLD_BITS;
+        end
+        if (turn) begin
+            setup <= SETUP_LOAD;
+        end else if (setup != 16'd0) begin
+            setup <= (setup - TIMER_ONE) & SETUP_BITS;
+        end
+        if (rise) begin
+            if (dir_pin) begin
+                steps <= steps - ONE;
+            end else begin
+                steps <= steps + ONE;
+            end
+        end
+        due <= pending & !rise;
+        if (rise) begin
+            due <= second;
+        end
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if (frozen) begin
+            due <= 1'b0;
+            due_back <= due_back;
+            if (second) begin
+                lost <= lost + TWO;
+            end else if (pending) begin
+                lost <= lost + ONE;
+            end
+        end else if (second & !rise) begin
+            late <= 1'b1;
+            lost <= lost + ONE;
+        end
+        if (clear) begin
+            late <= 1'b0;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_shaper_w144_s144_d72_h72 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         clear,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         want_fwd,
+    input  wire         want_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire  [31:0] position,
+    output wire  [31:0] discarded,
+    output wire         overrun
+);
+    localparam [16:0] GAP = 17'd144;
+    localparam [16:0] BUSY_LOAD = 17'd287;
+    localparam [16:0] BUSY_BITS = 17'd511;
+    localparam [15:0] HOLD_LOAD = 16'd71;
+    localparam [15:0] HOLD_BITS = 16'd127;
+    localparam [15:0] SETUP_LOAD = 16'd71;
+    localparam [15:0] SETUP_BITS = 16'd127;
+    localparam [16:0] BUSY_ONE = 17'd1;
+    localparam [15:0] TIMER_ONE = 16'd1;
+    localparam [31:0] ONE = 32'd1;
+    localparam [31:0] TWO = 32'd2;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] busy = 17'd0;
+    reg [15:0] hold = 16'd0;
+    reg [15:0] setup = 16'd71;
+    reg [31:0] steps = 32'd0;
+    reg [31:0] lost = 32'd0;
+    reg late = 1'b0;
+    reg first_back;
+    reg aim;
+
+    wire want_now = want_back | (want & !want_fwd);
+    wire pending = due | request;
+    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
+    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
+    wire second = due & request;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign position = steps;
+    assign discarded = lost;
+    assign overrun = late;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want_now;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(posedge clock) begin
+        want <= want_now;
+        step_pin <= rise | (step_pin & (busy != GAP));
+        dir_pin <= dir_pin ^ turn;
+        if (rise) begin
+            busy <= BUSY_LOAD;
+        end else if (busy != 17'd0) begin
+            busy <= (busy - BUSY_ONE) & BUSY_BITS;
+        end
+        if (rise) begin
+            hold <= HOLD_LOAD;
+        end else if (hold != 16'd0) begin
+            hold <= (hold - TIMER_ONE) & HOLD_BITS;
+        end
+        if (turn) begin
+            setup <= SETUP_LOAD;
+        end else if (setup != 16'd0) begin
+            setup <= (setup - TIMER_ONE) & SETUP_BITS;
+        end
+        if (rise) begin
+            if (dir_pin) begin
+                steps <= steps - ONE;
+            end else begin
+                steps <= steps + ONE;
+            end
+        end
+        due <= pending & !rise;
+        if (rise) begin
+            due <= second;
+        end
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if (frozen) begin
+            due <= 1'b0;
+            due_back <= due_back;
+            if (second) begin
+                lost <= lost + TWO;
+            end else if (pending) begin
+                lost <= lost + ONE;
+            end
+        end else if (second & !rise) begin
+            late <= 1'b1;
+            lost <= lost + ONE;
+        end
+        if (clear) begin
+            late <= 1'b0;
+        end
+    end
+endmodule
+
+// Six axes on one tick, the door for segments and starts, and the freeze.
+module carrystep_six_axis (
+    input  wire         clock,
+    input  wire         seg_valid,
+    input  wire   [2:0] seg_axis,
+    input  wire  [31:0] seg_ticks,
+    input  wire  [63:0] seg_v,
+    input  wire  [63:0] seg_a,
+    input  wire  [63:0] seg_j,
+    input  wire         seg_last,
+    output wire         seg_ready,
+    input  wire         start_valid,
+    input  wire   [5:0] start_mask,
+    output wire         start_ready,
+    input  wire         clear,
+    output wire   [5:0] step,
+    output wire   [5:0] dir,
+    output wire [191:0] position,
+    output wire [191:0] discarded,
+    output wire         idle,
+    output wire         fault,
+    output wire   [5:0] overrun,
+    output wire   [5:0] overspeed,
+    output wire   [5:0] underrun,
+    output wire         protocol,
+    output wire         started
+);
+    localparam [5:0] FIRST = 6'd1;
+    localparam [2:0] SIX = 3'd6;
+    localparam [31:0] NO_TICKS = 32'd0;
+
+    reg armed = 1'b0;
+    reg [5:0] mask = 6'd0;
+    reg broken = 1'b0;
+    reg frozen;
+    reg in_flight;
+    reg at_rest;
+    reg waiting;
+    reg unfed;
+    reg all_startable;
+
+    wire tick_strobe;
+    wire tick_phase_start;
+    wire [3:0] tick_phase;
+    wire axis_0_waiting;
+    wire axis_0_startable;
+    wire axis_0_request;
+    wire axis_0_request_back;
+    wire axis_0_want_fwd;
+    wire axis_0_want_back;
+    wire axis_0_in_flight;
+    wire axis_0_drained;
+    wire axis_0_overspeed;
+    wire axis_0_underrun;
+    wire axis_1_waiting;
+    wire axis_1_startable;
+    wire axis_1_request;
+    wire axis_1_request_back;
+    wire axis_1_want_fwd;
+    wire axis_1_want_back;
+    wire axis_1_in_flight;
+    wire axis_1_drained;
+    wire axis_1_overspeed;
+    wire axis_1_underrun;
+    wire axis_2_waiting;
+    wire axis_2_startable;
+    wire axis_2_request;
+    wire axis_2_request_back;
+    wire axis_2_want_fwd;
+    wire axis_2_want_back;
+    wire axis_2_in_flight;
+    wire axis_2_drained;
+    wire axis_2_overspeed;
+    wire axis_2_underrun;
+    wire axis_3_waiting;
+    wire axis_3_startable;
+    wire axis_3_request;
+    wire axis_3_request_back;
+    wire axis_3_want_fwd;
+    wire axis_3_want_back;
+    wire axis_3_in_flight;
+    wire axis_3_drained;
+    wire axis_3_overspeed;
+    wire axis_3_underrun;
+    wire axis_4_waiting;
+    wire axis_4_startable;
+    wire axis_4_request;
+    wire axis_4_request_back;
+    wire axis_4_want_fwd;
+    wire axis_4_want_back;
+    wire axis_4_in_flight;
+    wire axis_4_drained;
+    wire axis_4_overspeed;
+    wire axis_4_underrun;
+    wire axis_5_waiting;
+    wire axis_5_startable;
+    wire axis_5_request;
+    wire axis_5_request_back;
+    wire axis_5_want_fwd;
+    wire axis_5_want_back;
+    wire axis_5_in_flight;
+    wire axis_5_drained;
+    wire axis_5_overspeed;
+    wire axis_5_underrun;
+    wire shaper_0_step;
+    wire shaper_0_dir;
+    wire shaper_0_owed;
+    wire [31:0] shaper_0_position;
+    wire [31:0] shaper_0_discarded;
+    wire shaper_0_overrun;
+    wire shaper_1_step;
+    wire shaper_1_dir;
+    wire shaper_1_owed;
+    wire [31:0] shaper_1_position;
+    wire [31:0] shaper_1_discarded;
+    wire shaper_1_overrun;
+    wire shaper_2_step;
+    wire shaper_2_dir;
+    wire shaper_2_owed;
+    wire [31:0] shaper_2_position;
+    wire [31:0] shaper_2_discarded;
+    wire shaper_2_overrun;
+    wire shaper_3_step;
+    wire shaper_3_dir;
+    wire shaper_3_owed;
+    wire [31:0] shaper_3_position;
+    wire [31:0] shaper_3_discarded;
+    wire shaper_3_overrun;
+    wire shaper_4_step;
+    wire shaper_4_dir;
+    wire shaper_4_owed;
+    wire [31:0] shaper_4_position;
+    wire [31:0] shaper_4_discarded;
+    wire shaper_4_overrun;
+    wire shaper_5_step;
+    wire shaper_5_dir;
+    wire shaper_5_owed;
+    wire [31:0] shaper_5_position;
+    wire [31:0] shaper_5_discarded;
+    wire shaper_5_overrun;
+
+    wire clear_now = clear & frozen & !in_flight;
+    wire [5:0] selected = FIRST << seg_axis;
+    wire nobody = seg_axis >= SIX;
+    wire taken = seg_valid & seg_ready;
+    wire push = taken & !nobody & (seg_ticks != NO_TICKS);
+    wire start = start_valid & start_ready;
+    wire go = armed & tick_strobe & all_startable & !frozen;
+
+    assign seg_ready = !(frozen | waiting);
+    assign start_ready = !(frozen | armed);
+    assign step[0] = shaper_0_step;
+    assign step[1] = shaper_1_step;
+    assign step[2] = shaper_2_step;
+    assign step[3] = shaper_3_step;
+    assign step[4] = shaper_4_step;
+    assign step[5] = shaper_5_step;
+    assign dir[0] = shaper_0_dir;
+    assign dir[1] = shaper_1_dir;
+    assign dir[2] = shaper_2_dir;
+    assign dir[3] = shaper_3_dir;
+    assign dir[4] = shaper_4_dir;
+    assign dir[5] = shaper_5_dir;
+    assign position[31:0] = shaper_0_position;
+    assign position[63:32] = shaper_1_position;
+    assign position[95:64] = shaper_2_position;
+    assign position[127:96] = shaper_3_position;
+    assign position[159:128] = shaper_4_position;
+    assign position[191:160] = shaper_5_position;
+    assign discarded[31:0] = shaper_0_discarded;
+    assign discarded[63:32] = shaper_1_discarded;
+    assign discarded[95:64] = shaper_2_discarded;
+    assign discarded[127:96] = shaper_3_discarded;
+    assign discarded[159:128] = shaper_4_discarded;
+    assign discarded[191:160] = shaper_5_discarded;
+    assign idle = at_rest;
+    assign fault = frozen;
+    assign overrun[0] = shaper_0_overrun;
+    assign overrun[1] = shaper_1_overrun;
+    assign overrun[2] = shaper_2_overrun;
+    assign overrun[3] = shaper_3_overrun;
+    assign overrun[4] = shaper_4_overrun;
+    assign overrun[5] = shaper_5_overrun;
+    assign overspeed[0] = axis_0_overspeed;
+    assign overspeed[1] = axis_1_overspeed;
+    assign overspeed[2] = axis_2_overspeed;
+    assign overspeed[3] = axis_3_overspeed;
+    assign overspeed[4] = axis_4_overspeed;
+    assign overspeed[5] = axis_5_overspeed;
+    assign underrun[0] = axis_0_underrun;
+    assign underrun[1] = axis_1_underrun;
+    assign underrun[2] = axis_2_underrun;
+    assign underrun[3] = axis_3_underrun;
+    assign underrun[4] = axis_4_underrun;
+    assign underrun[5] = axis_5_underrun;
+    assign protocol = broken;
+    assign started = go;
+
+    always @(*) begin
+        frozen = broken;
+        frozen = frozen | shaper_0_overrun | axis_0_overspeed | axis_0_underrun;
+        frozen = frozen | shaper_1_overrun | axis_1_overspeed | axis_1_underrun;
+        frozen = frozen | shaper_2_overrun | axis_2_overspeed | axis_2_underrun;
+        frozen = frozen | shaper_3_overrun | axis_3_overspeed | axis_3_underrun;
+        frozen = frozen | shaper_4_overrun | axis_4_overspeed | axis_4_underrun;
+        frozen = frozen | shaper_5_overrun | axis_5_overspeed | axis_5_underrun;
+    end
+
+    always @(*) begin
+        in_flight = 1'b0;
+        in_flight = in_flight | axis_0_in_flight | shaper_0_step;
+        in_flight = in_flight | axis_1_in_flight | shaper_1_step;
+        in_flight = in_flight | axis_2_in_flight | shaper_2_step;
+        in_flight = in_flight | axis_3_in_flight | shaper_3_step;
+        in_flight = in_flight | axis_4_in_flight | shaper_4_step;
+        in_flight = in_flight | axis_5_in_flight | shaper_5_step;
+    end
+
+    always @(*) begin
+        at_rest = !armed;
+        at_rest = at_rest & axis_0_drained & !(shaper_0_owed | shaper_0_step);
+        at_rest = at_rest & axis_1_drained & !(shaper_1_owed | shaper_1_step);
+        at_rest = at_rest & axis_2_drained & !(shaper_2_owed | shaper_2_step);
+        at_rest = at_rest & axis_3_drained & !(shaper_3_owed | shaper_3_step);
+        at_rest = at_rest & axis_4_drained & !(shaper_4_owed | shaper_4_step);
+        at_rest = at_rest & axis_5_drained & !(shaper_5_owed | shaper_5_step);
+    end
+
+    always @(*) begin
+        waiting = 1'b0;
+        waiting = waiting | (selected[0] & axis_0_waiting);
+        waiting = waiting | (selected[1] & axis_1_waiting);
+        waiting = waiting | (selected[2] & axis_2_waiting);
+        waiting = waiting | (selected[3] & axis_3_waiting);
+        waiting = waiting | (selected[4] & axis_4_waiting);
+        waiting = waiting | (selected[5] & axis_5_waiting);
+    end
+
+    always @(*) begin
+        unfed = 1'b0;
+        unfed = unfed | (start_mask[0] & !axis_0_waiting);
+        unfed = unfed | (start_mask[1] & !axis_1_waiting);
+        unfed = unfed | (start_mask[2] & !axis_2_waiting);
+        unfed = unfed | (start_mask[3] & !axis_3_waiting);
+        unfed = unfed | (start_mask[4] & !axis_4_waiting);
+        unfed = unfed | (start_mask[5] & !axis_5_waiting);
+    end
+
+    always @(*) begin
+        all_startable = 1'b1;
+        all_startable = all_startable & (!mask[0] | axis_0_startable);
+        all_startable = all_startable & (!mask[1] | axis_1_startable);
+        all_startable = all_startable & (!mask[2] | axis_2_startable);
+        all_startable = all_startable & (!mask[3] | axis_3_startable);
+        all_startable = all_startable & (!mask[4] | axis_4_startable);
+        all_startable = all_startable & (!mask[5] | axis_5_startable);
+    end
+
+    carrystep_tick tick (
+        .clock(clock),
+        .strobe(tick_strobe),
+        .phase_start(tick_phase_start),
+        .phase(tick_phase)
+    );
+
+    carrystep_axis axis_0 (
+        .clock(clock),
+        .strobe(tick_strobe),
+        .phase_start(tick_phase_start),
+        .phase(tick_phase),
+        .frozen(frozen),
+        .clear(clear_now),
+        .go(go & mask[0]),
+        .push(push & selected[0]),
+        .seg_ticks(seg_ticks),
+        .seg_v(seg_v),
+        .seg_a(seg_a),
+        .seg_j(seg_j),
+        .seg_last(seg_last),
+        .waiting(axis_0_waiting),
+        .startable(axis_0_startable),
+        .request(axis_0_request),
+        .request_back(axis_0_request_back),
+        .want_fwd(axis_0_want_fwd),
+        .want_back(axis_0_want_back),
+        .in_flight(axis_0_in_flight),
+        .drained(axis_0_drained),
+        .overspeed(axis_0_overspeed),
+        .underrun(axis_0_underrun),
+        .crossed(),
+        .back(),
+        .q(),
+        .p(),
+        .v()
+    );
+
+    carrystep_axis axis_1 (
+        .clock(clock),
+        .strobe(tick_strobe),
+        .phase_start(tick_phase_start),
+        .phase(tick_phase),
+        .frozen(frozen),
+        .clear(clear_now),
+        .go(go & mask[1]),
+        .push(push & selected[1]),
+        .seg_ticks(seg_ticks),
+        .seg_v(seg_v),
+        .seg_a(seg_a),
+        .seg_j(seg_j),
+        .seg_last(seg_last),
+        .waiting(axis_1_waiting),
+        .startable(axis_1_startable),
+        .request(axis_1_request),
+        .request_back(axis_1_request_back),
+        .want_fwd(axis_1_want_fwd),
+        .want_back(axis_1_want_back),
+        .in_flight(axis_1_in_flight),
+        .drained(axis_1_drained),
+        .overspeed(axis_1_overspeed),
+        .underrun(axis_1_underrun),
+        .crossed(),
+        .back(),
+        .q(),
+        .p(),
+        .v()
+    );
+
+    carrystep_axis axis_2 (
+        .clock(clock),
+        .strobe(tick_strobe),
+        .phase_start(tick_phase_start),
+        .phase(tick_phase),
+        .frozen(frozen),
+        .clear(clear_now),
+        .go(go & mask[2]),
+        .push(push & selected[2]),
+        .seg_ticks(seg_ticks),
+        .seg_v(seg_v),
+        .seg_a(seg_a),
+        .seg_j(seg_j),
+        .seg_last(seg_last),
+        .waiting(axis_2_waiting),
+        .startable(axis_2_startable),
+        .request(axis_2_request),
+        .request_back(axis_2_request_back),
+        .want_fwd(axis_2_want_fwd),
+        .want_back(axis_2_want_back),
+        .in_flight(axis_2_in_flight),
+        .drained(axis_2_drained),
+        .overspeed(axis_2_overspeed),
+        .underrun(axis_2_underrun),
+        .crossed(),
+        .back(),
+        .q(),
+        .p(),
+        .v()
+    );
+
+    carrystep_axis axis_3 (
+        .clock(clock),
+        .strobe(tick_strobe),
+        .phase_start(tick_phase_start),
+        .phase(tick_phase),
+        .frozen(frozen),
+        .clear(clear_now),
+        .go(go & mask[3]),
+        .push(push & selected[3]),
+        .seg_ticks(seg_ticks),
+        .seg_v(seg_v),
+        .seg_a(seg_a),
+        .seg_j(seg_j),
+        .seg_last(seg_last),
+        .waiting(axis_3_waiting),
+        .startable(axis_3_startable),
+        .request(axis_3_request),
+        .request_back(axis_3_request_back),
+        .want_fwd(axis_3_want_fwd),
+        .want_back(axis_3_want_back),
+        .in_flight(axis_3_in_flight),
+        .drained(axis_3_drained),
+        .overspeed(axis_3_overspeed),
+        .underrun(axis_3_underrun),
+        .crossed(),
+        .back(),
+        .q(),
+        .p(),
+        .v()
+    );
+
+    carrystep_axis axis_4 (
+        .clock(clock),
+        .strobe(tick_strobe),
+        .phase_start(tick_phase_start),
+        .phase(tick_phase),
+        .frozen(frozen),
+        .clear(clear_now),
+        .go(go & mask[4]),
+        .push(push & selected[4]),
+        .seg_ticks(seg_ticks),
+        .seg_v(seg_v),
+        .seg_a(seg_a),
+        .seg_j(seg_j),
+        .seg_last(seg_last),
+        .waiting(axis_4_waiting),
+        .startable(axis_4_startable),
+        .request(axis_4_request),
+        .request_back(axis_4_request_back),
+        .want_fwd(axis_4_want_fwd),
+        .want_back(axis_4_want_back),
+        .in_flight(axis_4_in_flight),
+        .drained(axis_4_drained),
+        .overspeed(axis_4_overspeed),
+        .underrun(axis_4_underrun),
+        .crossed(),
+        .back(),
+        .q(),
+        .p(),
+        .v()
+    );
+
+    carrystep_axis axis_5 (
+        .clock(clock),
+        .strobe(tick_strobe),
+        .phase_start(tick_phase_start),
+        .phase(tick_phase),
+        .frozen(frozen),
+        .clear(clear_now),
+        .go(go & mask[5]),
+        .push(push & selected[5]),
+        .seg_ticks(seg_ticks),
+        .seg_v(seg_v),
+        .seg_a(seg_a),
+        .seg_j(seg_j),
+        .seg_last(seg_last),
+        .waiting(axis_5_waiting),
+        .startable(axis_5_startable),
+        .request(axis_5_request),
+        .request_back(axis_5_request_back),
+        .want_fwd(axis_5_want_fwd),
+        .want_back(axis_5_want_back),
+        .in_flight(axis_5_in_flight),
+        .drained(axis_5_drained),
+        .overspeed(axis_5_overspeed),
+        .underrun(axis_5_underrun),
+        .crossed(),
+        .back(),
+        .q(),
+        .p(),
+        .v()
+    );
+
+    carrystep_shaper_w5_s5_d1_h1 shaper_0 (
+        .clock(clock),
+        .frozen(frozen),
+        .clear(clear_now),
+        .request(axis_0_request),
+        .request_back(axis_0_request_back),
+        .want_fwd(axis_0_want_fwd),
+        .want_back(axis_0_want_back),
+        .step(shaper_0_step),
+        .dir(shaper_0_dir),
+        .owed(shaper_0_owed),
+        .position(shaper_0_position),
+        .discarded(shaper_0_discarded),
+        .overrun(shaper_0_overrun)
+    );
+
+    carrystep_shaper_w48_s48_d10_h10 shaper_1 (
+        .clock(clock),
+        .frozen(frozen),
+        .clear(clear_now),
+        .request(axis_1_request),
+        .request_back(axis_1_request_back),
+        .want_fwd(axis_1_want_fwd),
+        .want_back(axis_1_want_back),
+        .step(shaper_1_step),
+        .dir(shaper_1_dir),
+        .owed(shaper_1_owed),
+        .position(shaper_1_position),
+        .discarded(shaper_1_discarded),
+        .overrun(shaper_1_overrun)
+    );
+
+    carrystep_shaper_w92_s92_d32_h32 shaper_2 (
+        .clock(clock),
+        .frozen(frozen),
+        .clear(clear_now),
+        .request(axis_2_request),
+        .request_back(axis_2_request_back),
+        .want_fwd(axis_2_want_fwd),
+        .want_back(axis_2_want_back),
+        .step(shaper_2_step),
+        .dir(shaper_2_dir),
+        .owed(shaper_2_owed),
+        .position(shaper_2_position),
+        .discarded(shaper_2_discarded),
+        .overrun(shaper_2_overrun)
+    );
+
+    carrystep_shaper_w120_s120_d240_h240 shaper_3 (
+        .clock(clock),
+        .frozen(frozen),
+        .clear(clear_now),
+        .request(axis_3_request),
+        .request_back(axis_3_request_back),
+        .want_fwd(axis_3_want_fwd),
+        .want_back(axis_3_want_back),
+        .step(shaper_3_step),
+        .dir(shaper_3_dir),
+        .owed(shaper_3_owed),
+        .position(shaper_3_position),
+        .discarded(shaper_3_discarded),
+        .overrun(shaper_3_overrun)
+    );
+
+    carrystep_shaper_w5_s5_d1_h1 shaper_4 (
+        .clock(clock),
+        .frozen(frozen),
+        .clear(clear_now),
+        .request(axis_4_request),
+        .request_back(axis_4_request_back),
+        .want_fwd(axis_4_want_fwd),
+        .want_back(axis_4_want_back),
+        .step(shaper_4_step),
+        .dir(shaper_4_dir),
+        .owed(shaper_4_owed),
+        .position(shaper_4_position),
+        .discarded(shaper_4_discarded),
+        .overrun(shaper_4_overrun)
+    );
+
+    carrystep_shaper_w144_s144_d72_h72 shaper_5 (
+        .clock(clock),
+        .frozen(frozen),
+        .clear(clear_now),
+        .request(axis_5_request),
+        .request_back(axis_5_request_back),
+        .want_fwd(axis_5_want_fwd),
+        .want_back(axis_5_want_back),
+        .step(shaper_5_step),
+        .dir(shaper_5_dir),
+        .owed(shaper_5_owed),
+        .position(shaper_5_position),
+        .discarded(shaper_5_discarded),
+        .overrun(shaper_5_overrun)
+    );
+
+    always @(posedge clock) begin
+        if (go | frozen) begin
+            armed <= 1'b0;
+        end
+        if (start & !unfed) begin
+            armed <= 1'b1;
+            mask <= start_mask;
+        end
+        if ((taken & !push) | (start & unfed)) begin
+            broken <= 1'b1;
+        end
+        if (clear_now) begin
+            broken <= 1'b0;
+        end
+    end
+endmodule
+
+`default_nettype wire
