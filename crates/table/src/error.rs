@@ -148,7 +148,7 @@ fn nearest(value: u32, least: u32, most: u32) -> u32 {
 
 fn list(values: &[u32]) -> String {
     let words: Vec<String> = values.iter().map(u32::to_string).collect();
-    words.join(", ")
+    if words.is_empty() { "none".to_owned() } else { words.join(", ") }
 }
 
 fn slow_advice(prescaler: Option<u32>, start: Option<f64>) -> String {

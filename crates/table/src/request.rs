@@ -25,6 +25,7 @@ pub struct TableRequest {
     /// Speed of the cruise; over the start frequency.
     pub top_speed: Speed,
     /// The curve between the two.
+    #[serde(flatten)]
     pub kind: Kind,
     /// Pulses that each entry lasts.
     pub pulses: Pulses,

@@ -70,7 +70,7 @@ static const carrystep_table {{ name }}_table = {
 {%- endif %}
 
 /* A compiler that does not accept one of these has a table with a hole or a 16-bit type that is none. */
-typedef char {{ name }}_check_length[sizeof {{ name }}_compare == {{ upper }}_ENTRIES * 2u ? 1 : -1];
+typedef char {{ name }}_check_length[sizeof {{ name }}_compare / sizeof {{ name }}_compare[0] == {{ upper }}_ENTRIES ? 1 : -1];
 typedef char {{ name }}_check_width[(uint16_t)-1 == 65535u ? 1 : -1];
 
 #endif

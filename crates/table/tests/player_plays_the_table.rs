@@ -59,6 +59,16 @@ fn pulses_by_group_and_by_time() {
 }
 
 #[test]
+fn the_player_reads_nothing_outside_its_table() {
+    for pulses in [Pulses::One, Pulses::ByTime(1e-3), Pulses::ByGroup(vec![3, 1, 2])] {
+        let table = Table::new(source(Mode::Ctc, 60, pulses)).unwrap();
+        let moves: Vec<Move> = lengths(&table).into_iter().map(Move::of).collect();
+        let bench = Bench::of(&table).flag("-fsanitize=address,undefined").flag("-fno-sanitize-recover=all");
+        assert_eq!(bench.play(0, &moves), Bench::of(&table).play(0, &moves));
+    }
+}
+
+#[test]
 fn a_stop_goes_down_the_ramp() {
     let table = Table::new(source(Mode::Ctc, 100, Pulses::ByTime(1e-3))).unwrap();
     let ramp = u32::try_from(table.figures().ramp_pulses).unwrap();
