@@ -104,6 +104,9 @@ fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
+    if !value.is_normal() {
+        return value.to_string();
+    }
     let before = value.abs().log10().floor() as i32 + 1;
     let after = usize::try_from(6 - before).unwrap_or(0);
     if after > 12 || before > 12 {

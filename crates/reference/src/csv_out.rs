@@ -29,6 +29,8 @@ impl From<csv::Error> for CsvError {
 /// # Errors
 /// A profile too long to list, a clock that is none, a writer that fails.
 pub fn write_csv(out: impl Write, references: &[Reference], clock_hz: Option<f64>) -> Result<(), CsvError> {
+    // Before the first byte: whether all can be listed.
+    references.iter().try_for_each(|reference| reference.rows(clock_hz).map(|_| ()))?;
     let mut out = csv::Writer::from_writer(out);
     let counted = clock_hz.map(|_| "delay_counts");
     let head = ["kind", "step", "time_s", "speed_steps_per_s", "delay_s"];

@@ -2,7 +2,7 @@
 
 use crate::kind::Kind;
 use crate::row::MOST_ROWS;
-use carrystep_profile::{BadRamp, Limit, Refusal};
+use carrystep_profile::{BadRamp, Limit};
 use thiserror::Error;
 
 /// Why there is no such profile. Every message says what would do.
@@ -45,20 +45,16 @@ pub enum ReferenceError {
         top: f64,
     },
     /// A distance that ends between two steps.
-    #[error("{distance} are {steps} steps: {below} ({below_steps} steps) or {above} ({above_steps} steps) would do")]
+    #[error("{distance} {unit} is no whole number of steps: {below} or {above} {unit} would do")]
     NotWhole {
         /// As it was given.
-        distance: String,
-        /// In steps.
-        steps: f64,
+        distance: f64,
+        /// The unit.
+        unit: String,
         /// The greatest below that is whole.
-        below: String,
-        /// The same in steps.
-        below_steps: f64,
+        below: f64,
         /// The least above that is whole.
-        above: String,
-        /// The same in steps.
-        above_steps: f64,
+        above: f64,
     },
     /// The centre T_i fixes where a logistic ramp begins, and something else would too.
     #[error("the centre T_i fixes a ramp together with its acceleration: {what} besides contradicts it; leave one out")]
@@ -72,13 +68,21 @@ pub enum ReferenceError {
         /// What is asked instead.
         what: &'static str,
     },
-    /// A limit that does not let a profile be done in the time.
-    #[error("{kind} cannot be done: {}", told(refusal))]
+    /// A limit that does not let a profile be done, or not in the time.
+    #[error("{kind} cannot be done with {limit} of {available} {unit}: {}", advice(limit, *wanted, unit, *least_time))]
     Refused {
         /// The kind.
         kind: Kind,
-        /// Limit and least time.
-        refusal: Refusal,
+        /// The limit that fails, in words.
+        limit: &'static str,
+        /// What it is.
+        available: f64,
+        /// What would do; infinite where no finite value would.
+        wanted: f64,
+        /// The unit of both.
+        unit: String,
+        /// Least time that would do, seconds; `None` where no time would.
+        least_time: Option<f64>,
     },
     /// A ramp that contradicts itself.
     #[error("{kind} cannot be done: {bad}")]
@@ -98,23 +102,41 @@ pub enum ReferenceError {
     },
 }
 
-/// A refusal in words; the command line has no keys of a machine file.
-fn told(refusal: &Refusal) -> String {
-    let Refusal { limit, wanted, available, least_time } = *refusal;
-    let (name, unit) = (in_words(limit), limit.unit());
-    match least_time {
-        Some(least) => format!(
-            "it needs {wanted:.6} {unit}, over the {name} of {available} {unit}; that {name}, or a time of at least {least:.9} s, would do"
-        ),
-        None => format!("it needs a {name} over {available} {unit}; no time would do without"),
+fn advice(limit: &str, wanted: f64, unit: &str, least_time: Option<f64>) -> String {
+    match (wanted.is_finite().then_some(wanted), least_time) {
+        (Some(wanted), Some(least)) => format!("{wanted} {unit} would do, or a time of {least} s"),
+        (None, Some(least)) => format!("a time of {least} s would do"),
+        (Some(wanted), None) => format!("{wanted} {unit} would do"),
+        (None, None) => {
+            format!("no time would do without a greater {}", limit.trim_start_matches("a ").trim_start_matches("an "))
+        }
     }
 }
 
-const fn in_words(limit: Limit) -> &'static str {
+/// Nine digits of a bound, rounded up: who takes them at their word is not refused again.
+pub(crate) fn up(value: f64) -> f64 {
+    rounded(value, 9, f64::ceil)
+}
+
+/// So many digits of a value.
+pub(crate) fn rounded(value: f64, digits: i32, how: fn(f64) -> f64) -> f64 {
+    let unit = digits - 1 - value.abs().log10().floor() as i32;
+    let scaled = |unit: i32| {
+        if unit < 0 {
+            how(value / 10_f64.powi(-unit)) * 10_f64.powi(-unit)
+        } else {
+            how(value * 10_f64.powi(unit)) / 10_f64.powi(unit)
+        }
+    };
+    if value.is_normal() && unit.abs() < 300 { scaled(unit) } else { value }
+}
+
+/// A limit in words; the command line has no keys of a machine file.
+pub(crate) const fn in_words(limit: Limit) -> (&'static str, u32) {
     match limit {
-        Limit::StartSpeed => "start speed",
-        Limit::Speed => "speed limit",
-        Limit::Acceleration => "acceleration limit",
-        Limit::Jerk => "jerk limit",
+        Limit::StartSpeed => ("a start speed", 1),
+        Limit::Speed => ("a speed limit", 1),
+        Limit::Acceleration => ("an acceleration limit", 2),
+        Limit::Jerk => ("a jerk limit", 3),
     }
 }

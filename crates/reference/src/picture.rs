@@ -16,7 +16,9 @@ mod sampled;
 
 type Area<'b> = DrawingArea<SVGBackend<'b>, Shift>;
 
+/// Pixels; the drawing library knows whole ones only, so all is drawn so many times as large.
 const SIZE: (u32, u32) = (1180, 860);
+const FINE: u32 = 5;
 const HEAD: u32 = 74;
 const FONT: &str = "sans-serif";
 const INK: RGBColor = RGBColor(38, 44, 52);
@@ -46,44 +48,76 @@ fn failed(error: impl Display) -> PictureError {
     PictureError(error.to_string())
 }
 
-/// Draws the profiles under `title`.
+/// Draws the profiles in one picture.
 ///
 /// # Errors
 /// The drawing library fails.
-pub fn picture(title: &str, references: &[Reference], scale: Scale) -> Result<String, PictureError> {
+pub fn picture(references: &[Reference], scale: Scale) -> Result<String, PictureError> {
     let span = references.iter().map(|r| r.figures().seconds).fold(0.0, f64::max);
     let sampled: Vec<Sampled> = references.iter().map(|r| Sampled::new(r, span, scale.steps)).collect();
     let mut text = String::new();
     {
-        let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+        let size = (SIZE.0 * FINE, SIZE.1 * FINE);
+        let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
         root.fill(&WHITE).map_err(failed)?;
-        let (head, body) = root.split_vertically(HEAD);
-        heading(&head, title, &sampled)?;
+        let (head, body) = root.split_vertically(HEAD * FINE);
+        heading(&head, &title(references, scale), &sampled)?;
         let clock = Clock::for_span(span);
-        let areas = body.margin(0, 10, 10, 20).split_evenly((2, 2));
+        let areas = body.margin(0, px(10), px(10), px(20)).split_evenly((2, 2));
         for (area, panel) in areas.iter().zip(Panel::ALL) {
             panel.draw(area, &sampled, &clock, scale.unit)?;
         }
         root.present().map_err(failed)?;
     }
-    Ok(text)
+    Ok(shown_small(&text))
+}
+
+/// The drawing at its real size.
+fn shown_small(text: &str) -> String {
+    let ((width, height), size) = (SIZE, |pixels: u32| pixels * FINE);
+    let drawn = format!("width=\"{}\" height=\"{}\"", size(width), size(height));
+    text.replacen(&drawn, &format!("width=\"{width}\" height=\"{height}\""), 1)
+}
+
+/// Pixels of the picture in those of the drawing.
+fn px(pixels: i32) -> i32 {
+    pixels * FINE.cast_signed()
+}
+
+/// A line of `tenths` of a pixel.
+fn stroke(colour: impl Into<ShapeStyle>, tenths: u32) -> ShapeStyle {
+    colour.into().stroke_width(tenths * FINE / 10)
+}
+
+/// What they have in common.
+fn title(references: &[Reference], scale: Scale) -> String {
+    let unit = scale.unit.name();
+    let several = if references.len() == 1 { "" } else { "s" };
+    let most = |of: fn(&Reference) -> f64| number(references.iter().map(of).fold(0.0, f64::max) / scale.steps);
+    let acceleration = most(|r| r.figures().peak_acceleration);
+    if references.iter().all(Reference::is_ramp) {
+        let speed = most(|r| r.figures().top_speed);
+        return format!("Ramp{several} to {speed} {unit}/s, at most {acceleration} {unit}/s\u{b2}");
+    }
+    let distance = most(|r| r.figures().steps);
+    format!("Move{several} of {distance} {unit}, at most {acceleration} {unit}/s\u{b2}")
 }
 
 /// Title, then the names in their colours.
 fn heading(area: &Area<'_>, title: &str, sampled: &[Sampled]) -> Result<(), PictureError> {
-    area.draw(&Text::new(title.to_owned(), (28, 16), label(21, INK))).map_err(failed)?;
-    let place = |index: usize| 28 + 188 * index as i32;
-    for (index, curve) in sampled.iter().enumerate() {
-        let (x, y) = (place(index), 58);
-        let colour = colour(curve.kind);
-        area.draw(&PathElement::new(vec![(x, y), (x + 22, y)], colour.stroke_width(4))).map_err(failed)?;
-        area.draw(&Text::new(curve.legend.clone(), (x + 30, y - 8), label(15, INK))).map_err(failed)?;
+    area.draw(&Text::new(title.to_owned(), (px(28), px(14)), label(21, INK))).map_err(failed)?;
+    for (index, curve) in (0..).zip(sampled) {
+        let (x, y) = (28 + 188 * index, 58);
+        let ends = vec![(px(x), px(y)), (px(x + 22), px(y))];
+        area.draw(&PathElement::new(ends, stroke(colour(curve.kind), 40))).map_err(failed)?;
+        area.draw(&Text::new(curve.legend.clone(), (px(x + 30), px(y - 9)), label(15, INK))).map_err(failed)?;
     }
     Ok(())
 }
 
+/// Text of `size` pixels.
 fn label(size: u32, colour: RGBColor) -> TextStyle<'static> {
-    (FONT, size).into_font().color(&colour)
+    (FONT, size * FINE).into_font().color(&colour)
 }
 
 /// That ends at its place.
@@ -118,4 +152,21 @@ impl Clock {
         };
         Self { per_second, unit }
     }
+}
+
+/// 12000 as 12 000; millions and over as 1.5e6; small numbers with what digits they need.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if size >= 1e6 {
+        let power = size.log10().floor();
+        let mantissa = (value / 10_f64.powf(power) * 100.0).round() / 100.0;
+        return format!("{mantissa}e{power}");
+    }
+    if size >= 1000.0 {
+        let (thousands, rest) = ((size / 1000.0).floor(), size % 1000.0);
+        return format!("{}{thousands}\u{2009}{rest:03.0}", if value < 0.0 { "-" } else { "" });
+    }
+    let digits = if size >= 1.0 || size == 0.0 { 2 } else { 2 - size.log10().floor() as usize };
+    let text = format!("{value:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

@@ -2,7 +2,6 @@
 
 use crate::drive::Drive;
 use crate::error::ReferenceError;
-use std::fmt;
 
 /// What distances are measured in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,6 +59,25 @@ impl Quantity {
         self.length
     }
 
+    /// Its unit, for a distance (0), a speed (1), an acceleration (2) or a jerk (3).
+    pub fn unit(&self, power: u32) -> String {
+        match (power, self.per_minute, self.length) {
+            (_, true, Length::Turn) => "rpm".to_owned(),
+            (_, true, length) => format!("{}/min", length.name()),
+            (0, false, length) => length.name().to_owned(),
+            (1, false, length) => format!("{}/s", length.name()),
+            (power, false, length) => format!("{}/s^{power}", length.name()),
+        }
+    }
+
+    /// So many steps in the same unit.
+    ///
+    /// # Errors
+    /// Millimetres without a travel per turn.
+    pub fn back(&self, steps: f64, drive: &Drive) -> Result<f64, ReferenceError> {
+        Ok(steps / Self { value: 1.0, ..*self }.in_steps(drive)?)
+    }
+
     /// In steps and seconds.
     ///
     /// # Errors
@@ -67,13 +85,6 @@ impl Quantity {
     pub fn in_steps(&self, drive: &Drive) -> Result<f64, ReferenceError> {
         let steps = self.value * drive.steps_in(self.length)?;
         Ok(if self.per_minute { steps / 60.0 } else { steps })
-    }
-}
-
-/// The number and its length.
-impl fmt::Display for Quantity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}", self.value, self.length.name())
     }
 }
 
@@ -95,8 +106,13 @@ mod tests {
         ];
         for speed in speeds {
             let steps = speed.in_steps(&SORN).expect("a speed");
-            assert!((steps / (4000.0 / 3.0) - 1.0).abs() < 1e-15, "{speed}: {steps}");
+            let back = speed.back(steps, &SORN).expect("the same speed");
+            assert!((back / speed.value() - 1.0).abs() < 1e-15, "{speed:?}: {back}");
+            assert!((steps / (4000.0 / 3.0) - 1.0).abs() < 1e-15, "{speed:?}: {steps}");
         }
+        let units = speeds.map(|speed| speed.unit(1));
+        assert_eq!(units, ["mm/min", "mm/s", "rpm", "degrees/s", "steps/s"]);
+        assert_eq!(Quantity::new(80.0, Length::Millimetre).unit(2), "mm/s^2");
         assert_eq!(Quantity::new(80.0, Length::Millimetre).in_steps(&SORN), Ok(6400.0));
     }
 

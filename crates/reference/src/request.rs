@@ -1,16 +1,20 @@
 //! What is asked for, checked and in steps.
 
 use crate::drive::Drive;
-use crate::error::ReferenceError;
+use crate::error::{ReferenceError, in_words, rounded, up};
 use crate::kind::Kind;
-use crate::quantity::Quantity;
+use crate::quantity::{Length, Quantity};
 use crate::reference::Reference;
-use carrystep_profile::{Curve, Limits, Refusal, rule};
+use carrystep_profile::{Curve, Limit, Limits, Refusal, rule};
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// Most steps in a move: doubles count them one by one.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
+
+/// Speeds, accelerations, jerks and times that mean something; none of the formulas leaves the doubles.
+const VALUES: RangeInclusive<f64> = 1e-9..=1e15;
 
 /// A profile, but for its kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,21 +90,21 @@ impl Request {
         let read = |what, quantity: Option<Quantity>, zero: bool| {
             let Some(quantity) = quantity else { return Ok(None) };
             let value = quantity.in_steps(&self.drive)?;
-            if value.is_finite() && (value > 0.0 || zero && value == 0.0) {
+            if VALUES.contains(&value) || zero && value == 0.0 {
                 return Ok(Some(value));
             }
-            let must = if zero { "finite and 0 or more" } else { "finite and over 0" };
+            let must = if zero { "0, or 1e-9 to 1e15 in steps" } else { "over 0: 1e-9 to 1e15 in steps" };
             Err(ReferenceError::OutOfRange { what, value: quantity.value(), must })
         };
         let start_speed = read("the start speed", self.start_speed, true)?.unwrap_or(0.0);
         let top = read("the speed", self.speed, false)?;
         let acceleration = read("the acceleration", self.acceleration, false)?.unwrap_or(f64::INFINITY);
         let jerk = read("the jerk", self.jerk, false)?.unwrap_or(f64::INFINITY);
-        for (what, seconds) in [("the time", self.time), ("the centre T_i", self.centre)] {
-            let value = seconds.unwrap_or(1.0);
-            if !(value.is_finite() && (value > 0.0 || what != "the time")) {
-                return Err(ReferenceError::OutOfRange { what, value, must: "a number of seconds, a time over 0" });
-            }
+        if let Some(value) = self.time.filter(|time| !VALUES.contains(time)) {
+            return Err(ReferenceError::OutOfRange { what: "the time", value, must: "over 0: 1e-9 to 1e15 s" });
+        }
+        if let Some(value) = self.centre.filter(|centre| !(-1e15..=1e15).contains(centre)) {
+            return Err(ReferenceError::OutOfRange { what: "the centre T_i", value, must: "-1e15 to 1e15 s" });
         }
         let speed = top.unwrap_or(f64::INFINITY);
         if start_speed >= speed {
@@ -124,16 +128,12 @@ impl Request {
         if (steps - nearest).abs() <= 1e-9 * nearest {
             return Ok(nearest);
         }
-        let back = distance.value() / steps;
-        let near = |steps: f64| Quantity::new(steps * back, distance.length()).to_string();
-        let (below_steps, above_steps) = (steps.floor().max(1.0), steps.ceil());
+        let near = |steps: f64| Ok(rounded(distance.back(steps, &self.drive)?, 12, f64::round));
         Err(ReferenceError::NotWhole {
-            distance: distance.to_string(),
-            steps,
-            below: near(below_steps),
-            below_steps,
-            above: near(above_steps),
-            above_steps,
+            distance: distance.value(),
+            unit: distance.unit(0),
+            below: near(steps.floor().max(1.0))?,
+            above: near(steps.ceil())?,
         })
     }
 
@@ -150,7 +150,7 @@ impl Request {
         if self.time.is_none() && limits.acceleration.is_infinite() {
             return missing("an acceleration or a time");
         }
-        let refused = |refusal| ReferenceError::Refused { kind, refusal };
+        let refused = |refusal| self.refused(kind, refusal);
         if let Some(centre) = self.centre.filter(|_| kind == Kind::Logistic) {
             self.nothing_besides_the_centre()?;
             let ramp = rule::logistic_ramp_about(top, centre, limits);
@@ -180,7 +180,7 @@ impl Request {
             let top = limits.speed.min((distance * limits.acceleration / 2.0).sqrt());
             return missing(self.jerk_advice(top, limits));
         }
-        let refused = |refusal| ReferenceError::Refused { kind, refusal };
+        let refused = |refusal| self.refused(kind, refusal);
         let least = match kind {
             Kind::Trapezoid => rule::trapezoid_least_time(distance, limits),
             Kind::Ranade => rule::ranade_least_time(distance, limits),
@@ -201,6 +201,22 @@ impl Request {
         whole.map_err(refused)
     }
 
+    /// In the unit in which the limit was given.
+    fn refused(&self, kind: Kind, refusal: Refusal) -> ReferenceError {
+        let Refusal { limit, wanted, available, least_time } = refusal;
+        let stated = match limit {
+            Limit::StartSpeed => self.start_speed,
+            Limit::Speed => self.speed,
+            Limit::Acceleration => self.acceleration,
+            Limit::Jerk => self.jerk,
+        };
+        let stated = stated.unwrap_or(Quantity::new(available, Length::Step));
+        let (limit, power) = in_words(limit);
+        let wanted = stated.back(wanted, &self.drive).map_or(wanted, up);
+        let (available, unit) = (stated.value(), stated.unit(power));
+        ReferenceError::Refused { kind, limit, available, wanted, unit, least_time: least_time.map(up) }
+    }
+
     /// What to say to who has no jerk limit: that of the sine of the same speed and acceleration.
     fn jerk_advice(&self, top: f64, limits: &Limits<f64>) -> String {
         let acceleration = self.time.map_or(limits.acceleration, |time| limits.acceleration.min(2.0 * top / time));
@@ -208,7 +224,7 @@ impl Request {
             return "a jerk limit".to_owned();
         }
         let jerk = PI * acceleration * acceleration / (2.0 * top);
-        format!("a jerk limit; the sine to {top:.6} steps/s at {acceleration:.6} steps/s^2 has {jerk:.6} steps/s^3")
+        format!("a jerk limit; the sine has one of {} steps/s^3 at the same speed and acceleration", up(jerk))
     }
 
     fn nothing_besides_the_centre(&self) -> Result<(), ReferenceError> {

@@ -76,7 +76,7 @@ fn files(arguments: &Profile, references: &[Reference], drive: &Drive) -> Result
         write_csv(file, references, arguments.timer_hz)?;
     }
     if let Some(file) = &mut plot {
-        file.text(&picture(&title(references), references, scale(drive)?)?)?;
+        file.text(&picture(references, scale(drive)?)?)?;
     }
     [csv, plot].into_iter().flatten().map(OutputFile::keep).collect()
 }
@@ -85,12 +85,6 @@ fn files(arguments: &Profile, references: &[Reference], drive: &Drive) -> Result
 fn scale(drive: &Drive) -> Result<Scale, ReferenceError> {
     let unit = drive.travel_per_rev_mm.map_or(Length::Step, |_| Length::Millimetre);
     Ok(Scale { unit, steps: drive.steps_in(unit)? })
-}
-
-fn title(references: &[Reference]) -> String {
-    let ramps = references.iter().all(Reference::is_ramp);
-    let several = if references.len() == 1 { "" } else { "s" };
-    format!("{}{several}: the float reference", if ramps { "Ramp" } else { "Move" })
 }
 
 fn json(reference: &Reference, clock: Option<f64>) -> Result<ProfileJson, ReferenceError> {

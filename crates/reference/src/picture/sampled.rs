@@ -42,12 +42,17 @@ impl Sampled {
             legend: format!("{}, {end:.3} s", reference.kind()),
             speed: of(&|t| curve.speed(t)),
             cruise: (span > end && reference.is_ramp()).then_some(cruise),
-            acceleration: of(&|t| curve.acceleration(t)),
+            acceleration: from_nothing(of(&|t| curve.acceleration(t)), end),
             jerk: of(&|t| curve.jerk(t)),
             impulses: impulses(curve).into_iter().map(|(t, jump)| (t, jump / steps_in_unit)).collect(),
             delay: delays(reference),
         }
     }
+}
+
+/// Up from 0 at the start, down to 0 at the end.
+fn from_nothing(line: Vec<Point>, end: f64) -> Vec<Point> {
+    [(0.0, 0.0)].into_iter().chain(line).chain([(end, 0.0)]).collect()
 }
 
 /// A moment, for the two sides of a corner.
