@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// Most steps in a list.
-pub const MOST_ROWS: u32 = 10_000_000;
+pub const MOST_ROWS: u32 = 1_000_000;
 
 /// Step n: when it is reached, how fast it is passed, and how long the next one takes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -1,5 +1,6 @@
 //! Any request gets a curve that is what it says, or a refusal that says what would do.
 
+use carrystep_profile::Figures;
 use carrystep_reference::{Drive, Kind, Length, Quantity, ReferenceError, Request, Scale, Travel, picture, write_csv};
 use proptest::prelude::*;
 
@@ -36,6 +37,21 @@ fn any_request() -> impl Strategy<Value = Request> {
 
 fn any_kind() -> impl Strategy<Value = Kind> {
     prop::sample::select(&Kind::ALL[..])
+}
+
+/// No limit is passed: of a ramp the speed is its own, and a trapezoid has no jerk but impulses.
+fn within(request: &Request, kind: Kind, figures: &Figures<f64>) -> Result<(), TestCaseError> {
+    let limit = |quantity: Option<Quantity>| {
+        quantity.map_or(f64::INFINITY, |q| q.in_steps(&DRIVE).expect("a drive with a travel") * (1.0 + 1e-9))
+    };
+    prop_assert!(figures.peak_acceleration <= limit(request.acceleration), "{figures:?}");
+    prop_assert!(figures.top_speed <= limit(request.speed), "{figures:?}");
+    prop_assert!(figures.peak_jerk <= limit(request.jerk), "{figures:?}");
+    let jumps = [Kind::Ranade, Kind::Scurve, Kind::Constant].contains(&kind);
+    if jumps {
+        prop_assert!(figures.start_speed <= limit(request.start_speed.or(Some(Quantity::new(0.0, Length::Step)))));
+    }
+    Ok(())
 }
 
 /// As often as there are limits: raised one by one to what each refusal names, they let the profile be done.
@@ -76,6 +92,7 @@ proptest! {
                 prop_assert!(figures.seconds > 0.0 && figures.seconds.is_finite(), "{figures:?}");
                 prop_assert!(figures.steps > 0.0 && figures.top_speed > 0.0, "{figures:?}");
                 prop_assert!(figures.peak_acceleration.is_finite() && figures.peak_jerk.is_finite(), "{figures:?}");
+                within(&request, kind, figures)?;
                 if let Some(time) = request.time {
                     prop_assert!((figures.seconds / time - 1.0).abs() < 1e-9, "{time}: {figures:?}");
                 }

@@ -4,16 +4,12 @@ use carrystep_reference::{Drive, Kind, Length, Quantity, Request, Travel};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Step times, delays and speeds of the curves of the literature: figures, CSV, JSON, plot.
-///
-/// A ramp up to a speed; with a distance a whole move, from rest to rest. Without --csv, --json or --plot it
-/// shows what one has to know before trusting a curve. Speeds and accelerations can be in steps, millimetres, degrees or
-/// turns; a step is one microstep.
+/// `carrystep profile`
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, next_help_heading = "Curve")]
+#[command(after_help = NOTES, next_help_heading = "Curve")]
 pub struct Profile {
     /// The curves, one or several.
-    #[arg(value_name = "KIND", required = true, value_parser = kind(), help_heading = "Arguments")]
+    #[arg(value_name = "KIND", required = true, value_parser = kind(), help_heading = None)]
     pub kinds: Vec<Kind>,
 
     #[command(flatten)]
@@ -50,13 +46,16 @@ pub struct Profile {
     pub timer_hz: Option<f64>,
 }
 
-const EXAMPLES: &str = "\
+const NOTES: &str = "\
+A ramp goes from rest, or from the start speed, up to a speed; with a distance it is a whole move. The table tells what
+one has to know before trusting a curve: start jump, end speed, peak acceleration and jerk, steps and time. Where
+something moves (--travel-per-rev) it tells so in mm too. A step is one microstep. Which curve for what: docs/profiles.md.
+
 Examples:
   The example of the logistic source:
-    carrystep profile logistic --step-angle 1.8 --microsteps 2 --travel-per-rev 5 \\
-        --speed-mm-min 1000 --accel-mm-s2 80 --ti 0.4
+    carrystep profile logistic --microsteps 2 --travel-per-rev 5 --speed-mm-min 1000 --accel-mm-s2 80 --ti 0.4
   Four ramps to one speed, in one picture:
-    carrystep profile trapezoid logistic sine scurve --speed 50000 --accel 500000 --jerk 1.6e7 --plot four.svg
+    carrystep profile trapezoid scurve sine logistic --speed 50000 --accel 500000 --jerk 1.6e7 --plot four.svg
   One turn in one second, every step as CSV, delays in counts of a 1 MHz timer too:
     carrystep profile trapezoid --deg 360 --time 1 --accel-deg-s2 1800 --timer-hz 1e6 --csv -";
 

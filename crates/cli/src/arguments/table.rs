@@ -5,10 +5,9 @@ use carrystep_table::{TableRequest, Timer, Width};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
-/// Make a C header with a timer compare table for a microcontroller, and the player for it.
-///
-/// Which kind for what, and how to play it: docs/tables.md. Without --out the header goes to standard output.
+/// `carrystep table`
 #[derive(Debug, Args)]
+#[command(after_help = NOTES)]
 pub struct Table {
     #[command(subcommand)]
     pub kind: TableKind,
@@ -59,17 +58,18 @@ pub enum TableKind {
     },
 }
 
+const NOTES: &str = "\
+Which kind for what, and how a controller plays it: docs/tables.md. Without --out the header goes to standard output.
+Each kind has an example: carrystep table logistic --help";
 const LOGISTIC: &str = "\
 Example, the source's motor on a 16 MHz AVR:
-  carrystep table logistic --entries 1000 --clock-hz 16000000 --prescaler 64 \\
-      --start-frequency 500 --rpm 500 --microsteps 8 --out ramp";
+  carrystep table logistic --entries 1000 --clock-hz 16000000 --start-frequency 500 --rpm 500 --microsteps 8 --out ramp";
 const AVR446: &str = "\
 Example, from rest to 10 000 steps/s in 500 steps, arrays in program memory:
   carrystep table avr446 --ramp-steps 500 --clock-hz 16000000 --prescaler 8 --top-speed 10000 --progmem --out ramp";
 const SINE: &str = "\
 Example, each entry lasting 1 ms or more, for a shorter table:
-  carrystep table sine --ramp-steps 2000 --clock-hz 16000000 --prescaler 64 --top-speed 10000 \\
-      --pulses-by-time 0.001 --out ramp";
+  carrystep table sine --ramp-steps 2000 --clock-hz 16000000 --prescaler 64 --top-speed 10000 --pulses-by-time 0.001";
 
 /// What all kinds share.
 #[derive(Debug, Args)]
