@@ -104,9 +104,9 @@ pub enum ReferenceError {
 
 fn advice(limit: &str, wanted: f64, unit: &str, least_time: Option<f64>) -> String {
     match (wanted.is_finite().then_some(wanted), least_time) {
-        (Some(wanted), Some(least)) => format!("{wanted} {unit} would do, or a time of {least} s"),
-        (None, Some(least)) => format!("a time of {least} s would do"),
-        (Some(wanted), None) => format!("{wanted} {unit} would do"),
+        (Some(wanted), Some(least)) => format!("it needs at least {wanted} {unit}, or a time of {least} s"),
+        (None, Some(least)) => format!("it needs a time of {least} s"),
+        (Some(wanted), None) => format!("it needs at least {wanted} {unit}"),
         (None, None) => {
             format!("no time would do without a greater {}", limit.trim_start_matches("a ").trim_start_matches("an "))
         }

@@ -224,7 +224,9 @@ impl Request {
             return "a jerk limit".to_owned();
         }
         let jerk = PI * acceleration * acceleration / (2.0 * top);
-        format!("a jerk limit; the sine has one of {} steps/s^3 at the same speed and acceleration", up(jerk))
+        let stated = Quantity::new(jerk, self.acceleration.map_or(Length::Step, |a| a.length()));
+        let (jerk, unit) = (stated.back(jerk, &self.drive).map_or(jerk, up), stated.unit(3));
+        format!("a jerk limit; the sine has one of {jerk} {unit} at the same speed and acceleration")
     }
 
     fn nothing_besides_the_centre(&self) -> Result<(), ReferenceError> {

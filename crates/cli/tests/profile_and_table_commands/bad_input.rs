@@ -12,25 +12,29 @@ const REFUSED: &[(&str, &str)] = &[
         "scurve needs a jerk limit; the sine has one of 39269.9082 steps/s^3 at the same speed and acceleration",
     ),
     (
+        "profile scurve --speed-mm-s 100 --accel-mm-s2 500 --travel-per-rev 5",
+        "scurve needs a jerk limit; the sine has one of 3926.99082 mm/s^3 at the same speed and acceleration",
+    ),
+    (
         "profile scurve --speed 1000 --accel 50000 --jerk 1e5 --time 0.1",
-        "scurve cannot be done with a jerk limit of 100000 steps/s^3: 400000 steps/s^3 would do, or a time of 0.2 s",
+        "scurve cannot be done with a jerk limit of 100000 steps/s^3: it needs at least 400000 steps/s^3, or a time of 0.2 s",
     ),
     (
         "profile scurve --steps 1000 --accel 5e4 --jerk 1e5 --time 0.5",
-        "scurve cannot be done with a jerk limit of 100000 steps/s^3: 256000 steps/s^3 would do, or a time of 0.683990379 s",
+        "scurve cannot be done with a jerk limit of 100000 steps/s^3: it needs at least 256000 steps/s^3, or a time of 0.683990379 s",
     ),
     (
         "profile trapezoid --deg 360 --time 1 --accel-deg-s2 1400",
-        "trapezoid cannot be done with an acceleration limit of 1400 degrees/s^2: 1440 degrees/s^2 would do, or a time of 1.01418511 s",
+        "trapezoid cannot be done with an acceleration limit of 1400 degrees/s^2: it needs at least 1440 degrees/s^2, or a time of 1.01418511 s",
     ),
     (
         "profile trapezoid --steps 1000 --time 1 --accel 1e5 --speed 1000",
-        "trapezoid cannot be done with a speed limit of 1000 steps/s: 1010.20515 steps/s would do, or a time of 1.01 s",
+        "trapezoid cannot be done with a speed limit of 1000 steps/s: it needs at least 1010.20515 steps/s, or a time of 1.01 s",
     ),
     ("profile constant --speed 10", "constant has no ramp: it is for whole moves; give it a distance"),
     (
         "profile constant --steps 100 --start-speed 50 --time 1",
-        "constant cannot be done with a start speed of 50 steps/s: 100 steps/s would do, or a time of 2 s",
+        "constant cannot be done with a start speed of 50 steps/s: it needs at least 100 steps/s, or a time of 2 s",
     ),
     (
         "profile constant --steps 100",
