@@ -1,6 +1,6 @@
 //! Triangle and trapezoid: up at one acceleration, perhaps a cruise, down at the same.
 
-use crate::curve::Curve;
+use crate::curve::{Curve, is_time};
 use crate::profile::{Profile, Real, real};
 
 /// A symmetric speed ramp: start speed, top speed, and a cruise between the two ramps.
@@ -152,10 +152,10 @@ impl<F: Real> Curve<F> for Ramp<F> {
         F::zero()
     }
 
-    /// Without a cruise the two jumps at the top are one.
+    /// Without a cruise, that of rounding aside, the two jumps at the top are one.
     fn acceleration_jump(&self) -> F {
         let [up, down] = self.breakpoints;
         let peak = Curve::peak_acceleration(self);
-        if down > up { peak } else { peak + peak }
+        if is_time(down - up, self.duration) { peak } else { peak + peak }
     }
 }

@@ -74,6 +74,18 @@ fn a_speed_is_one_speed_in_any_unit() {
     }
 }
 
+/// From one ramp straight into the other acceleration jumps twice as far.
+#[test]
+fn a_triangle_has_a_corner_and_a_trapezoid_two() {
+    let jump = |asked: &str| {
+        let all = json(&format!("profile trapezoid ranade --steps 100 --accel 1000 {asked}"));
+        [0, 1].map(|i| all["profiles"][i]["figures"]["acceleration_jump_steps_per_s2"].as_f64().unwrap())
+    };
+    let (triangle, trapezoid) = (jump(""), jump("--speed 100"));
+    assert!(triangle.iter().all(|jump| (jump / 2000.0 - 1.0).abs() < 1e-12), "{triangle:?}");
+    assert!(trapezoid.iter().all(|jump| (jump / 1000.0 - 1.0).abs() < 1e-12), "{trapezoid:?}");
+}
+
 #[test]
 fn json_has_stable_names() {
     let all = json("profile scurve --steps 40 --accel 5000 --jerk 1e5 --timer-hz 1e6");
