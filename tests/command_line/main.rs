@@ -3,9 +3,13 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 mod bad_captures;
+mod bad_curves;
 mod bad_files;
 mod bad_machines;
 mod bad_moves;
 mod bad_outputs;
 mod command;
+mod curves;
 mod json_names;
+mod profile;
+mod table;
