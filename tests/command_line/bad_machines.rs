@@ -74,7 +74,11 @@ fn numbers_that_are_none_or_of_the_wrong_sign() {
             all_refused(&[(field, &format!("{key} = ^{value}"), says)]);
         }
     }
-    all_refused(&[("driver", "jerk_limit = ^0\ndriver", "jerk_limit = 0: must be over zero")]);
+    all_refused(&[
+        ("driver", "jerk_limit = ^0\ndriver", "jerk_limit = 0: must be over zero"),
+        ("speed_limit = 1000", "speed_limit = ^1e-4", "speed_limit is 0.0005 steps/s: under 0.001 steps/s"),
+        ("accel_limit = 5000", "accel_limit = ^1e-4", "accel_limit is 0.0005 steps/s^2: under 0.001 steps/s^2"),
+    ]);
 }
 
 #[test]

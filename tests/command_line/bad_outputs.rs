@@ -25,8 +25,8 @@ fn paths_that_no_file_can_have() {
     }
     folder.run("simulate move.toml --vcd out/a --csv ./out/a").refuses("--csv would write over --vcd: ./out/a");
     folder.run("demo --out out/kept").refuses("cannot write out/kept/six-axis.toml: ");
-    folder.run("verilog --out out/kept").refuses("cannot write out/kept/");
-    folder.run("verilog --out /proc/none").refuses("cannot write /proc/none/");
+    folder.run("verilog --out out/kept").refuses("cannot write out/kept: not a directory");
+    folder.run("verilog --out /proc/none").refuses("cannot write /proc/none: ");
     assert_eq!(folder.files(), before);
     assert_eq!(folder.run("simulate move.toml --save out/a.gtkw").status, 2);
     assert_eq!(std::fs::read_to_string(folder.path("move.toml")).unwrap(), GOOD);
