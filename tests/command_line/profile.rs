@@ -86,10 +86,23 @@ fn a_triangle_has_a_corner_and_a_trapezoid_two() {
     assert!(trapezoid.iter().all(|jump| (jump / 1000.0 - 1.0).abs() < 1e-12), "{trapezoid:?}");
 }
 
+/// From rest at constant acceleration: 2 x = a t^2, and x = n - 1/2 in the middle of step n.
+#[test]
+fn half_phase_lists_the_middles_of_the_steps() {
+    let all = json("profile trapezoid --speed 1000 --accel 5000 --phase half");
+    assert_eq!(all["phase"], "half");
+    let steps = all["profiles"][0]["steps"].as_array().unwrap();
+    assert_eq!(steps.len(), 100);
+    for (n, row) in (1..).zip(steps) {
+        assert_eq!(row["step"], n);
+        close(&row["time_s"], &((2.0 * f64::from(n) - 1.0) / 5000.0).sqrt().into());
+    }
+}
+
 #[test]
 fn json_has_stable_names() {
     let all = json("profile scurve --steps 40 --accel 5000 --jerk 1e5 --timer-hz 1e6");
-    assert_eq!(names(&all), ["drive", "files", "passed", "profiles", "timer_hz"]);
+    assert_eq!(names(&all), ["drive", "files", "passed", "phase", "profiles", "timer_hz"]);
     assert_eq!(all["drive"], json!({"step_angle_deg": 1.8, "microsteps": 1}));
     let profile = &all["profiles"][0];
     assert_eq!(names(profile), ["figures", "kind", "ramp", "steps"]);

@@ -2,6 +2,7 @@
 
 use crate::error::ReferenceError;
 use crate::reference::Reference;
+use crate::row::Listing;
 use std::io::{self, Write};
 use thiserror::Error;
 
@@ -22,21 +23,21 @@ impl From<csv::Error> for CsvError {
     }
 }
 
-/// Writes all steps of all profiles, one after the other; with a clock, Hz, delays in its counts too.
+/// Writes all steps of all profiles, one after the other; with a clock delays in its counts too.
 ///
 /// The numbers are the shortest that read back as the same double.
 ///
 /// # Errors
 /// A profile too long to list, a clock that is none, a writer that fails.
-pub fn write_csv(out: impl Write, references: &[Reference], clock_hz: Option<f64>) -> Result<(), CsvError> {
+pub fn write_csv(out: impl Write, references: &[Reference], listing: &Listing) -> Result<(), CsvError> {
     // Before the first byte: whether all can be listed.
-    references.iter().try_for_each(|reference| reference.rows(clock_hz).map(|_| ()))?;
+    references.iter().try_for_each(|reference| reference.rows(listing).map(|_| ()))?;
     let mut out = csv::Writer::from_writer(out);
-    let counted = clock_hz.map(|_| "delay_counts");
+    let counted = listing.clock_hz.map(|_| "delay_counts");
     let head = ["kind", "step", "time_s", "speed_steps_per_s", "delay_s"];
     out.write_record(head.into_iter().chain(counted))?;
     for reference in references {
-        for row in reference.rows(clock_hz)? {
+        for row in reference.rows(listing)? {
             let text = |value: Option<String>| value.unwrap_or_default();
             let fields = [
                 reference.kind().to_string(),

@@ -4,7 +4,7 @@
 //! millimetres, degrees or turns of a [`Drive`] as well as in steps, and gets [`Reference`]s.
 //!
 //! ```
-//! use carrystep_reference::{Drive, Kind, Length, Quantity, Request, Travel};
+//! use carrystep_reference::{Drive, Kind, Length, Listing, Quantity, Request, Travel};
 //!
 //! // The example of the logistic source.
 //! let drive = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
@@ -16,7 +16,7 @@
 //! };
 //! let logistic = request.reference(Kind::Logistic)?;
 //! assert_eq!(logistic.whole_steps(), 368.0);
-//! let first = logistic.rows(None)?.next().and_then(|row| row.delay_s);
+//! let first = logistic.rows(&Listing::SOURCES)?.next().and_then(|row| row.delay_s);
 //! assert!(first.is_some_and(|c0| (c0 - 0.181_171_021).abs() < 1e-9));
 //! # Ok::<(), carrystep_reference::ReferenceError>(())
 //! ```
@@ -39,4 +39,4 @@ pub use picture::{PictureError, Scale, picture};
 pub use quantity::{Length, Quantity};
 pub use reference::Reference;
 pub use request::{Request, Travel};
-pub use row::{MOST_ROWS, Row};
+pub use row::{Listing, MOST_ROWS, Row};

@@ -2,7 +2,7 @@
 
 use crate::error::ReferenceError;
 use crate::kind::Kind;
-use crate::row::{MOST_ROWS, Row};
+use crate::row::{Listing, MOST_ROWS, Row};
 use carrystep_profile::{Curve, Figures};
 use std::sync::Arc;
 
@@ -65,15 +65,16 @@ impl Reference {
         inside + (1.0 - left.max(0.0)) / self.figures.end_speed
     }
 
-    /// All steps, from 0; with a clock, Hz, delays in its counts too.
+    /// All steps.
     ///
     /// # Errors
     /// More than [`MOST_ROWS`]; a clock that is none.
-    pub fn rows(&self, clock_hz: Option<f64>) -> Result<impl Iterator<Item = Row> + '_, ReferenceError> {
+    pub fn rows(&self, listing: &Listing) -> Result<impl Iterator<Item = Row> + '_, ReferenceError> {
         let steps = self.whole_steps();
         if steps > f64::from(MOST_ROWS) {
             return Err(ReferenceError::TooLong { kind: self.kind, steps });
         }
+        let clock_hz = listing.clock_hz;
         if let Some(value) = clock_hz.filter(|clock| !(*clock > 0.0 && *clock <= 1e12)) {
             return Err(ReferenceError::OutOfRange {
                 what: "the timer's clock",
@@ -82,8 +83,9 @@ impl Reference {
             });
         }
         let last = steps as u32;
-        Ok((0..=last).map(move |step| {
-            let n = f64::from(step);
+        let (first, early) = listing.first();
+        Ok((first..=last).map(move |step| {
+            let n = f64::from(step) - early;
             let time_s = self.crossing(n);
             let delay_s = (step < last).then(|| self.delay(n));
             Row {

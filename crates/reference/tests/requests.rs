@@ -1,7 +1,10 @@
 //! Any request gets a curve that is what it says, or a refusal that says what would do.
 
 use carrystep_profile::Figures;
-use carrystep_reference::{Drive, Kind, Length, Quantity, ReferenceError, Request, Scale, Travel, picture, write_csv};
+use carrystep_reference::{
+    Drive, Kind, Length, Listing, Quantity, ReferenceError, Request, Scale, Travel, picture, write_csv,
+};
+use carrystep_spec::StartPhase;
 use proptest::prelude::*;
 
 const DRIVE: Drive = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
@@ -98,11 +101,14 @@ proptest! {
                     prop_assert!((figures.seconds / time - 1.0).abs() < 1e-9, "{time}: {figures:?}");
                 }
                 if reference.whole_steps() < 5000.0 {
-                    let rows: Vec<_> = reference.rows(Some(1e6)).expect("rows").collect();
-                    prop_assert!(rows.windows(2).all(|pair| pair[0].time_s <= pair[1].time_s));
-                    let sum: f64 = rows.iter().filter_map(|row| row.delay_s).sum();
-                    let end = rows.last().expect("a last row").time_s;
-                    prop_assert!((sum / end - 1.0).abs() < 1e-6, "{sum} {end}");
+                    for phase in [StartPhase::Zero, StartPhase::Half] {
+                        let listing = Listing { phase, clock_hz: Some(1e6) };
+                        let rows: Vec<_> = reference.rows(&listing).expect("rows").collect();
+                        prop_assert!(rows.windows(2).all(|pair| pair[0].time_s <= pair[1].time_s));
+                        let sum: f64 = rows.iter().filter_map(|row| row.delay_s).sum();
+                        let [first, end] = [rows.first(), rows.last()].map(|row| row.expect("a row").time_s);
+                        prop_assert!((sum - (end - first)).abs() <= 1e-6 * end, "{phase:?}: {sum} {first} {end}");
+                    }
                 }
             }
             Err(error) => prop_assert!(!error.to_string().is_empty()),
@@ -142,7 +148,7 @@ fn nothing_is_written_of_what_cannot_be_listed() {
     let short = Request { travel: Travel::Move(Quantity::new(10.0, Length::Step)), ..long.clone() };
     let both = [short.reference(Kind::Sine).expect("a sine"), long.reference(Kind::Sine).expect("a sine")];
     let mut text = Vec::new();
-    assert!(write_csv(&mut text, &both, None).is_err());
-    assert!(write_csv(&mut text, &both[..1], Some(f64::NAN)).is_err());
+    assert!(write_csv(&mut text, &both, &Listing::SOURCES).is_err());
+    assert!(write_csv(&mut text, &both[..1], &Listing { clock_hz: Some(f64::NAN), ..Listing::SOURCES }).is_err());
     assert!(text.is_empty());
 }

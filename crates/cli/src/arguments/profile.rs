@@ -1,6 +1,7 @@
 //! `carrystep profile`
 
-use carrystep_reference::{Drive, Kind, Length, Quantity, Request, Travel};
+use carrystep_reference::{Drive, Kind, Length, Listing, Quantity, Request, Travel};
+use carrystep_spec::StartPhase;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -41,9 +42,13 @@ pub struct Profile {
     /// One JSON document, with each step, instead of the table.
     #[arg(long, help_heading = "Output")]
     pub json: bool,
+    /// Where in a step its pulse is: `zero` lists t_0, t_1 ... as the sources do, `half` the middle of each step, as the
+    /// gateware emits by default.
+    #[arg(long, value_name = "PHASE", default_value = "zero", value_parser = phase(), help_heading = "Output")]
+    phase: StartPhase,
     /// Delays in counts of a timer with this clock, Hz, besides.
     #[arg(long, value_name = "HZ", allow_negative_numbers = true, help_heading = "Output")]
-    pub timer_hz: Option<f64>,
+    timer_hz: Option<f64>,
 }
 
 const NOTES: &str = "\
@@ -164,12 +169,23 @@ fn kind() -> impl clap::builder::TypedValueParser<Value = Kind> {
     PossibleValuesParser::new(Kind::ALL.map(Kind::name)).try_map(|name| name.parse::<Kind>())
 }
 
+fn phase() -> impl clap::builder::TypedValueParser<Value = StartPhase> {
+    use clap::builder::{PossibleValuesParser, TypedValueParser};
+    PossibleValuesParser::new(["zero", "half"])
+        .map(|name| if name == "half" { StartPhase::Half } else { StartPhase::Zero })
+}
+
 /// The one that was given.
 fn given<const N: usize>(flags: [(Option<f64>, Length); N]) -> Option<Quantity> {
     flags.into_iter().find_map(|(value, length)| Some(Quantity::new(value?, length)))
 }
 
 impl Profile {
+    /// What is listed of each curve.
+    pub fn listing(&self) -> Listing {
+        Listing { phase: self.phase, clock_hz: self.timer_hz }
+    }
+
     /// What the flags ask for.
     pub fn request(&self) -> Request {
         use Length::{Degree, Millimetre, Step, Turn};

@@ -5,8 +5,9 @@ use crate::failure::Failure;
 use crate::figures::{self, FiguresJson};
 use crate::output::{self, OutputFile};
 use carrystep_reference::{
-    CsvError, Drive, Kind, Length, PictureError, Reference, ReferenceError, Row, Scale, picture, write_csv,
+    CsvError, Drive, Kind, Length, Listing, PictureError, Reference, ReferenceError, Row, Scale, picture, write_csv,
 };
+use carrystep_spec::StartPhase;
 use serde::Serialize;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -16,6 +17,7 @@ use std::path::{Path, PathBuf};
 struct Profiles<'a> {
     passed: bool,
     drive: &'a Drive,
+    phase: StartPhase,
     #[serde(skip_serializing_if = "Option::is_none")]
     timer_hz: Option<f64>,
     profiles: Vec<ProfileJson>,
@@ -35,14 +37,16 @@ pub fn run(arguments: &Profile) -> Result<(), Failure> {
     only_once(arguments)?;
     let request = arguments.request();
     let references = request.references(&arguments.kinds)?;
-    let clock = arguments.timer_hz;
+    let listing = arguments.listing();
     let files = files(arguments, &references, &request.drive)?;
     if arguments.json {
-        let profiles = references.iter().map(|reference| json(reference, clock)).collect::<Result<_, _>>()?;
-        return output::print_json(&Profiles { passed: true, drive: &request.drive, timer_hz: clock, profiles, files });
+        let profiles = references.iter().map(|reference| json(reference, &listing)).collect::<Result<_, _>>()?;
+        let Listing { phase, clock_hz: timer_hz } = listing;
+        let drive = &request.drive;
+        return output::print_json(&Profiles { passed: true, drive, phase, timer_hz, profiles, files });
     }
     if to_stdout(arguments) {
-        return Ok(write_csv(io::stdout().lock(), &references, clock)?);
+        return Ok(write_csv(io::stdout().lock(), &references, &listing)?);
     }
     let wrote: Vec<String> = files.iter().map(|file| format!("wrote {}\n", file.display())).collect();
     output::print(&format!("{}{}", figures::table(&references, &request.drive), wrote.concat()))
@@ -73,7 +77,7 @@ fn files(arguments: &Profile, references: &[Reference], drive: &Drive) -> Result
     let mut csv = begin(arguments.csv.as_ref().filter(|_| !to_stdout(arguments)))?;
     let mut plot = begin(arguments.plot.as_ref())?;
     if let Some(file) = &mut csv {
-        write_csv(file, references, arguments.timer_hz)?;
+        write_csv(file, references, &arguments.listing())?;
     }
     if let Some(file) = &mut plot {
         file.text(&picture(references, scale(drive)?)?)?;
@@ -87,12 +91,12 @@ fn scale(drive: &Drive) -> Result<Scale, ReferenceError> {
     Ok(Scale { unit, steps: drive.steps_in(unit)? })
 }
 
-fn json(reference: &Reference, clock: Option<f64>) -> Result<ProfileJson, ReferenceError> {
+fn json(reference: &Reference, listing: &Listing) -> Result<ProfileJson, ReferenceError> {
     Ok(ProfileJson {
         kind: reference.kind(),
         ramp: reference.is_ramp(),
         figures: FiguresJson::new(reference),
-        steps: reference.rows(clock)?.collect(),
+        steps: reference.rows(listing)?.collect(),
     })
 }
 
