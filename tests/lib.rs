@@ -6,3 +6,4 @@ pub mod golden;
 pub mod lockstep;
 pub mod moves;
 pub mod programs;
+pub mod random_moves;

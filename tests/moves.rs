@@ -1,11 +1,12 @@
 //! Move files and golden cases as programs.
 
 use crate::golden::Case;
-use carrystep_levels::Job;
+use carrystep_levels::pins::PinFeed;
+use carrystep_levels::{Job, Level};
 use carrystep_plan::Plan;
 use carrystep_profile::Timeline;
-use carrystep_spec::{AXES, Command, MoveFile, Program, Segment};
-use carrystep_trace::{AxisSetup, Origin, Setup};
+use carrystep_spec::{AXES, Build, Command, MoveFile, Program, Segment};
+use carrystep_trace::{AxisSetup, Checker, Origin, Report, Setup};
 use std::path::Path;
 
 /// The root of the workspace.
@@ -36,8 +37,19 @@ pub fn side_by_side(cases: &[&Case]) -> (Program, u64) {
     (program, cases.iter().map(|case| case.total_ticks).max().unwrap_or(0))
 }
 
+/// Runs a plan's program, or another in its place, on the model and checks the pins: what `carrystep simulate` does.
+pub fn check(file: &MoveFile, plan: &Plan, program: &Program, build: &Build) -> Report {
+    let timelines = plan.timelines();
+    let job = Job::new(build, program, plan.total_ticks());
+    let mut checker = Checker::new(check_setup(file, plan, &timelines, &job));
+    let mut feed = PinFeed::new(build.timebase, timelines.len(), &mut checker);
+    let outcome = carrystep_levels::run(Level::Model, &job, &mut |cycle, outputs| feed.observe(cycle, outputs));
+    feed.end(outcome.expect("the model").clocks).expect("the checker");
+    checker.finish()
+}
+
 /// What the pins of a planned move file are checked against, in a run of `job`.
-pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], job: &Job<'_>) -> Setup<'a> {
+fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], job: &Job<'_>) -> Setup<'a> {
     let time = plan.build.timebase;
     let load = carrystep_levels::origin(job).expect("the program starts");
     let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_spec::Axis, &'a Timeline))| {

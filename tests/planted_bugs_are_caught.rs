@@ -2,12 +2,12 @@
 //! which a rung must catch. A bug that nobody catches fails here; so does one that can no longer be
 //! planted, because the text it changes is gone.
 
-use carrystep_levels::{Job, Level, run, run_verilog};
+use carrystep_levels::{Job, Level, run_verilog};
 use carrystep_plan::Plan;
 use carrystep_spec::{Build, Command, Program, Segment, StartPhase};
 use carrystep_tests::lockstep::{self, Record};
 use carrystep_tests::moves;
-use carrystep_trace::{Checker, Report};
+use carrystep_trace::Report;
 
 /// A change of the exported Verilog: what is wrong then, the text, and what it becomes.
 struct Bug {
@@ -104,16 +104,10 @@ fn rung_5_catches_each_bug_in_the_gateware() {
     }
 }
 
-/// Runs a plan's program on the model and checks the pins: what `carrystep simulate` does.
+/// The demo's pins, checked.
 fn check(plan: &Plan, program: &Program, build: &Build) -> Report {
     let file = carrystep_spec::MoveFile::load(&moves::root().join("sim/demo.toml")).expect("the demo's move file");
-    let timelines = plan.timelines();
-    let job = Job::new(build, program, plan.total_ticks());
-    let mut checker = Checker::new(moves::check_setup(&file, plan, &timelines, &job));
-    let mut feed = carrystep_levels::pins::PinFeed::new(build.timebase, timelines.len(), &mut checker);
-    let outcome = run(Level::Model, &job, &mut |cycle, outputs| feed.observe(cycle, outputs)).expect("the model");
-    feed.end(outcome.clocks).expect("the checker");
-    checker.finish()
+    moves::check(&file, plan, program, build)
 }
 
 /// The plan's program with every segment changed.
