@@ -17,7 +17,7 @@ fn main() {
         let job = Job::new(&plan.build, &program, plan.total_ticks());
         let mut best = f64::MAX;
         let mut out = (0, 0, 0);
-        for _ in 0..20 {
+        for _ in 0..std::env::var("N").map_or(20, |n| n.parse().expect("n")) {
             let t = now();
             let mut l = fast::EdgesOnly(Count { n: 0, hash: 0 });
             let o = fast::run(&job, &mut l).expect("run");

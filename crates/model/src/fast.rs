@@ -86,7 +86,7 @@ impl Fast {
             clocks = cycle - self.cycle;
         }
         self.pass(clocks);
-        edges::merge(&self.edges, to);
+        edges::merge(&mut self.edges, to);
         clocks
     }
 

@@ -1,19 +1,28 @@
 //! The ticks of a stretch that step: found by jumping from one to the next, or by ticking.
 
 use super::cubic::{Cubic, first};
+use crate::phase::bisect_all;
 
 /// A stretch is ticked where a step is expected in every so many ticks or fewer: there an addition a
 /// tick costs less than a root an edge.
-const DENSE: u32 = 8;
+const DENSE: u32 = 6;
 
-/// Roots that are guessed together, so that the divisions overlap.
-const BATCH: usize = 8;
+/// Steps that are searched together: their roots do not wait for each other.
+pub(super) const BATCH: usize = 16;
 
-/// Guesses that are put right by one tick at a time; a worse one is not worth it.
-const TRIES: u32 = 4;
+/// Refinements of a guess where there is jerk.
+const REFINEMENTS: usize = 3;
 
 /// One step in units of 2^-64 step.
 const STEP: f64 = 18_446_744_073_709_551_616.0;
+
+/// Ticks that step, with P and V before them.
+#[derive(Debug, Clone, Copy, Default)]
+struct Batch {
+    ticks: [u32; BATCH],
+    p: [u64; BATCH],
+    v: [i64; BATCH],
+}
 
 /// Ticks over which V keeps its sign and which stay in range, seen in the direction of travel.
 ///
@@ -34,102 +43,135 @@ impl Stretch {
         Self { p, cubic, ticks, backward }
     }
 
-    /// P before tick `n`, with the steps since the start above bit 63.
-    fn position(&self, n: u32) -> i128 {
-        i128::from(self.p) + self.cubic.distance(n)
-    }
-
-    /// Hands over each tick that steps, from 0, with the P and V that it begins with.
-    pub fn each(&self, mut found: impl FnMut(u32, u64, i64)) {
-        let backward = self.backward;
-        let mut found = |n: u32, p: u64, v: i64| if backward { found(n, !p, -v) } else { found(n, p, v) };
-        let steps = (self.position(self.ticks) >> 64) as u32;
-        if steps == 0 {
-            return;
-        }
+    /// Hands over the ticks that step, counted from 0, with the phase of each: in order, a batch at a time.
+    pub fn each(self, phase_bits: u32, mut found: impl FnMut(&[u32], &[u32])) {
+        let mut found = |batch: &mut Batch, count: usize| {
+            if self.backward {
+                batch.p.iter_mut().for_each(|p| *p = !*p);
+                batch.v.iter_mut().for_each(|v| *v = v.wrapping_neg());
+            }
+            let phases = bisect_all(&batch.p, &batch.v, phase_bits);
+            found(&batch.ticks[..count], &phases[..count]);
+        };
+        let steps = self.steps_before(self.ticks);
         if self.ticks / DENSE < steps {
             self.tick(&mut found);
-        } else if self.cubic.j == 0 {
-            self.jump_parabola(steps, &mut found);
         } else {
-            self.jump_cubic(steps, &mut found);
+            self.jump(steps, &mut found);
         }
+    }
+
+    /// Steps that are over before tick `n`.
+    fn steps_before(&self, n: u32) -> u32 {
+        (i128::from(self.p).wrapping_add(self.cubic.distance(n)) >> 64) as u32
     }
 
     /// Tick by tick.
-    fn tick(&self, found: &mut impl FnMut(u32, u64, i64)) {
+    fn tick(&self, found: &mut impl FnMut(&mut Batch, usize)) {
         let (mut p, Cubic { mut v, mut a, j }) = (self.p, self.cubic);
-        for n in 0..self.ticks {
+        let (mut batch, mut count) = (Batch::default(), 0);
+        for tick in 0..self.ticks {
+            // No branch: what does not step is overwritten by the next.
+            (batch.ticks[count], batch.p[count], batch.v[count]) = (tick, p, v);
             let (next, carry) = p.overflowing_add(v.cast_unsigned());
-            if carry {
-                found(n, p, v);
+            count += usize::from(carry);
+            if count == BATCH {
+                found(&mut batch, count);
+                count = 0;
             }
             (p, v, a) = (next, v.wrapping_add(a), a.wrapping_add(j));
         }
+        found(&mut batch, count);
     }
 
-    /// From step to step: n V + n (n - 1) / 2 A = d has a root in closed form.
-    fn jump_parabola(&self, steps: u32, found: &mut impl FnMut(u32, u64, i64)) {
-        let a = self.cubic.a as f64 / STEP;
-        let b = self.cubic.v as f64 / STEP - a / 2.0;
+    /// From step to step; each batch begins where the one before has ended.
+    fn jump(mut self, steps: u32, found: &mut impl FnMut(&mut Batch, usize)) {
+        let (mut left, mut done) = (steps as usize, 0);
+        while left > 0 {
+            let count = left.min(BATCH);
+            let mut batch = self.batch(count);
+            let last = count - 1;
+            let ticks = batch.ticks[last] + 1;
+            self.p = batch.p[last].wrapping_add(batch.v[last].cast_unsigned());
+            self.cubic = self.cubic.after(ticks);
+            self.ticks -= ticks;
+            batch.ticks.iter_mut().for_each(|tick| *tick = tick.wrapping_add(done));
+            done += ticks;
+            left -= count;
+            found(&mut batch, count);
+        }
+    }
+
+    /// The first `count` ticks that step.
+    ///
+    /// Guesses are believed if each of them is a tick that steps, each comes after the one before, and
+    /// just `count - 1` steps are over before the last: then there is no room for another.
+    fn batch(&self, count: usize) -> Batch {
+        let batch = self.at(self.guesses());
+        let steps = |i: usize| batch.p[i].overflowing_add(batch.v[i].cast_unsigned()).1;
+        let last = batch.ticks[count - 1];
+        let right = last < self.ticks
+            && self.steps_before(last) as usize == count - 1
+            && (0..count).fold(true, |all, i| all & steps(i))
+            && (1..count).fold(true, |all, i| all & (batch.ticks[i - 1] < batch.ticks[i]));
+        if right { batch } else { self.at(self.search(count)) }
+    }
+
+    /// These ticks, as if they stepped.
+    fn at(&self, ticks: [u32; BATCH]) -> Batch {
+        let mut batch = Batch { ticks, ..Batch::default() };
+        for ((n, p), v) in ticks.into_iter().zip(&mut batch.p).zip(&mut batch.v) {
+            // What P wraps by are the steps.
+            *p = self.p.wrapping_add(self.cubic.distance_wrapping(n));
+            *v = self.cubic.speed_wrapping(n);
+        }
+        batch
+    }
+
+    /// The first `count` ticks that step: by halving, and without any guess.
+    #[cold]
+    fn search(&self, count: usize) -> [u32; BATCH] {
+        let mut ticks = [0; BATCH];
+        let mut from = 0;
+        for (step, tick) in (1..).zip(&mut ticks[..count]) {
+            *tick = first(from, self.ticks.saturating_sub(1), |n| self.steps_before(n + 1) >= step);
+            from = *tick + 1;
+        }
+        ticks
+    }
+
+    /// Where the first steps are expected: the roots of n V + n (n - 1) / 2 A = d, refined by Newton's
+    /// method where there is jerk.
+    fn guesses(&self) -> [u32; BATCH] {
+        let Cubic { v, a, j } = self.cubic;
+        let (v, a, j) = (v as f64 / STEP, a as f64 / STEP, j as f64 / STEP);
         let begin = self.p as f64 / STEP;
-        let mut step = 1;
-        while step <= steps {
-            // Without a dependency between the roots, and so without waiting for each.
-            let guesses: [u32; BATCH] = std::array::from_fn(|i| {
-                let d = f64::from(step) + i as f64 - begin;
-                let root = (b * b + 2.0 * a * d).max(0.0).sqrt();
-                (2.0 * d / (b + root)) as u32
-            });
-            for guess in guesses {
-                if step <= steps {
-                    self.settle(step, guess, found);
-                    step += 1;
+        let most = f64::from(self.ticks);
+        let b = v - a / 2.0;
+        let distance = |i: usize| (i + 1) as f64 - begin;
+        let mut roots = [0.0; BATCH];
+        for (i, n) in roots.iter_mut().enumerate() {
+            let d = distance(i);
+            let square = b * b + 2.0 * a * d;
+            // Not `max`, which cares for what is no number.
+            *n = 2.0 * d / (b + if square > 0.0 { square } else { 0.0 }.sqrt());
+        }
+        if j != 0.0 {
+            // In powers of n instead of binomials.
+            let (c1, c2, c3) = (b + j / 3.0, (a - j) / 2.0, j / 6.0);
+            for _ in 0..REFINEMENTS {
+                for (i, n) in roots.iter_mut().enumerate() {
+                    let near = if *n < most { *n } else { most };
+                    let miss = ((c3 * near + c2) * near + c1) * near - distance(i);
+                    let slope = (3.0 * c3 * near + 2.0 * c2) * near + c1;
+                    *n = near - miss / slope;
                 }
             }
         }
-    }
-
-    /// From step to step by Newton's method, from where the last period leads.
-    fn jump_cubic(&self, steps: u32, found: &mut impl FnMut(u32, u64, i64)) {
-        let Cubic { v, a, j } = self.cubic;
-        let (v, a, j) = (v as f64 / STEP, a as f64 / STEP, j as f64 / STEP);
-        // In powers of n instead of binomials.
-        let (c1, c2, c3) = (v - a / 2.0 + j / 3.0, (a - j) / 2.0, j / 6.0);
-        let begin = self.p as f64 / STEP;
-        let most = f64::from(self.ticks);
-        let (mut n, mut period) = (0.0, (1.0 - begin) / v);
-        for step in 1..=steps {
-            let d = f64::from(step) - begin;
-            let mut root: f64 = n + period;
-            for _ in 0..2 {
-                let miss = ((c3 * root + c2) * root + c1) * root - d;
-                let slope = (3.0 * c3 * root + 2.0 * c2) * root + c1;
-                // not `clamp`, which does not like what is no number
-                root = (root - miss / slope).max(n).min(most);
-            }
-            (n, period) = (root, root - n);
-            self.settle(step, root as u32, found);
+        let mut ticks = [0; BATCH];
+        for (tick, root) in ticks.iter_mut().zip(roots) {
+            *tick = root as u32;
         }
-    }
-
-    /// The tick that makes step number `step`, exactly, from a guess.
-    #[inline]
-    fn settle(&self, step: u32, guess: u32, found: &mut impl FnMut(u32, u64, i64)) {
-        let mut n = guess.min(self.ticks - 1);
-        for _ in 0..TRIES {
-            let before = self.position(n);
-            let made = (before >> 64) as u32;
-            let (p, v) = (before as u64, self.cubic.speed(n) as i64);
-            if made >= step {
-                n = n.saturating_sub(1);
-            } else if made + 1 == step && p.overflowing_add(v.cast_unsigned()).1 {
-                return found(n, p, v);
-            } else {
-                n = (n + 1).min(self.ticks - 1);
-            }
-        }
-        n = first(0, self.ticks - 1, |n| (self.position(n + 1) >> 64) as u32 >= step);
-        found(n, self.position(n) as u64, self.cubic.speed(n) as i64);
+        ticks
     }
 }

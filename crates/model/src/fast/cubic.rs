@@ -1,6 +1,9 @@
-//! P of one axis over a stretch of plain ticks, in closed form and without wrapping.
+//! P of one axis over a stretch of plain ticks, in closed form.
+//!
+//! Nothing here wraps, although all of it says so: numbers of ticks are at most 2^16, binomials therefore
+//! under 2^48, and each of the products under 2^112. Checks would cost as much as the sums.
 
-/// Most ticks in a stretch: the binomials below stay under 2^48, every product under 2^112.
+/// Most ticks in a stretch.
 pub(super) const MOST_TICKS: u32 = 1 << 16;
 
 /// V, A and J before the first tick of a stretch.
@@ -14,38 +17,51 @@ pub(super) struct Cubic {
 /// n (n - 1) / 2
 const fn pairs(n: u32) -> i64 {
     let n = n as i64;
-    n * (n - 1) / 2
+    n.wrapping_mul(n.wrapping_sub(1)) / 2
 }
 
 /// n (n - 1) (n - 2) / 6
 const fn triples(n: u32) -> i64 {
-    pairs(n) * (n as i64 - 2) / 3
+    pairs(n).wrapping_mul((n as i64).wrapping_sub(2)) / 3
 }
 
 /// Exact: 64 by 64 bits are always 128.
 const fn wide(x: i64, y: i64) -> i128 {
-    x as i128 * y as i128
+    (x as i128).wrapping_mul(y as i128)
 }
 
 impl Cubic {
     /// V before tick `n`, counted from 0.
     pub const fn speed(self, n: u32) -> i128 {
-        self.v as i128 + wide(n as i64, self.a) + wide(pairs(n), self.j)
+        (self.v as i128).wrapping_add(wide(n as i64, self.a)).wrapping_add(wide(pairs(n), self.j))
     }
 
     /// A before tick `n`.
     pub const fn acceleration(self, n: u32) -> i128 {
-        self.a as i128 + wide(n as i64, self.j)
+        (self.a as i128).wrapping_add(wide(n as i64, self.j))
     }
 
     /// What the first `n` ticks add to P.
     pub const fn distance(self, n: u32) -> i128 {
-        wide(n as i64, self.v) + wide(pairs(n), self.a) + wide(triples(n), self.j)
+        let linear = wide(n as i64, self.v);
+        linear.wrapping_add(wide(pairs(n), self.a)).wrapping_add(wide(triples(n), self.j))
+    }
+
+    /// [`Cubic::speed`], modulo 2^64.
+    pub const fn speed_wrapping(self, n: u32) -> i64 {
+        let linear = self.a.wrapping_mul(n as i64).wrapping_add(self.v);
+        linear.wrapping_add(self.j.wrapping_mul(pairs(n)))
+    }
+
+    /// [`Cubic::distance`], modulo 2^64.
+    pub const fn distance_wrapping(self, n: u32) -> u64 {
+        let linear = self.v.wrapping_mul(n as i64).wrapping_add(self.a.wrapping_mul(pairs(n)));
+        linear.wrapping_add(self.j.wrapping_mul(triples(n))).cast_unsigned()
     }
 
     /// The registers before tick `n` of a stretch that is [`Cubic::stays_in_range`].
     pub const fn after(self, n: u32) -> Self {
-        Self { v: self.speed(n) as i64, a: self.acceleration(n) as i64, j: self.j }
+        Self { v: self.speed_wrapping(n), a: self.a.wrapping_add(self.j.wrapping_mul(n as i64)), j: self.j }
     }
 
     /// The same course in the other direction; it is there where this one stays in range.

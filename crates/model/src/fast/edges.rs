@@ -60,16 +60,20 @@ impl Edge {
 }
 
 /// Hands over the edges of all axes in order; each axis' are in order already.
-pub(super) fn merge(axes: &[Vec<Record>; AXES], to: &mut impl Edges) {
+///
+/// Without a branch or a look at memory that depends on who is first: that cannot be predicted.
+pub(super) fn merge(axes: &mut [Vec<Record>; AXES], to: &mut impl Edges) {
+    let edges: usize = axes.iter().map(Vec::len).sum();
+    axes.iter_mut().for_each(|axis| axis.push(Record::MAX));
+    let [a, b, c, d, e, f] = axes.each_ref().map(Vec::as_slice);
     let mut next = [0; AXES];
-    let head = |axis: usize, next: usize| axes[axis].get(next).copied().unwrap_or(Record::MAX);
-    let mut heads: [Record; AXES] = std::array::from_fn(|axis| head(axis, 0));
-    for _ in 0..axes.iter().map(Vec::len).sum() {
-        let least = heads.iter().fold(Record::MAX, |least, &head| least.min(head));
-        let edge = Edge::from_record(least);
-        let axis = usize::from(edge.axis);
-        next[axis] += 1;
-        heads[axis] = head(axis, next[axis]);
-        to.edge(edge);
+    for _ in 0..edges {
+        let heads = [a[next[0]], b[next[1]], c[next[2]], d[next[3]], e[next[4]], f[next[5]]];
+        let least = heads[0].min(heads[1]).min(heads[2].min(heads[3])).min(heads[4].min(heads[5]));
+        for (next, head) in next.iter_mut().zip(heads) {
+            // No two are the same: each names its axis.
+            *next += usize::from(head == least);
+        }
+        to.edge(Edge::from_record(least));
     }
 }

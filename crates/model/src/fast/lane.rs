@@ -4,7 +4,6 @@ use super::crossings::Stretch;
 use super::cubic::Cubic;
 use super::edges::Record;
 use super::pins::{Overrun, Pins};
-use crate::phase::bisect;
 use crate::six_axis::{Lane, Stage};
 use carrystep_spec::{PinTiming, Timebase};
 
@@ -32,8 +31,8 @@ impl From<Overrun> for FaultIn {
 struct Passage<'a> {
     pins: Pins<'a>,
     window: Window,
-    clocks_per_tick: u64,
-    clocks_per_phase: u64,
+    clocks_per_tick: u32,
+    clocks_per_phase: u32,
     phase_bits: u32,
 }
 
@@ -49,11 +48,11 @@ pub(super) fn pass(
     let mut passage = Passage {
         pins: Pins::new(axis, pins, lane.shaper, lane.emitted.sign, window.from, edges),
         window,
-        clocks_per_tick: timebase.clocks_per_tick().into(),
-        clocks_per_phase: timebase.clocks_per_phase().into(),
+        clocks_per_tick: timebase.clocks_per_tick(),
+        clocks_per_phase: timebase.clocks_per_phase(),
         phase_bits: timebase.phase_bits(),
     };
-    let strobes = ((window.to - window.tick) / passage.clocks_per_tick) as u32;
+    let strobes = ((window.to - window.tick) / u64::from(passage.clocks_per_tick)) as u32;
     passage.request(lane.emitted, 0)?;
     if strobes > 0 {
         passage.emit(lane.computed, 1)?;
@@ -74,7 +73,7 @@ pub(super) fn pass(
 impl Passage<'_> {
     /// First cycle of tick `n` of the window.
     fn cycle(&self, n: u32) -> u64 {
-        self.window.tick + u64::from(n) * self.clocks_per_tick
+        self.window.tick + u64::from(n) * u64::from(self.clocks_per_tick)
     }
 
     /// A stage begins to be emitted with tick `n`.
@@ -86,8 +85,8 @@ impl Passage<'_> {
     /// The request of a stage that is emitted during tick `n`, where it falls into the window.
     fn request(&mut self, stage: Stage, n: u32) -> Result<(), Overrun> {
         let Some(step) = stage.step else { return Ok(()) };
-        let at = self.cycle(n) + u64::from(step.phase) * self.clocks_per_phase;
-        if (self.window.from..self.window.to).contains(&at) { self.pins.request(at, step.backward) } else { Ok(()) }
+        let at = self.cycle(n) + u64::from(step.phase) * u64::from(self.clocks_per_phase);
+        if (self.window.from..self.window.to).contains(&at) { self.pins.requests([at], step.backward) } else { Ok(()) }
     }
 
     /// The strobe at the end of tick `n`, as it is written in the contract.
@@ -111,9 +110,9 @@ impl Passage<'_> {
             let cubic = cubic(lane);
             let length = cubic.same_sign(ticks - done);
             self.pins.sign(self.cycle(done + 2), cubic.v.signum() as i8)?;
-            self.requests(Stretch::new(lane.axis.p, cubic, length), done)?;
+            self.requests(Stretch::new(lane.axis.p, cubic, length), done, cubic.v < 0)?;
             let Cubic { v, a, .. } = cubic.after(length);
-            let p = lane.axis.p.wrapping_add(cubic.distance(length) as u64);
+            let p = lane.axis.p.wrapping_add(cubic.distance_wrapping(length));
             lane.axis = crate::axis::State { p, v, a, ..lane.axis };
             done += length;
         }
@@ -124,14 +123,14 @@ impl Passage<'_> {
     }
 
     /// All requests of a stretch that begins at tick `done`.
-    fn requests(&mut self, stretch: Stretch, done: u32) -> Result<(), Overrun> {
+    fn requests(&mut self, stretch: Stretch, done: u32, backward: bool) -> Result<(), Overrun> {
         let mut overrun = Ok(());
         let first = self.cycle(done + 2);
-        stretch.each(|n, p, v| {
-            let phase = u64::from(bisect(p, v, self.phase_bits));
-            let at = first + u64::from(n) * self.clocks_per_tick + phase * self.clocks_per_phase;
+        let [per_tick, per_phase] = [self.clocks_per_tick, self.clocks_per_phase].map(u64::from);
+        stretch.each(self.phase_bits, |ticks, phases| {
+            let cycle = |(&tick, &phase)| first + u64::from(tick) * per_tick + u64::from(phase) * per_phase;
             if overrun.is_ok() {
-                overrun = self.pins.request(at, v < 0);
+                overrun = self.pins.requests(ticks.iter().zip(phases).map(cycle), backward);
             }
         });
         overrun

@@ -44,17 +44,23 @@ impl<'a> Pins<'a> {
         Self { axis, pins, edges, sign, calm, state, at, busy, hold, setup }
     }
 
-    /// A step is asked for in clock `at`.
+    /// Steps are asked for in these clocks.
     #[inline]
-    pub fn request(&mut self, at: u64, backward: bool) -> Result<(), Overrun> {
-        if !(self.calm && at >= self.busy && at >= self.setup && backward == self.state.dir) {
-            return self.hard_request(at, backward);
+    pub fn requests(&mut self, clocks: impl IntoIterator<Item = u64>, backward: bool) -> Result<(), Overrun> {
+        let axis = self.axis;
+        let record = |at| Edge { clock: at + 1, axis, change: Change::Rise, backward }.record();
+        let period = u64::from(self.pins.width + self.pins.gap);
+        for at in clocks {
+            if self.calm && backward == self.state.dir && at >= self.busy && at >= self.setup {
+                self.edges.push(record(at));
+                self.busy = at + period;
+                self.hold = at + u64::from(self.pins.hold);
+                self.state.step = true;
+                self.state.position = self.state.position.wrapping_add(if backward { -1 } else { 1 });
+            } else {
+                self.hard_request(at, backward)?;
+            }
         }
-        self.edges.push(Edge { clock: at + 1, axis: self.axis, change: Change::Rise, backward }.record());
-        self.busy = at + u64::from(self.pins.width + self.pins.gap);
-        self.hold = at + u64::from(self.pins.hold);
-        self.state.step = true;
-        self.state.position = self.state.position.wrapping_add(if backward { -1 } else { 1 });
         Ok(())
     }
 
