@@ -2,7 +2,9 @@
 
 pub mod axis_bench;
 pub mod closed_form;
+pub mod dense;
 pub mod golden;
 pub mod lockstep;
 pub mod moves;
 pub mod programs;
+pub mod twins;
