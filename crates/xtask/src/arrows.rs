@@ -4,7 +4,7 @@ use crate::shell::{self, Done};
 use std::collections::BTreeSet;
 
 /// Each crate and all crates of the house that it may reach, directly or through others.
-const ALLOWED: [(&str, &[&str]); 10] = [
+const ALLOWED: [(&str, &[&str]); 11] = [
     ("spec", &[]),
     ("profile", &["spec"]),
     ("plan", &["spec", "profile"]),
@@ -14,6 +14,7 @@ const ALLOWED: [(&str, &[&str]); 10] = [
     ("trace", &["spec", "profile"]),
     ("levels", &["spec", "profile", "model", "hdl", "export", "trace"]),
     ("cli", &["spec", "profile", "plan", "model", "hdl", "export", "trace", "levels"]),
+    ("bench", &["spec", "profile", "plan", "model", "hdl", "export", "trace", "levels"]),
     ("xtask", &[]),
 ];
 
