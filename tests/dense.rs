@@ -32,16 +32,22 @@ fn course(ticks: u32) -> impl Strategy<Value = Course> {
     let n = f64::from(ticks);
     let scaled = |part: f64, whole: f64| ((part * whole) as i64).max(-TOP);
     let top = TOP as f64;
-    let free = (part(), part(), part()).prop_map(move |(v, a, j)| {
-        Course { v: scaled(v, top), a: scaled(a, top / n), j: scaled(j, top / n / n) }
+    let free = (part(), part(), part()).prop_map(move |(v, a, j)| Course {
+        v: scaled(v, top),
+        a: scaled(a, top / n),
+        j: scaled(j, top / n / n),
     });
     // There and back: V turns in mid-segment, once or twice.
-    let turning = (part(), 0.1..2.0).prop_map(move |(v, sharp)| {
-        Course { v: scaled(v, top), a: scaled(-v * 4.0 * sharp, top / n), j: scaled(v * 8.0 * sharp, top / n / n) }
+    let turning = (part(), 0.1..2.0).prop_map(move |(v, sharp)| Course {
+        v: scaled(v, top),
+        a: scaled(-v * 4.0 * sharp, top / n),
+        j: scaled(v * 8.0 * sharp, top / n / n),
     });
     // An extremum within the first ticks, and a sign that lasts for one.
-    let sharp = (1_i64 << 20..1 << 59, 0.3..3.0, -2_i64..3).prop_map(|(a, ticks, off)| {
-        Course { v: -a / 2 + off, a, j: -((a as f64 / ticks) as i64) }
+    let sharp = (1_i64 << 20..1 << 59, 0.3..3.0, -2_i64..3).prop_map(|(a, ticks, off)| Course {
+        v: -a / 2 + off,
+        a,
+        j: -((a as f64 / ticks) as i64),
     });
     let steady = dividing().prop_map(|v| Course { v, a: 0, j: 0 });
     // Just under the greatest speed, or on it.
@@ -104,20 +110,22 @@ pub fn program(ticks: u32) -> impl Strategy<Value = Program> {
     let short = prop::collection::vec(row(prop_oneof![1 => Just(1_u32), 3 => 2_u32..40], false), 0..4);
     let dense = prop::collection::vec(row(ticks / 8..ticks, false), 0..4);
     let sparse = prop::collection::vec(row(ticks / 2..4 * ticks, true), 0..3);
-    (prop::option::of(residue()), short, dense, sparse, any::<bool>()).prop_map(|(residue, short, dense, sparse, last)| {
-        let rows: Vec<_> = residue.into_iter().flatten().chain(short).chain(dense).chain(sparse).collect();
-        let count = rows.len();
-        let mut program = Program::new();
-        for (row, (ticks, axes)) in rows.into_iter().enumerate() {
-            for (axis, Course { v, a, j }) in (0..).zip(axes) {
-                let segment = Segment { ticks, v, a, j, last: last && row + 1 == count };
-                program.push(Command::Segment { axis, segment });
+    (prop::option::of(residue()), short, dense, sparse, any::<bool>()).prop_map(
+        |(residue, short, dense, sparse, last)| {
+            let rows: Vec<_> = residue.into_iter().flatten().chain(short).chain(dense).chain(sparse).collect();
+            let count = rows.len();
+            let mut program = Program::new();
+            for (row, (ticks, axes)) in rows.into_iter().enumerate() {
+                for (axis, Course { v, a, j }) in (0..).zip(axes) {
+                    let segment = Segment { ticks, v, a, j, last: last && row + 1 == count };
+                    program.push(Command::Segment { axis, segment });
+                }
+                if row == 0 {
+                    program.push(Command::Start { mask: 0x3f });
+                }
             }
-            if row == 0 {
-                program.push(Command::Start { mask: 0x3f });
-            }
-        }
-        program.extend([Command::Wait { clocks: 200 }, Command::Clear]);
-        program
-    })
+            program.extend([Command::Wait { clocks: 200 }, Command::Clear]);
+            program
+        },
+    )
 }

@@ -105,7 +105,8 @@ impl Twins {
 
     /// The slow model's edges, from its pins alone.
     fn slow_clock(&mut self, inputs: &Inputs, cycle: u64) {
-        let pins = |slow: &SixAxis| std::array::from_fn::<_, 6, _>(|axis| (slow.shaper(axis).step, slow.shaper(axis).dir));
+        let pins =
+            |slow: &SixAxis| std::array::from_fn::<_, 6, _>(|axis| (slow.shaper(axis).step, slow.shaper(axis).dir));
         let before = pins(&self.slow);
         self.slow.clock(inputs);
         let edge = |axis, change, backward| Edge { clock: cycle + 1, axis, change, backward };

@@ -44,7 +44,11 @@ pub fn ours(moves: &Moves, folder: &Path) -> Result<Written, String> {
             origin_ps: 0,
             total_ticks: moves.plan.total_ticks(),
             axes: axes
-                .map(|(i, (timeline, name))| AxisWaves { name, timeline, segments: Box::new(moves.plan.axis_segments(i)) })
+                .map(|(i, (timeline, name))| AxisWaves {
+                    name,
+                    timeline,
+                    segments: Box::new(moves.plan.axis_segments(i)),
+                })
                 .collect(),
         };
         simulate(&mut VcdWriter::new(BufWriter::with_capacity(1 << 18, file), waves))
@@ -54,7 +58,13 @@ pub fn ours(moves: &Moves, folder: &Path) -> Result<Written, String> {
 }
 
 /// All ports of the core, dumped once a clock.
-pub fn verilators(tracing: &Verilated, feed: &str, clocks: u64, untraced: f64, folder: &Path) -> Result<Written, String> {
+pub fn verilators(
+    tracing: &Verilated,
+    feed: &str,
+    clocks: u64,
+    untraced: f64,
+    folder: &Path,
+) -> Result<Written, String> {
     let path = folder.join("verilator.vcd");
     let run = tracing.run(feed, clocks, Some(&path))?;
     Ok(Written { bytes: length(&path)?, seconds: run.seconds - untraced })

@@ -169,7 +169,9 @@ pub fn run_verilog(
     match level {
         Level::Icarus => icarus::run(verilog, job, observer),
         Level::Verilator => verilator::run(verilog, job, observer),
-        Level::Fast | Level::Model | Level::RustHdl => Err(LevelError::Gateware(format!("the level {level} does not run Verilog"))),
+        Level::Fast | Level::Model | Level::RustHdl => {
+            Err(LevelError::Gateware(format!("the level {level} does not run Verilog")))
+        }
     }
 }
 

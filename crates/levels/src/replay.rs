@@ -26,15 +26,7 @@ pub(crate) struct Replay<'a> {
 impl<'a> Replay<'a> {
     pub(crate) fn new(build: &Build, observer: &'a mut Observer<'_>) -> Self {
         let width = build.pins.map(|pins| pins.width.into());
-        Self {
-            observer,
-            width,
-            falls: [NEVER; AXES],
-            first_fall: NEVER,
-            at: 0,
-            now: Outputs::default(),
-            told: None,
-        }
+        Self { observer, width, falls: [NEVER; AXES], first_fall: NEVER, at: 0, now: Outputs::default(), told: None }
     }
 
     /// All that happens before this cycle is known: tell it.

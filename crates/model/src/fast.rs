@@ -103,8 +103,7 @@ impl Fast {
         if clocks == 0 {
             return Ok(());
         }
-        let window =
-            Window { tick: self.cycle - self.core.clock_of_tick(), from: self.cycle, to: self.cycle + clocks };
+        let window = Window { tick: self.cycle - self.core.clock_of_tick(), from: self.cycle, to: self.cycle + clocks };
         let build = &self.core.build;
         for (axis, (lane, edges)) in (0..).zip(self.core.lanes.iter_mut().zip(&mut self.edges)) {
             lane::pass(lane, axis, window, &build.timebase, build.pins[usize::from(axis)], edges)?;

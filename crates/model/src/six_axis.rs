@@ -195,7 +195,8 @@ impl SixAxis {
     /// Nothing changes until the inputs do.
     pub(crate) fn is_still(&self, inputs: &Inputs) -> bool {
         let frozen = self.faults().any();
-        let deaf = if frozen { !inputs.clear && self.armed.is_none() } else { self.go().is_none() && !self.hears(inputs) };
+        let deaf =
+            if frozen { !inputs.clear && self.armed.is_none() } else { self.go().is_none() && !self.hears(inputs) };
         deaf && self.lanes.iter().all(Lane::is_still)
     }
 

@@ -103,18 +103,20 @@ impl Stretch {
     }
 
     /// The first `count` ticks that step.
-    ///
-    /// Guesses are believed if each of them is a tick that steps, each comes after the one before, and
-    /// just `count - 1` steps are over before the last: then there is no room for another.
     fn batch(&self, count: usize) -> Batch {
         let batch = self.at(self.guesses());
+        if self.is_right(&batch, count) { batch } else { self.at(self.search(count)) }
+    }
+
+    /// Whether these are the first `count` ticks that step: each of them steps, each comes after the one
+    /// before, and just `count - 1` steps are over before the last, so that there is no room for another.
+    fn is_right(&self, batch: &Batch, count: usize) -> bool {
         let steps = |i: usize| batch.p[i].overflowing_add(batch.v[i].cast_unsigned()).1;
         let last = batch.ticks[count - 1];
-        let right = last < self.ticks
+        last < self.ticks
             && self.steps_before(last) as usize == count - 1
             && (0..count).fold(true, |all, i| all & steps(i))
-            && (1..count).fold(true, |all, i| all & (batch.ticks[i - 1] < batch.ticks[i]));
-        if right { batch } else { self.at(self.search(count)) }
+            && (1..count).fold(true, |all, i| all & (batch.ticks[i - 1] < batch.ticks[i]))
     }
 
     /// These ticks, as if they stepped.
@@ -173,5 +175,40 @@ impl Stretch {
             *tick = root as u32;
         }
         ticks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten ticks a step, slowly less.
+    fn stretch() -> Stretch {
+        Stretch::new(1 << 63, Cubic { v: i64::MAX / 5, a: 1 << 40, j: -(1 << 20) }, 5000)
+    }
+
+    #[test]
+    fn a_guess_is_as_good_as_a_search() {
+        let stretch = stretch();
+        assert_eq!(stretch.guesses(), stretch.search(BATCH));
+        assert!(stretch.is_right(&stretch.at(stretch.guesses()), BATCH));
+    }
+
+    /// Whatever floating point makes of it: nothing but the first steps, all of them, in order, is believed.
+    #[test]
+    fn wrong_guesses_are_not_believed() {
+        let stretch = stretch();
+        let right = stretch.search(BATCH);
+        let believed = |change: fn(&mut [u32; BATCH]), count| {
+            let mut ticks = right;
+            change(&mut ticks);
+            stretch.is_right(&stretch.at(ticks), count)
+        };
+        assert!(believed(|_| (), BATCH) && believed(|_| (), BATCH - 1));
+        assert!(!believed(|ticks| ticks[3] += 1, BATCH), "a tick that does not step");
+        assert!(!believed(|ticks| ticks.swap(3, 4), BATCH), "out of order");
+        assert!(!believed(|ticks| ticks[4] = ticks[3], BATCH), "one of them twice");
+        assert!(!believed(|ticks| ticks.rotate_left(1), BATCH - 1), "one is left out");
+        assert!(!believed(|ticks| *ticks.last_mut().unwrap() = u32::MAX, BATCH), "behind the end");
     }
 }

@@ -29,14 +29,7 @@ pub(super) struct Pins<'a> {
 
 impl<'a> Pins<'a> {
     /// A shaper as it is in clock `at`, with the sign of the speed that it sees.
-    pub fn new(
-        axis: u8,
-        pins: PinTiming,
-        state: shaper::State,
-        sign: i8,
-        at: u64,
-        edges: &'a mut Vec<Record>,
-    ) -> Self {
+    pub fn new(axis: u8, pins: PinTiming, state: shaper::State, sign: i8, at: u64, edges: &'a mut Vec<Record>) -> Self {
         let after = |timer: u32| at + u64::from(timer);
         let (busy, hold, setup) = (after(state.busy), after(state.hold), after(state.setup));
         let agrees = sign == 0 || (sign < 0) == state.want;
