@@ -2,8 +2,10 @@
 
 pub mod axis_bench;
 pub mod closed_form;
+pub mod dense;
 pub mod golden;
 pub mod lockstep;
 pub mod moves;
 pub mod programs;
 pub mod random_moves;
+pub mod twins;

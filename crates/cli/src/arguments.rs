@@ -49,7 +49,7 @@ pub struct Demo {
     #[arg(long, default_value = "sim/out/demo", value_name = "DIR")]
     pub out: PathBuf,
     /// Where the gateware runs.
-    #[arg(long, default_value = "model", value_name = "LEVEL", value_parser = level())]
+    #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
     pub level: Level,
     /// One JSON document instead of the table.
     #[arg(long)]
@@ -77,7 +77,7 @@ pub struct Simulate {
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
     /// Where the gateware runs.
-    #[arg(long, default_value = "model", value_name = "LEVEL", value_parser = level())]
+    #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
     pub level: Level,
     /// Write the waveform: pins, position and V beside the float profile.
     #[arg(long, value_name = "FILE")]

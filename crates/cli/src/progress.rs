@@ -3,9 +3,13 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
+/// Calls between two looks at the time: a look takes longer than an edge.
+const CALLS: u32 = 1 << 14;
+
 /// Progress of one run, in clocks.
 pub struct Progress {
     bar: Option<ProgressBar>,
+    calls: u32,
     started: Instant,
     total: u64,
     what: &'static str,
@@ -14,11 +18,16 @@ pub struct Progress {
 impl Progress {
     /// A run of about `total` clocks.
     pub fn new(what: &'static str, total: u64) -> Self {
-        Self { bar: None, started: Instant::now(), total, what }
+        Self { bar: None, calls: 0, started: Instant::now(), total, what }
     }
 
     /// The run has come to this clock.
     pub fn at(&mut self, clock: u64) {
+        self.calls += 1;
+        if self.calls < CALLS {
+            return;
+        }
+        self.calls = 0;
         if self.bar.is_none() && self.started.elapsed() > Duration::from_secs(1) {
             // The target hides itself where standard error is no terminal.
             let bar = ProgressBar::with_draw_target(Some(self.total), ProgressDrawTarget::stderr_with_hz(10));

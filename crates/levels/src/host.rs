@@ -31,20 +31,20 @@ impl Core for carrystep_hdl::SixAxisSim {
 }
 
 /// The commands that are left.
-struct Host<'a> {
+pub(crate) struct Host<'a> {
     commands: std::iter::Copied<std::slice::Iter<'a, Command>>,
     current: Option<Command>,
 }
 
 impl<'a> Host<'a> {
-    fn new(program: &'a Program) -> Self {
+    pub(crate) fn new(program: &'a Program) -> Self {
         let mut commands = program.iter().copied();
         let current = commands.next();
         Self { commands, current }
     }
 
     /// What is driven in this cycle; nothing but `clear` and waiting while the core is frozen.
-    fn inputs(&self, fault: bool) -> Inputs {
+    pub(crate) fn inputs(&self, fault: bool) -> Inputs {
         match self.current {
             Some(Command::Segment { axis, segment }) if !fault => {
                 Inputs { segment: Some((axis, segment)), ..Inputs::default() }
@@ -56,7 +56,7 @@ impl<'a> Host<'a> {
     }
 
     /// Goes on where the command is done in this cycle.
-    fn advance(&mut self, outputs: &Outputs) {
+    pub(crate) fn advance(&mut self, outputs: &Outputs) {
         let fault = outputs.faults.any();
         let done = match &mut self.current {
             None => false,
@@ -70,6 +70,31 @@ impl<'a> Host<'a> {
         };
         if done {
             self.current = self.commands.next();
+        }
+    }
+
+    /// Nothing is left to be done.
+    pub(crate) fn is_done(&self) -> bool {
+        self.current.is_none()
+    }
+
+    /// How many cycles the host drives the same, as long as the outputs let it wait.
+    pub(crate) fn patience(&self, outputs: &Outputs) -> u64 {
+        let blocked = match self.current {
+            Some(Command::Wait { clocks }) => return u64::from(clocks.saturating_sub(1)),
+            Some(Command::Segment { .. }) => !outputs.faults.any() && !outputs.seg_ready,
+            Some(Command::Start { .. }) => !outputs.faults.any() && !outputs.start_ready,
+            Some(Command::Clear) => outputs.faults.any(),
+            None => true,
+        };
+        if blocked { u64::MAX } else { 0 }
+    }
+
+    /// So many cycles of [`Host::patience`] have passed.
+    pub(crate) fn wait(&mut self, cycles: u64) {
+        if let Some(Command::Wait { clocks }) = &mut self.current {
+            // Never more than its patience, which fits.
+            *clocks = clocks.saturating_sub(u32::try_from(cycles).unwrap_or(u32::MAX));
         }
     }
 }
@@ -112,7 +137,7 @@ pub(crate) fn run(core: &mut impl Core, job: &Job<'_>, observer: &mut Observer<'
         if outputs.started && origin.is_none() {
             origin = Some(cycle + 1);
         }
-        quiet = if host.current.is_none() && (outputs.idle || fault) { quiet + 1 } else { 0 };
+        quiet = if host.is_done() && (outputs.idle || fault) { quiet + 1 } else { 0 };
         if quiet == job.tail {
             return Ok(Outcome { clocks: cycle + 1, origin, last: outputs });
         }

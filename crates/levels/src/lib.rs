@@ -5,9 +5,11 @@
 //! every clock.
 
 mod external;
+pub mod fast;
 pub mod host;
 mod icarus;
 pub mod pins;
+mod replay;
 mod tool;
 mod verilator;
 
@@ -20,7 +22,9 @@ use thiserror::Error;
 /// Where a program is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Level {
-    /// `crates/model`, integers in Rust.
+    /// `crates/model`, from edge to edge.
+    Fast,
+    /// `crates/model`, clock by clock.
     Model,
     /// `crates/hdl`, simulated by Rust-HDL itself.
     RustHdl,
@@ -31,12 +35,13 @@ pub enum Level {
 }
 
 impl Level {
-    /// All levels, from the model down.
-    pub const ALL: [Self; 4] = [Self::Model, Self::RustHdl, Self::Icarus, Self::Verilator];
+    /// All levels, from the fastest down.
+    pub const ALL: [Self; 5] = [Self::Fast, Self::Model, Self::RustHdl, Self::Icarus, Self::Verilator];
 
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Fast => "fast",
             Self::Model => "model",
             Self::RustHdl => "rust-hdl",
             Self::Icarus => "icarus",
@@ -136,6 +141,7 @@ pub type Observer<'a> = dyn FnMut(u64, &Outputs) + 'a;
 /// [`LevelError`]: a tool is missing or fails, or the run does not end.
 pub fn run(level: Level, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
     match level {
+        Level::Fast => fast::replay(job, observer),
         Level::Model => host::run(&mut carrystep_model::SixAxis::new(job.build), job, observer),
         Level::RustHdl => {
             let mut core =
@@ -163,7 +169,9 @@ pub fn run_verilog(
     match level {
         Level::Icarus => icarus::run(verilog, job, observer),
         Level::Verilator => verilator::run(verilog, job, observer),
-        Level::Model | Level::RustHdl => Err(LevelError::Gateware(format!("the level {level} does not run Verilog"))),
+        Level::Fast | Level::Model | Level::RustHdl => {
+            Err(LevelError::Gateware(format!("the level {level} does not run Verilog")))
+        }
     }
 }
 
@@ -181,7 +189,7 @@ pub fn origin(job: &Job<'_>) -> Result<u64, LevelError> {
 /// [`LevelError::Missing`] names the tool and the line that installs it.
 pub fn available(level: Level) -> Result<(), LevelError> {
     match level {
-        Level::Model | Level::RustHdl => Ok(()),
+        Level::Fast | Level::Model | Level::RustHdl => Ok(()),
         Level::Icarus => tool::find(&tool::ICARUS),
         Level::Verilator => tool::find(&tool::VERILATOR),
     }

@@ -6,8 +6,10 @@
 //! whole idea.
 
 pub mod axis;
+pub mod fast;
 pub mod phase;
 pub mod shaper;
 pub mod six_axis;
 
+pub use fast::Fast;
 pub use six_axis::SixAxis;

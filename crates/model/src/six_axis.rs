@@ -16,30 +16,30 @@ use carrystep_spec::{AXES, Build, Faults};
 
 /// A step on its way from the accumulator to the pins, one stage a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-struct Stage {
-    step: Option<Step>,
-    sign: i8,
+pub(crate) struct Stage {
+    pub step: Option<Step>,
+    pub sign: i8,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Lane {
-    axis: axis::State,
-    computed: Stage,
-    emitted: Stage,
-    overspeed: bool,
-    underrun: bool,
-    shaper: shaper::State,
+pub(crate) struct Lane {
+    pub axis: axis::State,
+    pub computed: Stage,
+    pub emitted: Stage,
+    pub overspeed: bool,
+    pub underrun: bool,
+    pub shaper: shaper::State,
 }
 
 /// The core's state; [`SixAxis::outputs`] and [`SixAxis::clock`] are its one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SixAxis {
-    build: Build,
+    pub(crate) build: Build,
     sub: u32,
     phase: u32,
     armed: Option<u8>,
     protocol: bool,
-    lanes: [Lane; AXES],
+    pub(crate) lanes: [Lane; AXES],
 }
 
 impl SixAxis {
@@ -132,7 +132,8 @@ impl SixAxis {
         self.advance();
     }
 
-    fn faults(&self) -> Faults {
+    /// What is latched; anything freezes the core.
+    pub fn faults(&self) -> Faults {
         Faults {
             overrun: bits(&self.lanes, |lane| lane.shaper.overrun),
             overspeed: bits(&self.lanes, |lane| lane.overspeed),
@@ -167,9 +168,47 @@ impl SixAxis {
     }
 }
 
+/// What lets `fast` pass many cycles at once.
+impl SixAxis {
+    /// Cycles since the tick began.
+    pub(crate) fn clock_of_tick(&self) -> u64 {
+        let time = &self.build.timebase;
+        u64::from(self.phase * time.clocks_per_phase() + self.sub)
+    }
+
+    /// Time goes by for the counters of the tick.
+    pub(crate) fn pass(&mut self, clocks: u64) {
+        let time = &self.build.timebase;
+        let now = (self.clock_of_tick() + clocks) % u64::from(time.clocks_per_tick());
+        let per_phase = u64::from(time.clocks_per_phase());
+        // Both are less than the clocks of a tick.
+        (self.phase, self.sub) = ((now / per_phase) as u32, (now % per_phase) as u32);
+    }
+
+    /// The inputs change nothing in this cycle, nor the next strobe anything but by adding; and neither
+    /// `idle` nor a fault is near, so that this stays so until a segment ends.
+    pub(crate) fn only_adds(&self, inputs: &Inputs) -> bool {
+        let moving = self.armed.is_some() || self.lanes.iter().any(|l| l.axis.running || l.axis.waiting.is_some());
+        moving && !self.faults().any() && self.go().is_none() && !self.hears(inputs)
+    }
+
+    /// Nothing changes until the inputs do.
+    pub(crate) fn is_still(&self, inputs: &Inputs) -> bool {
+        let frozen = self.faults().any();
+        let deaf =
+            if frozen { !inputs.clear && self.armed.is_none() } else { self.go().is_none() && !self.hears(inputs) };
+        deaf && self.lanes.iter().all(Lane::is_still)
+    }
+
+    /// Whether a core that is not frozen takes an input in this cycle.
+    fn hears(&self, inputs: &Inputs) -> bool {
+        inputs.segment.is_some_and(|(axis, _)| self.takes(axis)) || (inputs.start.is_some() && self.armed.is_none())
+    }
+}
+
 impl Lane {
     /// The strobe: results move one stage on, and a tick is added unless frozen.
-    fn tick(&mut self, go: bool, frozen: bool, phase_bits: u32) {
+    pub(crate) fn tick(&mut self, go: bool, frozen: bool, phase_bits: u32) {
         self.emitted = self.computed;
         self.computed = Stage::default();
         if !frozen {
@@ -193,6 +232,14 @@ impl Lane {
     /// A step has left the accumulator and is not yet over on the pin.
     fn on_its_way(&self) -> bool {
         self.computed.step.is_some() || self.emitted.step.is_some() || self.shaper.step
+    }
+
+    /// No clock and no strobe changes anything.
+    fn is_still(&self) -> bool {
+        let pins = &self.shaper;
+        let stages = [self.computed, self.emitted].iter().all(|stage| *stage == Stage::default());
+        let timers = pins.busy == 0 && pins.hold == 0 && pins.setup == 0;
+        !self.axis.running && stages && timers && !pins.step && pins.owed.is_none() && pins.dir == pins.want
     }
 
     fn idle(&self) -> bool {

@@ -23,13 +23,16 @@ pub(crate) fn phase_ps(timebase: &Timebase) -> f64 {
 fn due(crossing: &Crossing, tick_ps: u64) -> (i128, f64) {
     let whole = (crossing.seconds * PS).round();
     let rest = crossing.seconds.mul_add(PS, -whole);
-    (i128::from(crossing.start_tick) * i128::from(tick_ps) + whole as i128, rest)
+    // 64 bits hold 106 days; beyond them a cast stops at its ends.
+    (i128::from(crossing.start_tick) * i128::from(tick_ps) + i128::from(whole as i64), rest)
 }
 
 /// e = m - t in ps: how late a rising edge is. Integers are subtracted first, floats last.
 pub(crate) fn lateness_ps(rise_ps: u64, origin_ps: i64, crossing: &Crossing, tick_ps: u64) -> f64 {
     let (whole, rest) = due(crossing, tick_ps);
-    (i128::from(rise_ps) - i128::from(origin_ps) - whole) as f64 - rest
+    let late = i128::from(rise_ps) - i128::from(origin_ps) - whole;
+    // Nearly always 64 bits do, and are quicker.
+    i64::try_from(late).map_or_else(|_| late as f64, |late| late as f64) - rest
 }
 
 /// The time in the capture, in whole ps, at which a crossing is due.

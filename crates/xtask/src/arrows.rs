@@ -4,7 +4,7 @@ use crate::shell::{self, Done};
 use std::collections::BTreeSet;
 
 /// Each crate and all crates of the house that it may reach, directly or through others.
-const ALLOWED: [(&str, &[&str]); 12] = [
+const ALLOWED: [(&str, &[&str]); 13] = [
     ("spec", &[]),
     ("profile", &["spec"]),
     ("table", &["spec", "profile"]),
@@ -16,6 +16,7 @@ const ALLOWED: [(&str, &[&str]); 12] = [
     ("trace", &["spec", "profile"]),
     ("levels", &["spec", "profile", "model", "hdl", "export", "trace"]),
     ("cli", &["spec", "profile", "table", "reference", "plan", "model", "hdl", "export", "trace", "levels"]),
+    ("bench", &["spec", "profile", "plan", "model", "hdl", "export", "trace", "levels"]),
     ("xtask", &[]),
 ];
 

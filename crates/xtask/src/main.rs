@@ -27,10 +27,23 @@ enum Chore {
     Arrows,
     /// Formatting and lints, without a warning.
     Lint,
+    /// Time the fast model beside every other level, and the writers beside Verilator's.
+    Bench {
+        /// One JSON document instead of the table.
+        #[arg(long)]
+        json: bool,
+    },
     /// Write `hdl-out/` anew from the Rust-HDL modules.
     Generate,
     /// Write the README's table and pictures anew from the demo (the waveform needs gtkwave and xvfb).
     Readme,
+}
+
+/// Times everything; what is printed is the bench's own.
+fn bench(json: bool) -> shell::Done {
+    tools::install()?;
+    let arguments = ["run", "--quiet", "--release", "-p", "carrystep-bench", "--", "--json"];
+    shell::run("cargo", &arguments[..arguments.len() - usize::from(!json)])
 }
 
 fn main() -> ExitCode {
@@ -39,6 +52,7 @@ fn main() -> ExitCode {
         Chore::Tools => tools::install(),
         Chore::Arrows => arrows::check(),
         Chore::Lint => ladder::lint(),
+        Chore::Bench { json } => bench(json),
         Chore::Generate => readme::generate(),
         Chore::Readme => readme::write(),
     };

@@ -1,0 +1,74 @@
+//! The fast model fed by the host, which waits for many cycles at once.
+
+use crate::host::Host;
+use crate::replay::Replay;
+use crate::{Job, LevelError, Observer, Outcome};
+use carrystep_model::Fast;
+use carrystep_model::fast::{Edge, Edges};
+use carrystep_spec::ports::Outputs;
+
+/// Who wants to hear of edges, and of the outputs wherever more than the pins may have changed.
+pub trait Listener: Edges {
+    /// The outputs in this cycle. Edges up to it have been told.
+    fn outputs(&mut self, cycle: u64, outputs: &Outputs);
+}
+
+/// Edges alone: nothing else is told.
+pub struct EdgesOnly<E>(pub E);
+
+impl<E: Edges> Edges for EdgesOnly<E> {
+    fn edge(&mut self, edge: Edge) {
+        self.0.edge(edge);
+    }
+}
+
+impl<E: Edges> Listener for EdgesOnly<E> {
+    fn outputs(&mut self, _: u64, _: &Outputs) {}
+}
+
+/// Runs a job on the fast model and tells every cycle in which any output changed, as any level does.
+pub(crate) fn replay(job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
+    let mut replay = Replay::new(job.build, observer);
+    let end = run(job, &mut replay);
+    replay.reach(end.as_ref().map_or(job.max_clocks, |outcome| outcome.clocks));
+    end
+}
+
+/// Runs a job on the fast model; the edges stream by.
+///
+/// # Errors
+/// [`LevelError::Endless`]: the run does not end.
+pub fn run(job: &Job<'_>, listener: &mut impl Listener) -> Result<Outcome, LevelError> {
+    let mut core = Fast::new(job.build);
+    let mut host = Host::new(job.program);
+    let mut quiet = 0;
+    let mut origin = None;
+    while core.cycle() < job.max_clocks {
+        let cycle = core.cycle();
+        let fault = core.core().faults().any();
+        let inputs = host.inputs(fault);
+        let outputs = core.outputs(&inputs);
+        listener.outputs(cycle, &outputs);
+        if outputs.started && origin.is_none() {
+            origin = Some(cycle + 1);
+        }
+        quiet = if host.is_done() && (outputs.idle || fault) { quiet + 1 } else { 0 };
+        if quiet == job.tail {
+            return Ok(Outcome { clocks: cycle + 1, origin, last: outputs });
+        }
+        let to_the_end = if quiet > 0 { job.tail - quiet } else { u64::MAX };
+        let most = host.patience(&outputs).min(to_the_end).min(job.max_clocks - cycle);
+        match if most > 0 { core.leap(&inputs, most, listener) } else { 0 } {
+            0 => {
+                host.advance(&outputs);
+                core.clock(&inputs, listener);
+            }
+            cycles => {
+                host.wait(cycles);
+                // This cycle has been counted.
+                quiet += if quiet > 0 { cycles - 1 } else { 0 };
+            }
+        }
+    }
+    Err(LevelError::Endless(job.max_clocks))
+}

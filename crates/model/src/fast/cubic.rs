@@ -1,0 +1,112 @@
+//! P of one axis over a stretch of plain ticks, in closed form.
+//!
+//! Nothing here wraps, although all of it says so: numbers of ticks are at most 2^16, binomials therefore
+//! under 2^48, and each of the products under 2^112. Checks would cost as much as the sums.
+
+/// Most ticks in a stretch.
+pub(super) const MOST_TICKS: u32 = 1 << 16;
+
+/// V, A and J before the first tick of a stretch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Cubic {
+    pub v: i64,
+    pub a: i64,
+    pub j: i64,
+}
+
+/// n (n - 1) / 2
+const fn pairs(n: u32) -> i64 {
+    let n = n as i64;
+    n.wrapping_mul(n.wrapping_sub(1)) / 2
+}
+
+/// n (n - 1) (n - 2) / 6
+const fn triples(n: u32) -> i64 {
+    pairs(n).wrapping_mul((n as i64).wrapping_sub(2)) / 3
+}
+
+/// Exact: 64 by 64 bits are always 128.
+const fn wide(x: i64, y: i64) -> i128 {
+    (x as i128).wrapping_mul(y as i128)
+}
+
+impl Cubic {
+    /// V before tick `n`, counted from 0.
+    pub const fn speed(self, n: u32) -> i128 {
+        (self.v as i128).wrapping_add(wide(n as i64, self.a)).wrapping_add(wide(pairs(n), self.j))
+    }
+
+    /// A before tick `n`.
+    pub const fn acceleration(self, n: u32) -> i128 {
+        (self.a as i128).wrapping_add(wide(n as i64, self.j))
+    }
+
+    /// What the first `n` ticks add to P.
+    pub const fn distance(self, n: u32) -> i128 {
+        let linear = wide(n as i64, self.v);
+        linear.wrapping_add(wide(pairs(n), self.a)).wrapping_add(wide(triples(n), self.j))
+    }
+
+    /// [`Cubic::speed`], modulo 2^64.
+    pub const fn speed_wrapping(self, n: u32) -> i64 {
+        let linear = self.a.wrapping_mul(n as i64).wrapping_add(self.v);
+        linear.wrapping_add(self.j.wrapping_mul(pairs(n)))
+    }
+
+    /// [`Cubic::distance`], modulo 2^64.
+    pub const fn distance_wrapping(self, n: u32) -> u64 {
+        let linear = self.v.wrapping_mul(n as i64).wrapping_add(self.a.wrapping_mul(pairs(n)));
+        linear.wrapping_add(self.j.wrapping_mul(triples(n))).cast_unsigned()
+    }
+
+    /// The registers before tick `n` of a stretch that is [`Cubic::stays_in_range`].
+    pub const fn after(self, n: u32) -> Self {
+        Self { v: self.speed_wrapping(n), a: self.a.wrapping_add(self.j.wrapping_mul(n as i64)), j: self.j }
+    }
+
+    /// The same course in the other direction; it is there where this one stays in range.
+    pub const fn mirrored(self) -> Self {
+        Self { v: self.v.wrapping_neg(), a: self.a.wrapping_neg(), j: self.j.wrapping_neg() }
+    }
+
+    /// The first tick, if it is among `ticks`, before which V has its extremum.
+    fn extremum(self, ticks: u32) -> Option<u32> {
+        let (a, j) = (i128::from(self.a), i128::from(self.j));
+        let turns = a.signum() * j.signum() < 0;
+        let tick = turns.then(|| a.unsigned_abs().div_ceil(j.unsigned_abs()))?;
+        u32::try_from(tick).ok().filter(|&tick| tick < ticks)
+    }
+
+    /// Whether `ticks` ticks take neither V nor A out of (-2^63, 2^63).
+    pub fn stays_in_range(self, ticks: u32) -> bool {
+        let inside = |x: i128| x.unsigned_abs() <= i64::MAX.unsigned_abs().into();
+        let ends = [self.speed(ticks), self.acceleration(0), self.acceleration(ticks), self.j.into()];
+        ends.into_iter().all(inside) && self.extremum(ticks).is_none_or(|tick| inside(self.speed(tick)))
+    }
+
+    /// How many of the next `ticks` ticks (at least one) add a V of the sign of the first, on one side of
+    /// V's extremum.
+    pub fn same_sign(self, ticks: u32) -> u32 {
+        let sign = self.v.signum();
+        let differs = |n: u32| self.speed(n).signum() != i128::from(sign);
+        // Up to its extremum V only rises or only falls.
+        let ticks = self.extremum(ticks).map_or(ticks, |tick| tick.max(1));
+        if !differs(ticks - 1) {
+            return ticks;
+        }
+        first(1, ticks - 1, differs)
+    }
+}
+
+/// The least number from `low` up for which a condition holds that stays true once it is, at `high` at the latest.
+pub(super) fn first(mut low: u32, mut high: u32, holds: impl Fn(u32) -> bool) -> u32 {
+    while low < high {
+        let middle = low.midpoint(high);
+        if holds(middle) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    low
+}

@@ -1,0 +1,138 @@
+//! One axis through a window of clocks: its accumulator stretch by stretch, its shaper request by request.
+
+use super::crossings::Stretch;
+use super::cubic::Cubic;
+use super::edges::Record;
+use super::pins::{Overrun, Pins};
+use crate::six_axis::{Lane, Stage};
+use carrystep_spec::{PinTiming, Timebase};
+
+/// Clocks that are passed at once; every strobe among them only adds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Window {
+    /// First cycle of the tick in which the window begins.
+    pub tick: u64,
+    /// First cycle of the window.
+    pub from: u64,
+    /// First cycle behind it.
+    pub to: u64,
+}
+
+/// A cycle in which a fault is latched: the window has to end before it.
+pub(super) struct FaultIn(pub u64);
+
+impl From<Overrun> for FaultIn {
+    fn from(Overrun(cycle): Overrun) -> Self {
+        Self(cycle)
+    }
+}
+
+/// An axis on its way through a window.
+struct Passage<'a> {
+    pins: Pins<'a>,
+    window: Window,
+    clocks_per_tick: u32,
+    clocks_per_phase: u32,
+    phase_bits: u32,
+}
+
+/// Brings an axis through a window; its edges go to the end of `edges`.
+pub(super) fn pass(
+    lane: &mut Lane,
+    axis: u8,
+    window: Window,
+    timebase: &Timebase,
+    pins: PinTiming,
+    edges: &mut Vec<Record>,
+) -> Result<(), FaultIn> {
+    let mut passage = Passage {
+        pins: Pins::new(axis, pins, lane.shaper, lane.emitted.sign, window.from, edges),
+        window,
+        clocks_per_tick: timebase.clocks_per_tick(),
+        clocks_per_phase: timebase.clocks_per_phase(),
+        phase_bits: timebase.phase_bits(),
+    };
+    let strobes = ((window.to - window.tick) / u64::from(passage.clocks_per_tick)) as u32;
+    passage.request(lane.emitted, 0)?;
+    if strobes > 0 {
+        passage.emit(lane.computed, 1)?;
+    }
+    // What the last two ticks bring forth stays in the pipeline.
+    let ahead = strobes.saturating_sub(2);
+    passage.add(lane, ahead)?;
+    for strobe in ahead..strobes {
+        passage.tick(lane, strobe)?;
+    }
+    if strobes > 1 {
+        passage.emit(lane.emitted, strobes)?;
+    }
+    lane.shaper = passage.pins.finish(window.to)?;
+    Ok(())
+}
+
+impl Passage<'_> {
+    /// First cycle of tick `n` of the window.
+    fn cycle(&self, n: u32) -> u64 {
+        self.window.tick + u64::from(n) * u64::from(self.clocks_per_tick)
+    }
+
+    /// A stage begins to be emitted with tick `n`.
+    fn emit(&mut self, stage: Stage, n: u32) -> Result<(), Overrun> {
+        self.pins.sign(self.cycle(n), stage.sign)?;
+        self.request(stage, n)
+    }
+
+    /// The request of a stage that is emitted during tick `n`, where it falls into the window.
+    fn request(&mut self, stage: Stage, n: u32) -> Result<(), Overrun> {
+        let Some(step) = stage.step else { return Ok(()) };
+        let at = self.cycle(n) + u64::from(step.phase) * u64::from(self.clocks_per_phase);
+        if (self.window.from..self.window.to).contains(&at) { self.pins.requests([at], step.backward) } else { Ok(()) }
+    }
+
+    /// The strobe at the end of tick `n`, as it is written in the contract.
+    fn tick(&mut self, lane: &mut Lane, n: u32) -> Result<(), FaultIn> {
+        lane.tick(false, false, self.phase_bits);
+        if lane.overspeed { Err(FaultIn(self.cycle(n + 1) - 1)) } else { Ok(()) }
+    }
+
+    /// The first `ticks` strobes; all that they bring forth reaches the pins within the window.
+    fn add(&mut self, lane: &mut Lane, ticks: u32) -> Result<(), FaultIn> {
+        let cubic = |lane: &Lane| Cubic { v: lane.axis.v, a: lane.axis.a, j: lane.axis.j };
+        if !cubic(lane).stays_in_range(ticks) {
+            for n in 0..ticks {
+                self.tick(lane, n)?;
+                self.emit(lane.computed, n + 2)?;
+            }
+            return Ok(());
+        }
+        let mut done = 0;
+        while done < ticks {
+            let cubic = cubic(lane);
+            let length = cubic.same_sign(ticks - done);
+            self.pins.sign(self.cycle(done + 2), cubic.v.signum() as i8)?;
+            self.requests(Stretch::new(lane.axis.p, cubic, length), done, cubic.v < 0)?;
+            let Cubic { v, a, .. } = cubic.after(length);
+            let p = lane.axis.p.wrapping_add(cubic.distance_wrapping(length));
+            lane.axis = crate::axis::State { p, v, a, ..lane.axis };
+            done += length;
+        }
+        if lane.axis.running {
+            lane.axis.left -= ticks;
+        }
+        Ok(())
+    }
+
+    /// All requests of a stretch that begins at tick `done`.
+    fn requests(&mut self, stretch: Stretch, done: u32, backward: bool) -> Result<(), Overrun> {
+        let mut overrun = Ok(());
+        let first = self.cycle(done + 2);
+        let [per_tick, per_phase] = [self.clocks_per_tick, self.clocks_per_phase].map(u64::from);
+        stretch.each(self.phase_bits, |ticks, phases| {
+            let cycle = |(&tick, &phase)| first + u64::from(tick) * per_tick + u64::from(phase) * per_phase;
+            if overrun.is_ok() {
+                overrun = self.pins.requests(ticks.iter().zip(phases).map(cycle), backward);
+            }
+        });
+        overrun
+    }
+}
