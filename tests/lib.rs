@@ -1,4 +1,4 @@
-//! What the rungs share: the golden vectors, an independent closed form, random programs.
+//! What the rungs share: the golden vectors, an independent closed form, random programs, proofs.
 
 pub mod axis_bench;
 pub mod closed_form;
@@ -7,5 +7,6 @@ pub mod golden;
 pub mod lockstep;
 pub mod moves;
 pub mod programs;
+pub mod proofs;
 pub mod random_moves;
 pub mod twins;

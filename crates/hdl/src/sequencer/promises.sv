@@ -1,0 +1,104 @@
+// The sequencer: no segment is lost, doubled, shortened or late; its share of promises 5, 6 and 8. Without bound.
+//
+//   from outside   `DUT, the exported sequencer
+//   assumed        what six_axis/promises.sv proves: a segment has ticks and is pushed only where none waits;
+//                  frozen: no strobe, no push; only who is frozen is cleared; go only at a strobe
+//
+// A segment is followed from push to load by its own copy, and counted out tick by tick.
+
+module promises (
+    input wire clock,
+    input wire strobe,
+    input wire frozen,
+    input wire stop,
+    input wire clear,
+    input wire go,
+    input wire push,
+    input wire [31:0] seg_ticks,
+    input wire [63:0] seg_v,
+    input wire [63:0] seg_a,
+    input wire [63:0] seg_j,
+    input wire seg_last
+);
+    wire waiting, startable, running, load, advance, underrun;
+    wire [63:0] v, a, j;
+    `DUT dut (.*);
+
+    always_comb begin
+        assume (!push || !waiting && !frozen && seg_ticks != 0);
+        assume (!frozen || !strobe);
+        assume (frozen || !clear);
+    end
+
+    // ---- The segment that waits and the one that runs, as pushed.
+
+    reg full = 0;
+    reg [31:0] ticks;
+    reg [63:0] pushed_v, pushed_a, pushed_j;
+    reg marked_last;
+    always @(posedge clock) begin
+        if (load || clear) full <= 0;
+        if (push) begin
+            full <= 1;
+            ticks <= seg_ticks;
+            {pushed_v, pushed_a, pushed_j, marked_last} <= {seg_v, seg_a, seg_j, seg_last};
+        end
+    end
+
+    // ---- Ticks that the running segment has had, the one of this strobe included.
+
+    reg runs = 0, run_last = 0, was_dry = 0;
+    reg [31:0] run_ticks = 0, had = 0;
+    wire over = strobe & had + 1 == run_ticks;
+    always @(posedge clock) begin
+        was_dry <= underrun;
+        if (load) begin
+            runs <= 1;
+            {run_ticks, run_last, had} <= {ticks, marked_last, 32'd0};
+        end else if (strobe) begin
+            had <= had + 1;
+            if (over) runs <= 0;
+        end
+        if (frozen || stop) runs <= 0;
+    end
+    reg was_starved = 0;             // the last clock ended a segment not marked last, with none behind it
+    always @(posedge clock) was_starved <= runs & over & !run_last & !waiting;
+
+    // ---- The promises.
+
+    always_comb begin
+        promise_6_ready_is_empty: assert (waiting == full);
+        promise_6_loaded_as_pushed: assert (!load || full && {v, a, j} == {pushed_v, pushed_a, pushed_j});
+        promise_6_runs_its_ticks: assert (running == runs && advance == (runs && strobe && !over));
+        promise_6_joins_without_a_gap: assert (!(runs && over && !run_last && waiting) || load);
+        promise_6_starts_when_told: assert (!(startable && strobe && go) || load);
+        promise_6_never_in_between: assert (!load || strobe && (!runs && go || over && (!run_last || go)));
+        promise_6_startable: assert (startable == (waiting && (!runs || run_last && had + 1 == run_ticks)));
+        promise_6_dry_is_told: assert (!was_starved || underrun || clear);
+        promise_6_dry_is_dry: assert (!underrun || was_dry || was_starved);
+    end
+
+    // ---- Why they hold: what is left and what was had are the segment's ticks.
+
+    (* inside = "dut.left" *) wire [31:0] left;
+    (* inside = "dut.last" *) wire last;
+    (* inside = "dut.wait_ticks" *) wire [31:0] wait_ticks;
+    (* inside = "dut.wait_last" *) wire wait_last;
+
+`ifdef INVARIANTS
+    always_comb begin
+        invariant_1: assert (!full || ticks != 0 && {wait_ticks, wait_last} == {ticks, marked_last});
+        invariant_2: assert (!full || {v, a, j} == {pushed_v, pushed_a, pushed_j});
+        invariant_3: assert (!runs || left == run_ticks - had && had < run_ticks && last == run_last);
+    end
+`endif
+
+    // ---- None of it is empty.
+
+    always_comb begin
+        cover_6_joined: cover (load && runs && run_ticks == 2 && !run_last);
+        cover_6_started_again: cover (load && runs && run_last);
+        cover_6_dry: cover (underrun && !was_dry);
+        cover_8_cleared_while_waiting: cover (clear && waiting);
+    end
+endmodule

@@ -1,0 +1,180 @@
+// The shaper: promises 1 to 7, 9, 11 and 13 on the pins of one axis, for any inputs. Without bound.
+//
+//   from outside   W, S, D, H in clocks; `DUT, the exported shaper with these numbers
+//   assumed        what six_axis/promises.sv proves: an overrun freezes, and only who is frozen is cleared
+//
+// A promise speaks of the pins and of what this file counts on them, never of the shaper's own timers.
+
+module promises (
+    input wire clock,
+    input wire frozen,
+    input wire clear,
+    input wire request,
+    input wire request_back,
+    input wire want_fwd,
+    input wire want_back
+);
+    localparam [19:0] W = `W, S = `S, D = `D, H = `H, LONG = 20'hfffff;
+
+    wire step, dir, owed, overrun;
+    wire [31:0] position, discarded;
+    `DUT dut (.*);
+
+    always_comb begin
+        assume (frozen || !overrun);
+        assume (frozen || !clear);
+    end
+
+    // ---- What the last clock was.
+
+    reg first_clock = 1;
+    reg was_step = 0, was_dir = 0, was_frozen = 0, was_request = 0, was_second = 0, was_overrun = 0;
+    reg [31:0] was_discarded = 0;
+    always @(posedge clock) begin
+        first_clock <= 0;
+        was_step <= step;
+        was_dir <= dir;
+        was_frozen <= frozen;
+        was_request <= request;
+        was_second <= owed & request & !frozen;
+        was_overrun <= overrun;
+        was_discarded <= discarded;
+    end
+    wire rose = step & !was_step;
+    wire fell = !step & was_step;
+    wire turned = dir != was_dir;
+
+    // ---- Clocks on the pins; each counter stops at LONG, which also stands for never.
+
+    function [19:0] more(input [19:0] clocks);
+        more = clocks == LONG ? LONG : clocks + 1;
+    endfunction
+
+    reg [19:0] highs = 0;            // high before this clock
+    reg [19:0] lows = LONG;          // low before this clock
+    reg [19:0] last_rise = LONG;     // since the rising edge before this clock
+    reg [19:0] last_turn = 0;        // since DIR turned before this clock, or since configuration
+    wire [19:0] since_rise = rose ? 0 : last_rise;
+    wire [19:0] since_turn = turned ? 0 : last_turn;
+    always @(posedge clock) begin
+        highs <= step ? more(highs) : 0;
+        lows <= step ? 0 : more(lows);
+        last_rise <= more(since_rise);
+        last_turn <= more(since_turn);
+    end
+
+    // ---- Steps: asked for, made, where they lead.
+
+    reg [31:0] asked = 0, made = 0, place = 0;
+    wire [31:0] made_now = made + rose;
+    wire [31:0] place_now = !rose ? place : dir ? place - 1 : place + 1;
+    always @(posedge clock) begin
+        asked <= asked + request;
+        made <= made_now;
+        place <= place_now;
+    end
+
+    // ---- Which step is due, where DIR should point, and for how long a step is owed.
+
+    reg sign = 0;                    // direction of the last V that was not 0
+    reg asked_back = 0;              // of the last step that was asked for
+    reg was_due = 0, was_due_back = 0, was_aim = 0;
+    reg [19:0] waits = 1;
+    wire [19:0] waited = rose ? 1 : waits;   // clocks for which a step has been owed, this one included
+    wire sign_now = want_back ? 1 : want_fwd ? 0 : sign;
+    wire due = owed | request;
+    wire due_back = owed ? asked_back : request_back;
+    always @(posedge clock) begin
+        sign <= sign_now;
+        if (request) asked_back <= request_back;
+        was_due <= due;
+        was_due_back <= due_back;
+        was_aim <= due ? due_back : sign_now;
+        waits <= owed ? more(waited) : 1;
+    end
+    wire [19:0] longest = W + S > D + H ? W + S : D + H;
+
+    // ---- A rate that fits: W + S apart, V turns H after a step and D before the next, no freeze.
+
+    reg fits = 1;
+    reg [19:0] last_request = LONG, last_sign = 0;
+    wire [19:0] since_sign = sign_now != sign ? 0 : last_sign;
+    wire fits_now = fits & !frozen & (sign_now == sign | last_request >= H)
+        & (!request | (last_request >= W + S & request_back == sign_now & since_sign >= D));
+    always @(posedge clock) begin
+        fits <= fits_now;
+        last_request <= request ? 1 : more(last_request);
+        last_sign <= more(since_sign);
+    end
+
+    // ---- The promises.
+
+    always_comb begin
+        promise_1_width: assert (!fell || highs >= W);
+        promise_2_gap: assert (!rose || lows >= S);
+        promise_3_setup: assert (!rose || since_turn >= D);
+        promise_4_hold: assert (!turned || since_rise >= H);
+
+        promise_5_no_new_edge: assert (!was_frozen || !rose);
+        promise_5_never_left_high: assert (!step || highs < W);
+
+        promise_6_nothing_lost: assert (made_now + owed + discarded == asked);
+        promise_6_second_is_overrun: assert (!was_second || rose || overrun);
+        promise_6_overrun_is_second: assert (!overrun || was_overrun || was_second && !rose);
+        promise_6_only_a_freeze_discards: assert (discarded == was_discarded || was_frozen || overrun);
+        promise_6_freeze_owes_nothing: assert (!was_frozen || !owed);
+
+        promise_7_position: assert (position == place_now);
+
+        promise_9_no_overrun: assert (!fits || !overrun);
+        promise_9_never_late: assert (!fits || rose == was_request && !owed);
+
+        promise_11_first_clock_allowed: assert (rose == (was_due && !was_frozen && was_dir == was_due_back
+            && last_rise >= W + S && last_turn >= D));
+        promise_11_dir_follows: assert (turned == (!was_frozen && was_dir != was_aim && last_rise >= H));
+        promise_11_bound: assert (!owed || overrun || waited <= longest);
+
+        promise_13_inactive: assert (!first_clock || {step, dir, owed, overrun, position, discarded} == 0);
+    end
+
+    // ---- Why they hold: the shaper's timers and what is counted above say the same.
+
+    (* inside = "dut.busy" *) wire [16:0] busy;
+    (* inside = "dut.hold" *) wire [15:0] hold;
+    (* inside = "dut.setup" *) wire [15:0] setup;
+    (* inside = "dut.want" *) wire want;
+    (* inside = "dut.due_back" *) wire owed_back;
+
+`ifdef INVARIANTS
+    always_comb begin
+        invariant_1: assert (step ? highs == W + S - 1 - busy : busy == 0 ? lows >= S - 1 : lows == S - 1 - busy);
+        invariant_2: assert (busy == 0 ? since_rise >= W + S - 1 : since_rise == W + S - 1 - busy);
+        invariant_3: assert (hold == 0 ? since_rise >= H - 1 : since_rise == H - 1 - hold);
+        invariant_4: assert (setup == 0 ? since_turn >= D - 1 : since_turn == D - 1 - setup);
+        invariant_5: assert (want == sign);
+        invariant_6: assert (!owed || overrun || owed_back == asked_back);
+
+        invariant_7: assert (!owed || overrun || busy == 0 || waited <= W + S - busy);
+        invariant_8: assert (!owed || overrun || setup == 0 || dir != owed_back || waited <= D + H - setup);
+        invariant_9: assert (!owed || overrun || dir == owed_back || waited <= H - hold);
+
+        invariant_10: assert (!fits || dir == sign);
+        invariant_11: assert (!fits || busy == 0 || last_request <= W + S - busy);
+        invariant_12: assert (!fits || hold == 0 || last_request <= H - hold);
+        invariant_13: assert (!fits || setup == 0 || last_sign <= D - setup);
+    end
+`endif
+
+    // ---- None of it is empty.
+
+    always_comb begin
+        cover_1_2_tightest_pulses: cover (rose && lows == S && last_rise == W + S);
+        cover_3_tightest_setup: cover (rose && last_turn == D && dir);
+        cover_4_tightest_hold: cover (turned && last_rise == H);
+        cover_5_pulse_completes_frozen: cover (fell && was_frozen && position == 1);
+        cover_6_two_discarded: cover (discarded == 2 && overrun);
+        cover_7_backward: cover (position == 32'hffffffff);
+        cover_9_reversal_that_fits: cover (fits && made_now == 2 && position == 0);
+        cover_11_longest_wait: cover (rose && waits == longest);
+    end
+endmodule

@@ -1,0 +1,141 @@
+// The core: what the parts may count on, and promises 5, 6, 8, 12 and 13 on the core's own ports. Without bound.
+//
+//   from outside   `DUT, the exported core, whole
+//   assumed        nothing
+//
+// Here stands all that an axis or a shaper is told from outside itself. None of it comes from another axis but the
+// freeze, the clear behind it and the common start: in motion no axis changes another's edges.
+
+module promises (
+    input wire clock,
+    input wire seg_valid,
+    input wire [2:0] seg_axis,
+    input wire [31:0] seg_ticks,
+    input wire [63:0] seg_v,
+    input wire [63:0] seg_a,
+    input wire [63:0] seg_j,
+    input wire seg_last,
+    input wire start_valid,
+    input wire [5:0] start_mask,
+    input wire clear
+);
+    wire seg_ready, start_ready, idle, fault, protocol, started;
+    wire [5:0] step, dir, overrun, overspeed, underrun;
+    wire [191:0] position, discarded;
+    `DUT dut (.*);
+
+    // ---- Bit i is axis i's.
+
+    (* inside = "dut.axis_*.waiting" *) wire [5:0] waiting;
+    (* inside = "dut.axis_*.drained" *) wire [5:0] drained;
+    (* inside = "dut.axis_*.in_flight" *) wire [5:0] in_flight;
+    (* inside = "dut.axis_*.startable" *) wire [5:0] startable;
+    (* inside = "dut.axis_*.sequencer_load" *) wire [5:0] load;
+    (* inside = "dut.shaper_*.owed" *) wire [5:0] owed;
+
+    (* inside = "dut.axis_*.strobe" *) wire [5:0] strobes;
+    (* inside = "dut.axis_*.phase_start" *) wire [5:0] phase_starts;
+    (* inside = "dut.axis_*.phase" *) wire [23:0] phases;
+    (* inside = "dut.axis_*.frozen" *) wire [5:0] axis_frozen;
+    (* inside = "dut.axis_*.clear" *) wire [5:0] axis_clear;
+    (* inside = "dut.axis_*.go" *) wire [5:0] go;
+    (* inside = "dut.axis_*.push" *) wire [5:0] push;
+    (* inside = "dut.axis_*.seg_ticks" *) wire [191:0] ticks;
+    (* inside = "dut.axis_*.seg_v" *) wire [383:0] v;
+    (* inside = "dut.axis_*.seg_a" *) wire [383:0] a;
+    (* inside = "dut.axis_*.seg_j" *) wire [383:0] j;
+    (* inside = "dut.axis_*.seg_last" *) wire [5:0] last;
+
+    (* inside = "dut.shaper_*.frozen" *) wire [5:0] shaper_frozen;
+    (* inside = "dut.shaper_*.clear" *) wire [5:0] shaper_clear;
+    (* inside = "dut.shaper_*.request" *) wire [5:0] shaper_request;
+    (* inside = "dut.shaper_*.request_back" *) wire [5:0] shaper_back;
+    (* inside = "dut.shaper_*.want_fwd" *) wire [5:0] shaper_want_fwd;
+    (* inside = "dut.shaper_*.want_back" *) wire [5:0] shaper_want_back;
+    (* inside = "dut.axis_*.request" *) wire [5:0] axis_request;
+    (* inside = "dut.axis_*.request_back" *) wire [5:0] axis_back;
+    (* inside = "dut.axis_*.want_fwd" *) wire [5:0] axis_want_fwd;
+    (* inside = "dut.axis_*.want_back" *) wire [5:0] axis_want_back;
+
+    (* inside = "dut.tick.strobe" *) wire strobe;
+    (* inside = "dut.tick.phase_start" *) wire phase_start;
+    (* inside = "dut.tick.phase" *) wire [3:0] phase;
+    (* inside = "dut.armed" *) wire armed;
+
+    // ---- What the host was promised and what it did.
+
+    wire seg_taken = seg_valid & seg_ready;
+    wire seg_fine = seg_axis < 6 && seg_ticks != 0;
+    wire start_taken = start_valid & start_ready;
+    wire start_fine = (start_mask & ~waiting) == 0;
+    wire [5:0] selected = 6'd1 << seg_axis;
+
+    reg first_clock = 1, expected = 0, was_fault = 0, was_broken = 0, was_clear = 0;
+    reg [5:0] was_step = 0, mask = 0;
+    always @(posedge clock) begin
+        first_clock <= 0;
+        was_fault <= fault;
+        was_step <= step;
+        was_clear <= clear;
+        was_broken <= seg_taken & !seg_fine | start_taken & !start_fine;
+        expected <= start_taken & start_fine | expected & !started & !fault;
+        if (start_taken && start_fine) mask <= start_mask;
+    end
+
+    // ---- The promises.
+
+    always_comb begin
+        promise_5_no_new_edge: assert (!was_fault || (step & ~was_step) == 0);
+        promise_5_stays_frozen: assert (!was_fault || fault || was_clear);
+
+        promise_6_ready: assert (seg_ready == (!fault && (selected & waiting) == 0));
+        promise_6_taken_by_its_axis: assert (push == (seg_taken && seg_fine ? selected : 0));
+        promise_6_broken_is_told: assert (!was_broken || protocol);
+        promise_6_start_ready: assert (start_ready == (!fault && !expected));
+        promise_6_start_on_one_tick: assert (!started || strobe && (mask & ~load) == 0);
+        promise_6_no_start_is_missed: assert (started == (expected && !fault && strobe && (mask & ~startable) == 0));
+
+        promise_8_idle: assert (idle == (!armed && drained == 6'h3f && owed == 0 && step == 0));
+
+        promise_12_any_fault_stops_all: assert (fault == (protocol || {overrun, overspeed, underrun} != 0));
+        promise_12_all_at_once: assert (axis_frozen == {6{fault}} && shaper_frozen == {6{fault}});
+        promise_12_one_beat: assert (strobes == {6{strobe}} && phase_starts == {6{phase_start}} && phases == {6{phase}});
+        promise_12_one_clear: assert (axis_clear == shaper_clear && (axis_clear == 0 || axis_clear == 6'h3f));
+        promise_12_cleared_at_rest: assert (axis_clear == 0 || clear && fault && in_flight == 0 && step == 0);
+        promise_12_go_is_the_start: assert (go == (started ? mask : 0));
+        promise_12_segment_as_offered: assert (ticks == {6{seg_ticks}} && v == {6{seg_v}} && a == {6{seg_a}}
+            && j == {6{seg_j}} && last == {6{seg_last}});
+        promise_12_own_requests: assert (shaper_request == axis_request && shaper_back == axis_back);
+        promise_12_own_direction: assert (shaper_want_fwd == axis_want_fwd && shaper_want_back == axis_want_back);
+
+        promise_13_inactive: assert (!first_clock || {step, dir, position, discarded, fault, started} == 0 && idle);
+    end
+
+    // ---- What the parts assume of the core, in their words.
+
+    always_comb begin
+        assumed_by_axis_push: assert ((push & waiting) == 0 && (push == 0 || !fault && seg_ticks != 0));
+        assumed_by_axis_go: assert (go == 0 || !fault && strobe);
+        assumed_by_axis_clear: assert (axis_clear == 0 || fault && in_flight == 0);
+        assumed_by_shaper: assert ((overrun == 0 || shaper_frozen == 6'h3f) && (shaper_clear == 0 || fault));
+    end
+
+    // ---- Why they hold: the start that is armed is the one that was taken.
+
+    (* inside = "dut.mask" *) wire [5:0] armed_mask;
+
+`ifdef INVARIANTS
+    always_comb begin
+        invariant_1: assert (fault || armed == expected && (!armed || armed_mask == mask));
+    end
+`endif
+
+    // ---- None of it is empty.
+
+    always_comb begin
+        cover_6_two_start_as_one: cover (started && mask == 6'h21);
+        cover_5_protocol_fault: cover (fault && was_fault && protocol);
+        cover_12_cleared: cover (axis_clear != 0);
+        cover_8_idle_again: cover (was_fault && idle && !fault);
+    end
+endmodule

@@ -1,0 +1,54 @@
+//! What a `promises.sv` says of itself: its labels, and which signals it looks at inside the module.
+
+/// The text, read by its few conventions.
+pub struct Promises {
+    /// All of it.
+    pub text: &'static str,
+}
+
+impl Promises {
+    /// Labels of what must hold: `promise_3_setup: assert (...)`.
+    pub fn labels(&self) -> Vec<&'static str> {
+        self.labelled("assert (").filter(|label| !label.starts_with("invariant_")).collect()
+    }
+
+    /// Labels of what must be reached: `cover_3_tightest_setup: cover (...)`.
+    pub fn covers(&self) -> Vec<&'static str> {
+        self.labelled("cover (").collect()
+    }
+
+    /// The promises that are proved here, by number.
+    pub fn numbers(&self) -> Vec<u32> {
+        let mut numbers: Vec<u32> = self.labels().into_iter().filter_map(number).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        numbers
+    }
+
+    /// Names that stand for a signal inside the module, and that signal: `(* inside = "dut.busy" *) wire [16:0] busy;`.
+    /// A star is all six axes, the highest first.
+    pub fn inside(&self) -> Vec<(&'static str, String)> {
+        let declared = self.text.lines().filter_map(|line| line.trim().strip_prefix("(* inside = \"")?.split_once('"'));
+        declared
+            .map(|(signal, rest)| {
+                let name = rest.trim_end_matches(';').rsplit(' ').next().unwrap_or(rest);
+                let each = |axis: usize| format!("\\{}", signal.replace('*', &axis.to_string()));
+                let all: Vec<String> =
+                    if signal.contains('*') { (0..6).rev().map(each).collect() } else { vec![each(0)] };
+                (name, all.join(","))
+            })
+            .collect()
+    }
+
+    fn labelled(&self, kind: &'static str) -> impl Iterator<Item = &'static str> {
+        self.text.lines().filter_map(move |line| {
+            let (label, rest) = line.trim().split_once(": ")?;
+            rest.starts_with(kind).then_some(label)
+        })
+    }
+}
+
+/// The promise that a label belongs to.
+pub fn number(label: &str) -> Option<u32> {
+    label.strip_prefix("promise_")?.split('_').next()?.parse().ok()
+}

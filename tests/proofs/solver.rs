@@ -1,0 +1,153 @@
+//! Yosys makes a transition system of Verilog and promises, yosys-smtbmc and z3 answer questions about it.
+
+use super::{Case, Promises};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use thiserror::Error;
+
+/// Programs, and the line that installs each.
+const TOOLS: [(&str, &str); 3] = [
+    ("yosys", "sudo apt-get install yosys"),
+    ("yosys-smtbmc", "sudo apt-get install yosys"),
+    ("z3", "sudo apt-get install z3"),
+];
+
+/// Why there is no answer, or not the one that was wanted.
+#[derive(Debug, Error)]
+pub enum ProofError {
+    /// A tool is not there.
+    #[error("{tool} is missing: {install}")]
+    Missing {
+        /// Its name.
+        tool: &'static str,
+        /// The line that installs it.
+        install: &'static str,
+    },
+    /// A tool stopped.
+    #[error("{tool} failed: {said}")]
+    Tool {
+        /// Its name.
+        tool: &'static str,
+        /// What it printed.
+        said: String,
+    },
+    /// An assertion of the file is not in what the solver was given.
+    #[error("{0} was lost on the way to the solver")]
+    Lost(&'static str),
+    /// The solver does not say what it should.
+    #[error("the solver does not agree:\n{0}")]
+    Refuted(String),
+    /// Files.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+}
+
+/// What the solver is asked.
+#[derive(Debug, Clone, Copy)]
+pub enum Question {
+    /// All holds in the first clocks.
+    Base(u32),
+    /// Where all held for k clocks, it holds in the next.
+    Induction(u32),
+    /// Every cover is reached within so many clocks.
+    Covers(u32),
+    /// This promise, by itself, fails within so many clocks.
+    Fails(&'static str, u32),
+}
+
+/// Fails where a tool is missing.
+pub fn tools() -> Result<(), ProofError> {
+    for (tool, install) in TOOLS {
+        let started = Command::new(tool).arg("--help").stdout(Stdio::null()).stderr(Stdio::null()).status();
+        started.map_err(|_| ProofError::Missing { tool, install })?;
+    }
+    Ok(())
+}
+
+/// Asks one question about one case; `Ok` where the answer is the one that is wanted.
+pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), ProofError> {
+    let dir = tempfile::tempdir()?;
+    fs::write(dir.path().join("exported.v"), case.verilog.as_bytes())?;
+    fs::write(dir.path().join("promises.sv"), promises.text)?;
+    fs::write(dir.path().join("prove.ys"), script(promises, case, question))?;
+    let (fine, said) = run(dir.path(), "yosys", &["-q", "prove.ys"])?;
+    if !fine {
+        return Err(ProofError::Tool { tool: "yosys", said });
+    }
+    nothing_lost(promises, question, &fs::read_to_string(dir.path().join("promises.smt2"))?)?;
+
+    let (mode, clocks): (&[&str], u32) = match question {
+        Question::Base(clocks) | Question::Fails(_, clocks) => (&[], clocks),
+        Question::Induction(depth) => (&["-i"], depth),
+        Question::Covers(clocks) => (&["-c"], clocks),
+    };
+    let clocks = clocks.to_string();
+    // One equation a clock, without the solver's functions over states: minutes become seconds.
+    let mut arguments = vec!["-s", "z3", "--unroll", "--noprogress", "-t", &clocks];
+    arguments.extend(mode);
+    arguments.push("promises.smt2");
+    let (fine, said) = run(dir.path(), "yosys-smtbmc", &arguments)?;
+    let says = |what: &str| said.contains(what);
+    let wanted = match question {
+        Question::Fails(label, _) => {
+            !fine && says("Status: FAILED") && says(&format!("Assert failed in promises: {label}"))
+        }
+        Question::Covers(_) => {
+            let reached = said.matches("Reached cover statement").count();
+            fine && says("Status: PASSED") && reached == promises.covers().len() && reached > 0
+        }
+        _ => fine && says("Status: PASSED"),
+    };
+    let trouble = ["ERROR", "UNKNOWN", "unknown"].into_iter().any(says);
+    if wanted && !trouble { Ok(()) } else { Err(ProofError::Refuted(said)) }
+}
+
+/// The steps of yosys: the exported text as it is, the promises, and names for what they see inside.
+fn script(promises: &Promises, case: &Case, question: Question) -> String {
+    let mut text = format!("read_verilog -sv exported.v\nread_verilog -formal -sv -D DUT={}", case.dut);
+    for (name, number) in &case.numbers {
+        // Writing to a string cannot fail.
+        let _ = write!(text, " -D {name}={number}");
+    }
+    if matches!(question, Question::Base(_) | Question::Induction(_)) {
+        text.push_str(" -D INVARIANTS");
+    }
+    text.push_str(" promises.sv\nhierarchy -check -top promises\nproc\nflatten\n");
+    for (name, signal) in promises.inside() {
+        let _ = writeln!(text, "connect -set {name} {signal}");
+    }
+    // Nothing may hang free: a free wire is any value, and a proof about it says nothing.
+    text.push_str("check -assert\nprep -top promises\n");
+    if let Question::Fails(label, _) = question {
+        let _ = writeln!(text, "delete t:$assert c:{label} %d");
+    }
+    text.push_str("write_smt2 -wires promises.smt2\n");
+    text
+}
+
+/// Every label of the file is in the transition system.
+fn nothing_lost(promises: &Promises, question: Question, system: &str) -> Result<(), ProofError> {
+    let there = |kind: &str, label: &str| {
+        system.lines().any(|line| line.starts_with(&format!("; yosys-smt2-{kind} ")) && line.ends_with(label))
+    };
+    let wanted = match question {
+        Question::Covers(_) => return Ok(()),
+        Question::Fails(label, _) => vec![label],
+        _ => promises.labels(),
+    };
+    match wanted.into_iter().find(|label| !there("assert", label)) {
+        Some(label) => Err(ProofError::Lost(label)),
+        None => Ok(()),
+    }
+}
+
+/// Whether it ended well, and all that it printed.
+fn run(dir: &Path, tool: &'static str, arguments: &[&str]) -> Result<(bool, String), ProofError> {
+    let install = TOOLS.into_iter().find(|(name, _)| *name == tool).map_or("", |(_, install)| install);
+    let output = Command::new(tool).args(arguments).current_dir(dir).output();
+    let output = output.map_err(|_| ProofError::Missing { tool, install })?;
+    let said = [output.stdout, output.stderr].concat();
+    Ok((output.status.success(), String::from_utf8_lossy(&said).into_owned()))
+}

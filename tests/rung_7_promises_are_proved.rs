@@ -1,0 +1,83 @@
+//! Rung 7: the promises of docs/promises.md hold in the exported Verilog, for any inputs, for ever; what
+//! they speak of happens; and each notices the bug that is planted for it.
+
+use carrystep_tests::proofs::{self, Proof, Question, ask};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+/// A question, and where it comes from.
+struct Job<'a> {
+    name: String,
+    proof: &'a Proof,
+    case: proofs::Case,
+    question: Question,
+}
+
+fn jobs(proof: &Proof) -> Vec<Job<'_>> {
+    let job = |case: &proofs::Case, question| {
+        let name = format!("{} ({}): {question:?}", proof.module, case.name);
+        Job { name, proof, case: case.clone(), question }
+    };
+    let first = &proof.cases[0];
+    let mut jobs = vec![job(first, Question::Covers(proof.reach))];
+    for case in &proof.cases {
+        jobs.push(job(case, Question::Induction(proof.depth)));
+        jobs.push(job(case, Question::Base(proof.depth + 1)));
+    }
+    jobs.extend(proof.bugs.iter().map(|bug| job(&first.with(bug), Question::Fails(bug.breaks, proof.reach))));
+    jobs
+}
+
+/// Asks all questions, on all cores; what was not answered as wanted.
+fn ask_all(jobs: &[Job<'_>]) -> String {
+    let next = AtomicUsize::new(0);
+    let failures = Mutex::new(String::new());
+    let workers = thread::available_parallelism().map_or(2, usize::from);
+    thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    if let Err(error) = ask(&job.proof.promises, &job.case, job.question) {
+                        let mut failures = failures.lock().expect("no worker panics");
+                        writeln!(failures, "{}: {error}", job.name).expect("a string takes it");
+                    }
+                }
+            });
+        }
+    });
+    failures.into_inner().expect("no worker panics")
+}
+
+#[test]
+fn every_promise_is_proved_and_every_planted_bug_is_caught() {
+    proofs::tools().unwrap_or_else(|error| panic!("{error}, or `cargo xtask tools`"));
+    let proofs = proofs::all();
+    let jobs: Vec<Job<'_>> = proofs.iter().flat_map(jobs).collect();
+    let failures = ask_all(&jobs);
+    assert!(failures.is_empty(), "{failures}");
+    println!("\n{}\nproved: {} questions to the solver, all answered as they must be", proofs::table(), jobs.len());
+}
+
+/// A promise that no bug can break would be no promise.
+#[test]
+fn every_promise_of_every_module_has_its_bug() {
+    for proof in proofs::all() {
+        let labels = proof.promises.labels();
+        let broken: BTreeSet<&str> = proof.bugs.iter().map(|bug| bug.breaks).collect();
+        for label in &broken {
+            assert!(labels.contains(label), "{}: a bug breaks {label}, which is not there", proof.module);
+        }
+        for number in proof.promises.numbers() {
+            let own = format!("promise_{number}_");
+            assert!(
+                broken.iter().any(|label| label.starts_with(&own)),
+                "{}: no bug for promise {number}",
+                proof.module
+            );
+        }
+        assert!(!proof.promises.covers().is_empty(), "{}: no covers", proof.module);
+    }
+}
