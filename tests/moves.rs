@@ -37,13 +37,13 @@ pub fn side_by_side(cases: &[&Case]) -> (Program, u64) {
     (program, cases.iter().map(|case| case.total_ticks).max().unwrap_or(0))
 }
 
-/// Runs a plan's program, or another in its place, on the model and checks the pins: what `carrystep simulate` does.
+/// Runs a plan's program, or another in its place, on the fast model and checks the pins: what `carrystep simulate` does.
 pub fn check(file: &MoveFile, plan: &Plan, program: &Program, build: &Build) -> Report {
     let timelines = plan.timelines();
     let job = Job::new(build, program, plan.total_ticks());
     let mut checker = Checker::new(check_setup(file, plan, &timelines, &job));
     let mut feed = PinFeed::new(build.timebase, timelines.len(), &mut checker);
-    let outcome = carrystep_levels::run(Level::Model, &job, &mut |cycle, outputs| feed.observe(cycle, outputs));
+    let outcome = carrystep_levels::run(Level::Fast, &job, &mut |cycle, outputs| feed.observe(cycle, outputs));
     feed.end(outcome.expect("the model").clocks).expect("the checker");
     checker.finish()
 }
