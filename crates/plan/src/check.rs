@@ -47,6 +47,9 @@ pub(crate) fn check(segments: &[Segment], duty: &Duty, limits: &ExactLimits) -> 
     if peaks[1] > limits.acceleration + 1 {
         return Err(Broken::Acceleration);
     }
+    if limits.jerk.is_some_and(|most| peaks[2] > most + 1) {
+        return Err(Broken::Jerk);
+    }
     let start = segments.first().map_or(0, |first| start_speed(first, limits));
     if start > limits.start_speed + limits.tolerance {
         return Err(Broken::StartSpeed);
@@ -70,8 +73,8 @@ fn start_speed(first: &Segment, limits: &ExactLimits) -> i128 {
     (sixfold + 5) / 6
 }
 
-/// V in the first and last tick, and on either side of where A changes sign.
-fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
+/// V in the first and last tick, and on either side of where A changes sign: its extremes are among them.
+pub(crate) fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
     let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
     let last = i128::from(segment.ticks) - 1;
     let vertex = if j == 0 { 0 } else { (-a).div_euclid(j) };
@@ -85,7 +88,8 @@ fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
 mod tests {
     use super::*;
 
-    const LIMITS: ExactLimits = ExactLimits { start_speed: 1000, speed: 1_000_000, acceleration: 100, tolerance: 1 };
+    const LIMITS: ExactLimits =
+        ExactLimits { start_speed: 1000, speed: 1_000_000, acceleration: 100, jerk: Some(7), tolerance: 1 };
 
     fn segment(ticks: u32, v: i64, a: i64, j: i64) -> Segment {
         Segment { ticks, v, a, j, last: false }
@@ -111,6 +115,8 @@ mod tests {
         assert_eq!(checked(segment(10, 1050, 102, 0), false), Err(Broken::Acceleration));
         assert_eq!(checked(segment(10_001, 1001, 100, 0), false), Err(Broken::Speed));
         assert!(checked(segment(9_991, 1001, 100, 0), false).is_ok());
+        assert_eq!(checked(segment(5, 1000, 10, 9), false), Err(Broken::Jerk));
+        assert!(checked(segment(5, 1000, 10, 8), false).is_ok());
         assert_eq!(checked(segment(10, 1050, 100, 0), false).map(|p| p.start_speed), Ok(1000));
         assert_eq!(checked(segment(1, 1051, 0, 0), false).map(|p| p.start_speed), Ok(1001));
     }

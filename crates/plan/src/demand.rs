@@ -89,6 +89,9 @@ fn least_time<F: Real>(kind: ProfileKind, steps: F, limits: &Limits<F>) -> Resul
     match kind {
         ProfileKind::Ranade => Ok(rule::ranade_least_time(steps, limits)),
         ProfileKind::Trapezoid => Ok(rule::trapezoid_least_time(steps, limits)),
+        ProfileKind::Scurve => Ok(rule::scurve_least_time(steps, limits)),
+        ProfileKind::Logistic => Ok(rule::logistic_least_time(steps, limits)),
+        ProfileKind::Sine => Ok(rule::sine_least_time(steps, limits)),
         ProfileKind::Constant => rule::constant_least_time(steps, limits),
     }
 }
@@ -97,6 +100,9 @@ fn profile<F: Real>(kind: ProfileKind, steps: F, time: F, limits: &Limits<F>) ->
     Ok(match kind {
         ProfileKind::Ranade => rule::ranade(steps, time, limits)?,
         ProfileKind::Trapezoid => Arc::new(rule::trapezoid(steps, time, limits)?),
+        ProfileKind::Scurve => Arc::new(rule::scurve(steps, time, limits)?),
+        ProfileKind::Logistic => Arc::new(rule::logistic(steps, time, limits)?),
+        ProfileKind::Sine => Arc::new(rule::sine(steps, time, limits)?),
         ProfileKind::Constant => Arc::new(rule::constant(steps, time, limits)?),
     })
 }

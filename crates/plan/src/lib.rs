@@ -3,6 +3,7 @@
 //! A float profile says where each axis should be; [`plan`] turns it into segments whose sums are exact:
 //! floats decide how the distance of a move is spread over its ticks, never how long it is.
 
+mod bend;
 mod check;
 mod demand;
 mod direction;

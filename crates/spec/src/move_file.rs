@@ -22,8 +22,25 @@ pub enum ProfileKind {
     Ranade,
     /// From rest to rest at the acceleration limit.
     Trapezoid,
+    /// Seven segments: limits on speed, acceleration and jerk.
+    Scurve,
+    /// Along a logistic curve: gentle at both ends, never quite at rest.
+    Logistic,
+    /// Acceleration as 1 - cos: jerk continuous too.
+    Sine,
     /// One speed, at most the start speed.
     Constant,
+}
+
+impl ProfileKind {
+    /// Every kind.
+    pub const ALL: [Self; 6] =
+        [Self::Ranade, Self::Trapezoid, Self::Scurve, Self::Logistic, Self::Sine, Self::Constant];
+
+    /// Whether cubic segments can only come close to it; the others they follow exactly.
+    pub const fn is_fitted(self) -> bool {
+        matches!(self, Self::Logistic | Self::Sine)
+    }
 }
 
 impl fmt::Display for ProfileKind {
@@ -31,6 +48,9 @@ impl fmt::Display for ProfileKind {
         f.write_str(match self {
             Self::Ranade => "ranade",
             Self::Trapezoid => "trapezoid",
+            Self::Scurve => "scurve",
+            Self::Logistic => "logistic",
+            Self::Sine => "sine",
             Self::Constant => "constant",
         })
     }
@@ -54,6 +74,9 @@ pub struct Move {
     pub profile: ProfileKind,
     /// Seconds available; `None`: as fast as the limits allow.
     pub time: Option<BigDecimal>,
+    /// How far an edge may be from a profile that has to be fitted, ns, at least 1; one tick where the file
+    /// does not say.
+    pub fit_ns: u64,
     /// Steps of each axis of the machine, either sign.
     pub steps: Vec<i64>,
     /// What rounding to steps left over so far, per axis, in steps: exact target less rounded target.
@@ -74,8 +97,9 @@ struct RawMoveFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawMove {
-    profile: ProfileKind,
+    profile: Spanned<ProfileKind>,
     time: Option<Spanned<f64>>,
+    fit_ns: Option<Spanned<u64>>,
     to: BTreeMap<Spanned<String>, Spanned<f64>>,
 }
 
@@ -140,7 +164,7 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
     let mut moves = Vec::with_capacity(raw.len());
     for entry in raw {
         let span = entry.span();
-        let RawMove { profile, time, to } = entry.into_inner();
+        let RawMove { profile, time, fit_ns, to } = entry.into_inner();
         let time = match &time {
             None => None,
             Some(value) => Some(exact(source, value, "time").and_then(|t| {
@@ -156,6 +180,14 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
                 }
             })?),
         };
+        let fit_ns = match &fit_ns {
+            None => machine.timebase.tick_ns(),
+            Some(ns) if *ns.as_ref() > 0 => *ns.as_ref(),
+            Some(ns) => {
+                return Err(InputError::at(source, ns.span(), "fit_ns = 0: no fit is without an error")
+                    .help("give the greatest error of an edge in ns, from 1 up"));
+            }
+        };
         let before = positions.clone();
         for (name, distance) in &to {
             let Some(axis) = machine.axis_index(name.as_ref()) else {
@@ -166,6 +198,14 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
                 )
                 .help(format!("its axes are {}", machine.axis_names())));
             };
+            if *profile.as_ref() == ProfileKind::Scurve && machine.axes[axis].jerk_limit.is_none() {
+                return Err(InputError::at(
+                    source,
+                    profile.span(),
+                    format!("profile = \"scurve\": axis '{}' has no jerk_limit", name.as_ref()),
+                )
+                .help("give the axis a jerk_limit in units/s^3, or take another profile"));
+            }
             targets[axis] += exact(source, distance, name.as_ref())?;
             positions[axis] = decimal::round_half_away(&(&targets[axis] * &machine.axes[axis].steps_per_unit))
                 .filter(|steps| i32::try_from(*steps).is_ok() && *steps != i64::from(i32::MIN))
@@ -183,8 +223,9 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
             decimal::to_f64(&(target * &axis.steps_per_unit - BigDecimal::from(steps)))
         });
         moves.push(Move {
-            profile,
+            profile: profile.into_inner(),
             time,
+            fit_ns,
             steps: positions.iter().zip(&before).map(|(now, old)| now - old).collect(),
             rounding: rounding.collect(),
             span,
