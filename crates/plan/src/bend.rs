@@ -64,8 +64,11 @@ impl Wanted {
         let last_tick = (n - 1) * j;
         let fastest = n * (limits.speed + limits.tolerance);
         let mut a = Range { low: -limits.acceleration, high: limits.acceleration };
-        a.keep(1, limits.acceleration + last_tick);
-        a.keep(-1, limits.acceleration - last_tick);
+        // A is right a tick later than it is loaded: the run begins at A - J, ends at A + (n - 1) J.
+        for end in [-j, last_tick] {
+            a.keep(1, limits.acceleration + end);
+            a.keep(-1, limits.acceleration - end);
+        }
         // n V is distance - pairs A - by_jerk in the first tick, distance + pairs A + 2 by_jerk in the last.
         a.keep(-pairs, distance - by_jerk);
         a.keep(pairs, distance + 2 * by_jerk);

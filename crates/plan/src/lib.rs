@@ -4,11 +4,15 @@
 //! floats decide how the distance of a move is spread over its ticks, never how long it is.
 
 mod bend;
+mod bounds;
 mod check;
+mod corridor;
 mod demand;
 mod direction;
 mod edges;
 mod error;
+mod exchange;
+mod fit;
 mod limits;
 mod peaks;
 mod plan;

@@ -3,6 +3,7 @@
 use crate::bend::{Bend, Wanted, jerk_distance};
 use crate::demand::Clock;
 use crate::error::Broken;
+use crate::fit::Fitted;
 use crate::limits::ExactLimits;
 use crate::share::{self, Piece};
 use crate::units;
@@ -37,10 +38,28 @@ struct Rate {
 }
 
 impl<F: Real> Writer<'_, F> {
-    /// Writes the segments of a piece of constant jerk; their distances add up to it exactly.
-    pub fn piece(&mut self, piece: Piece) -> Result<(), Broken> {
+    /// Writes the segments of a piece of constant jerk; where it `ends`, what they travel adds up exactly.
+    pub fn piece(&mut self, piece: Piece, ends: bool) -> Result<(), Broken> {
         let jerk = if piece.ticks == 1 { Rate::default() } else { self.jerk(piece)? };
-        self.divide(piece, jerk, true)
+        self.divide(piece, jerk, ends)
+    }
+
+    /// Where the axis is when a piece begins, in the direction of travel, given what is carried into it.
+    pub fn position(&self, piece: Piece) -> i128 {
+        piece.start + if self.backward { -self.ahead } else { self.ahead }
+    }
+
+    /// Writes the segments of a fitted piece, and carries on what they are off.
+    pub fn fitted(&mut self, piece: Piece, segments: &[Fitted], ends: bool) -> Result<(), Broken> {
+        let sign = if self.backward { -1 } else { 1 };
+        let mut done = self.position(piece);
+        self.ahead = 0;
+        for (index, &Fitted { ticks, bend, distance }) in segments.iter().enumerate() {
+            self.lay(ticks.into(), sign * distance, bend, ends && index + 1 == segments.len())?;
+            done += distance;
+        }
+        self.ahead = sign * (done - piece.start - piece.units);
+        Ok(())
     }
 
     fn middle(&self, Piece { first, ticks, .. }: Piece) -> F {
@@ -68,7 +87,7 @@ impl<F: Real> Writer<'_, F> {
     /// The slower half gets its distance from the profile, the faster one what remains: float rounding
     /// is relative to a distance, so this keeps it small where edges are far apart.
     fn divide(&mut self, piece: Piece, jerk: Rate, ends: bool) -> Result<(), Broken> {
-        let Piece { first, ticks, units } = piece;
+        let Piece { first, ticks, start, units } = piece;
         let (doubled, lost) = if ticks == 1 { (0, 0.0) } else { self.acceleration(piece, jerk)? };
         if ticks < 4 || self.fine(piece, lost, jerk.lost) {
             return self.run(piece, doubled, jerk.units, ends);
@@ -80,8 +99,9 @@ impl<F: Real> Writer<'_, F> {
         };
         let rises = self.profile.speed(self.clock.at(first)) <= self.profile.speed(self.clock.at(first + ticks));
         let head = if rises { local(first, half)? } else { units - local(first + half, ticks - half)? };
-        self.divide(Piece { first, ticks: half, units: head }, jerk, false)?;
-        self.divide(Piece { first: first + half, ticks: ticks - half, units: units - head }, jerk, ends)
+        self.divide(Piece { ticks: half, units: head, ..piece }, jerk, false)?;
+        let (first, start) = (first + half, start + head);
+        self.divide(Piece { first, ticks: ticks - half, start, units: units - head }, jerk, ends)
     }
 
     /// Whether a run may be as long as this, given what rounding leaves out of A and J.
@@ -115,15 +135,20 @@ impl<F: Real> Writer<'_, F> {
         (to - offset + 1e-3).floor() > (from - offset - 1e-3).floor()
     }
 
-    /// One run. What V cannot share evenly goes to the first ticks, one unit each, where the piece ends;
-    /// before that it is carried into the next run.
+    /// One run of constant jerk.
     fn run(&mut self, piece: Piece, doubled_middle: i128, jerk: i128, ends: bool) -> Result<(), Broken> {
         let n = i128::from(piece.ticks);
         let sign = if self.backward { -1 } else { 1 };
         let distance = sign * piece.units - self.ahead;
         let (ticks, first) = (n, piece.first == 0);
         let wanted = Wanted { ticks, distance: sign * distance, doubled_middle, jerk, one_way: true, first };
-        let Bend { a, j } = wanted.within(self.limits);
+        self.lay(n, distance, wanted.within(self.limits), ends)
+    }
+
+    /// A run over a signed distance. What V cannot share evenly goes to the first ticks, one unit each, where the
+    /// piece ends; before that it is carried into the next run.
+    fn lay(&mut self, n: i128, distance: i128, Bend { a, j }: Bend, ends: bool) -> Result<(), Broken> {
+        let sign = if self.backward { -1 } else { 1 };
         let level = sign * distance - n * (n - 1) / 2 * a - jerk_distance(n, j).ok_or(Broken::Range)?;
         let (level, a, j) = (sign * level, sign * a, sign * j);
         let v = level.div_euclid(n);
