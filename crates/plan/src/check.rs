@@ -64,7 +64,7 @@ pub(crate) fn check(segments: &[Segment], duty: &Duty, limits: &ExactLimits) -> 
 }
 
 /// V - A/2 + J/3 in the direction of travel, rounded up, at least 0.
-fn start_speed(first: &Segment, limits: &ExactLimits) -> i128 {
+pub(crate) fn start_speed(first: &Segment, limits: &ExactLimits) -> i128 {
     let sixfold = 6 * i128::from(first.v) - 3 * i128::from(first.a) + 2 * i128::from(first.j);
     let sixfold = if first.v < 0 { -sixfold } else { sixfold };
     // A tick of its own says only how far it goes, not how fast it began.

@@ -7,8 +7,8 @@
 
 use crate::bend::{Bend, Wanted, jerk_distance};
 use crate::bounds::bounds;
-use crate::check::speeds;
-use crate::corridor::{Corridor, Stretch, steps};
+use crate::check::{speeds, start_speed};
+use crate::corridor::{Corridor, Stretch, basis, steps};
 use crate::exchange::{Row, solve};
 use crate::limits::ExactLimits;
 use carrystep_profile::Real;
@@ -86,10 +86,10 @@ impl<F: Real> Fitter<'_, F> {
             let ends = left == 0 && piece.first + piece.ticks == self.corridor.clock.ticks;
             let bend = Bend { a: -a - (i128::from(ticks) - 2) * j, j };
             let distance = if ends { end - done } else { distance };
-            let fitted = self.whole(Fitted { ticks, bend, distance }, ends)?;
+            let fitted = self.whole(Fitted { ticks, bend, distance }, end - done, ends)?;
             self.rows.clear();
             self.corridor.rows(Stretch { first, ticks, done }, &mut self.rows);
-            if self.judge(&fitted, self.rows.len())? > 1.0 {
+            if self.judge(&fitted, self.rows.len(), false)? > 1.0 {
                 return None;
             }
             first += ticks;
@@ -142,16 +142,19 @@ impl<F: Real> Fitter<'_, F> {
         let (opens, ends) = (piece.first + first == 0, closed && whole);
         if closed {
             // Exactly to the end: the integers will see to it, so this need not be more than near.
-            let at = [1.0, 0.5 - 0.5 / n, (0.5 - 0.5 / n) * (1.0 - 2.0 / n) / 3.0].map(|b| b * scale * 100.0);
+            let at = basis(n, n).map(|b| b * scale * 100.0);
             let most = steps(rest) * scale * 100.0;
             self.rows.push(Row { at, error: 1.0, most });
             self.rows.push(Row { at: at.map(|b| -b), error: 1.0, most: -most });
+        } else {
+            // No further than the piece: nothing could come back.
+            self.rows.push(Row { at: basis(n, n).map(|b| b * scale), error: 0.0, most: steps(rest) * scale });
         }
         bounds(&mut self.rows, n, self.limits, [opens, ends], scale);
         let [v, a, j] = solve(&self.rows, start)?.coefficients;
+        let [by_v, by_a, by_j] = basis(n, n);
         let units = |x: f64| (x * 2_f64.powi(64)) as i128;
-        let distance =
-            if closed { rest } else { units(v + a * (0.5 - 0.5 / n) + j * (n - 1.0) * (n - 2.0) / (6.0 * n * n)) };
+        let distance = if closed { rest } else { units(by_v * v + by_a * a + by_j * j) };
         let wanted = Wanted {
             ticks: ticks.into(),
             distance,
@@ -160,24 +163,26 @@ impl<F: Real> Fitter<'_, F> {
             one_way: false,
             first: opens,
         };
-        let fitted = self.whole(Fitted { ticks, bend: wanted.within(self.limits), distance }, ends)?;
-        let level = self.judge(&fitted, samples)?;
+        let fitted = self.whole(Fitted { ticks, bend: wanted.within(self.limits), distance }, rest, ends)?;
+        let level = self.judge(&fitted, samples, opens)?;
         Some((fitted, level))
     }
 
     /// The distance that a whole V makes; that of the last segment of a move stays, and is shared out in the end.
-    fn whole(&self, fitted: Fitted, ends: bool) -> Option<Fitted> {
+    fn whole(&self, fitted: Fitted, rest: i128, ends: bool) -> Option<Fitted> {
         let Fitted { ticks, bend: Bend { a, j }, distance } = fitted;
         let n = i128::from(ticks);
         let bent = n * (n - 1) / 2 * a + jerk_distance(n, j)?;
         let level = distance - bent;
         // P is never behind its ideal, whichever way it goes.
-        let v = if self.corridor.backward { level.div_euclid(n) } else { -(-level).div_euclid(n) };
+        let (down, up) = (level.div_euclid(n), -(-level).div_euclid(n));
+        let v = if self.corridor.backward || n * up + bent > rest { down } else { up };
         Some(if ends { fitted } else { Fitted { distance: n * v + bent, ..fitted } })
     }
 
-    /// The level that the integers reach; `None` if they break a limit.
-    fn judge(&self, &Fitted { ticks, bend: Bend { a, j }, distance }: &Fitted, samples: usize) -> Option<f64> {
+    /// The level that the integers reach; `None` if they break a limit, the start speed where they open a move.
+    fn judge(&self, fitted: &Fitted, samples: usize, opens: bool) -> Option<f64> {
+        let &Fitted { ticks, bend: Bend { a, j }, distance } = fitted;
         let n = i128::from(ticks);
         let level = distance - n * (n - 1) / 2 * a - jerk_distance(n, j)?;
         let register = |x: i128| i64::try_from(x).ok();
@@ -185,6 +190,9 @@ impl<F: Real> Fitter<'_, F> {
         let segment = Segment { ticks: u32::try_from(ticks).ok()?, v, a: a64, j: j64, last: false };
         let fastest = self.limits.speed + self.limits.tolerance;
         if !speeds(&segment).all(|v| (0..fastest).contains(&v)) {
+            return None;
+        }
+        if opens && start_speed(&segment, self.limits) > self.limits.start_speed + self.limits.tolerance {
             return None;
         }
         let length = ticks as f64;
@@ -198,13 +206,11 @@ impl<F: Real> Fitter<'_, F> {
         let piece = self.corridor.piece;
         let closed = first + ticks == piece.ticks;
         let ends = closed && piece.first + piece.ticks == self.corridor.clock.ticks;
-        let distance = if closed {
-            piece.start + piece.units - done
-        } else {
-            (self.corridor.ahead(done, (first + ticks) as f64) * 2_f64.powi(64)) as i128
-        };
-        let n = i128::from(ticks);
-        let fitted = Fitted { ticks, bend: Bend::default(), distance: distance.clamp(0, n * self.limits.speed) };
-        self.whole(fitted, ends).unwrap_or(fitted)
+        let rest = piece.start + piece.units - done;
+        let ideal = (self.corridor.ahead(done, (first + ticks) as f64) * 2_f64.powi(64)) as i128;
+        let most = i128::from(ticks) * self.limits.speed;
+        let distance = if closed { rest } else { ideal.min(rest) }.min(most).max(0);
+        let fitted = Fitted { ticks, bend: Bend::default(), distance };
+        self.whole(fitted, rest, ends).unwrap_or(fitted)
     }
 }

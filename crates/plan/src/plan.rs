@@ -24,6 +24,8 @@ pub struct PlannedMove {
     pub ticks: u64,
     /// Seconds of the motion as asked for; not always whole ticks.
     pub seconds: f64,
+    /// How far an edge may be from a profile that is fitted, seconds; 0 where it is followed exactly.
+    pub fit_seconds: f64,
     /// One for each axis of the machine.
     pub axes: Vec<PlannedAxis>,
 }
@@ -37,7 +39,7 @@ pub struct PlannedAxis {
     pub segments: Vec<Segment>,
     /// The float reference, in the direction of travel.
     pub profile: SharedProfile,
-    /// What the profile is called: triangle, trapezoid, constant or rest.
+    /// What the profile is called: triangle, trapezoid, scurve, logistic, sine, constant or rest.
     pub shape: &'static str,
     /// Greatest speed, acceleration, jerk and start speed, from the integers.
     pub peaks: Peaks,
@@ -99,6 +101,7 @@ impl Plan {
                 backward: moved.steps < 0,
                 steps: moved.steps.unsigned_abs(),
                 profile: moved.profile.clone(),
+                fit_seconds: planned.fit_seconds,
             })
         };
         let timeline = |axis| Timeline {

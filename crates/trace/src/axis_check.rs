@@ -249,7 +249,9 @@ impl<'a> AxisCheck<'a> {
             self.fail(&format!("final position {}, {} expected", self.position, self.setup.expected_position));
         }
         let phase = phase_ps(&self.timebase);
-        let bound = phase + self.curvature_ps + ROUNDING_PS + self.slack_ps;
+        let legs = &self.setup.timeline.legs;
+        let fit = legs.iter().map(|leg| leg.fit_seconds * PS).fold(0.0, f64::max);
+        let bound = phase + self.curvature_ps + fit + ROUNDING_PS + self.slack_ps;
         self.judge_errors(shift_ps as f64, bound);
         let shortest = self.watch.shortest();
         let measured = [shortest.high, shortest.low, shortest.setup, shortest.hold];
@@ -272,6 +274,7 @@ impl<'a> AxisCheck<'a> {
             error_rms_ns: errors.rms().map(|rms| rms / NS),
             error_std_ns: errors.deviation().map(|std| std / NS),
             error_std_theory_ns: phase / 12_f64.sqrt() / NS,
+            error_fit_ns: fit / NS,
             error_bound_ns: bound / NS,
             high_min_ns,
             high_required_ns,

@@ -59,7 +59,9 @@ pub struct AxisReport {
     pub error_std_ns: Option<f64>,
     /// What rounding down to the phase grid alone gives: h/Q / sqrt(12).
     pub error_std_theory_ns: f64,
-    /// h/Q + h^2 max(|a| / (8 v)) + 2 ns + slack: |e| must not exceed it.
+    /// The part of the bound that a fit may take: the greatest tolerance of the axis' moves.
+    pub error_fit_ns: f64,
+    /// h/Q + h^2 max(|a| / (8 v)) + fit + 2 ns + slack: |e| must not exceed it.
     pub error_bound_ns: f64,
     /// Shortest STEP high.
     pub high_min_ns: Option<f64>,
@@ -173,6 +175,10 @@ impl fmt::Display for Report {
         }
         if self.slack_ns > 0.0 {
             writeln!(f, "the capture is good to {} ns: every bound is wider by that", self.slack_ns)?;
+        }
+        let fit = self.axes.iter().map(|axis| axis.error_fit_ns).fold(0.0, f64::max);
+        if fit > 0.0 {
+            writeln!(f, "curves are fitted: up to {fit} ns of a bound are for that")?;
         }
         for axis in &self.axes {
             for failure in &axis.failures {
