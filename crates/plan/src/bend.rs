@@ -16,6 +16,8 @@ pub(crate) struct Wanted {
     pub jerk: i128,
     /// Whether the acceleration keeps its sign.
     pub one_way: bool,
+    /// Least V in the first tick, units: 1 where the first motion is to step at once.
+    pub least: i128,
     /// Whether it is the first of a move: then the start speed is a limit.
     pub first: bool,
 }
@@ -70,7 +72,7 @@ impl Wanted {
             a.keep(-1, limits.acceleration - end);
         }
         // n V is distance - pairs A - by_jerk in the first tick, distance + pairs A + 2 by_jerk in the last.
-        a.keep(-pairs, distance - by_jerk);
+        a.keep(-pairs, distance - by_jerk - n * self.least);
         a.keep(pairs, distance + 2 * by_jerk);
         a.keep(pairs, fastest - distance + by_jerk);
         a.keep(-pairs, fastest - distance - 2 * by_jerk);
@@ -130,7 +132,7 @@ mod tests {
         let n = 100_000;
         let distance = n * n * n / 6 * 109 / 10;
         for doubled_middle in [n * 109 / 10, -n * 109 / 10] {
-            let wanted = Wanted { ticks: n, distance, doubled_middle, jerk: 10, one_way: true, first: true };
+            let wanted = Wanted { ticks: n, distance, doubled_middle, jerk: 10, one_way: true, least: 0, first: true };
             let bend = wanted.within(&LIMITS);
             assert_eq!(bend.j, 10);
             assert!(slowest(wanted, bend) >= 0, "{bend:?}");
@@ -140,7 +142,7 @@ mod tests {
     #[test]
     fn what_cannot_be_bent_is_straight() {
         let wanted =
-            Wanted { ticks: 1000, distance: 5, doubled_middle: 1 << 30, jerk: 1 << 20, one_way: true, first: false };
+            Wanted { ticks: 1000, distance: 5, doubled_middle: 1 << 30, jerk: 1 << 20, one_way: true, least: 0, first: false };
         assert_eq!(wanted.within(&LIMITS), Bend::default());
         let endless = Wanted { ticks: 1 << 50, distance: 1 << 100, jerk: i128::MAX >> 2, ..wanted };
         assert_eq!(endless.within(&LIMITS).j, 0);

@@ -50,7 +50,7 @@ pub(crate) fn check(segments: &[Segment], duty: &Duty, limits: &ExactLimits) -> 
     if limits.jerk.is_some_and(|most| peaks[2] > most + 1) {
         return Err(Broken::Jerk);
     }
-    let start = segments.first().map_or(0, |first| start_speed(first, limits));
+    let start = segments.first().map_or(0, |first| start_speed(first, duty.backward, limits));
     if start > limits.start_speed + limits.tolerance {
         return Err(Broken::StartSpeed);
     }
@@ -64,9 +64,9 @@ pub(crate) fn check(segments: &[Segment], duty: &Duty, limits: &ExactLimits) -> 
 }
 
 /// V - A/2 + J/3 in the direction of travel, rounded up, at least 0.
-pub(crate) fn start_speed(first: &Segment, limits: &ExactLimits) -> i128 {
+pub(crate) fn start_speed(first: &Segment, backward: bool, limits: &ExactLimits) -> i128 {
     let sixfold = 6 * i128::from(first.v) - 3 * i128::from(first.a) + 2 * i128::from(first.j);
-    let sixfold = if first.v < 0 { -sixfold } else { sixfold };
+    let sixfold = if backward { -sixfold } else { sixfold };
     // A tick of its own says only how far it goes, not how fast it began.
     let explained = if first.ticks == 1 { 3 * limits.acceleration } else { 0 };
     let sixfold = (sixfold - explained).max(0);
@@ -118,6 +118,9 @@ mod tests {
         assert_eq!(checked(segment(5, 1000, 10, 9), false), Err(Broken::Jerk));
         assert!(checked(segment(5, 1000, 10, 8), false).is_ok());
         assert_eq!(checked(segment(10, 1050, 100, 0), false).map(|p| p.start_speed), Ok(1000));
+        // From V = 0 it is the sign of the move that counts.
+        let backward = checked(segment(10, 0, -100, 0), true);
+        assert_eq!(backward.map(|p| p.start_speed), Ok(0));
         assert_eq!(checked(segment(1, 1051, 0, 0), false).map(|p| p.start_speed), Ok(1001));
     }
 

@@ -20,7 +20,7 @@ const BETWEEN: f64 = 0.2;
 const AT_REST: f64 = 1e-3;
 
 /// The part of the tolerance that a stretch may leave at its end: the next one starts with that error.
-const JOINT: f64 = 0.8;
+pub(crate) const JOINT: f64 = 0.8;
 
 /// The tolerance around one piece of a profile.
 #[derive(Debug)]
@@ -48,6 +48,15 @@ pub(crate) struct Stretch {
     pub done: i128,
 }
 
+/// What the rows of a stretch are.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Samples {
+    /// Four rows that alternate.
+    pub start: [usize; 4],
+    /// How many rows come first that stand for others between them, two a sample.
+    pub standing: usize,
+}
+
 /// Units as steps.
 pub(crate) fn steps(units: i128) -> f64 {
     units as f64 * 2_f64.powi(-64)
@@ -71,6 +80,11 @@ impl<F: Real> Corridor<'_, F> {
         (exact * self.clock.tick).min(self.clock.seconds)
     }
 
+    /// Whether the first pulse is due with the first motion: then V must not start at 0.
+    pub fn steps_at_once(&self) -> bool {
+        self.phase == StartPhase::Zero && self.backward
+    }
+
     /// Speed `t` ticks into the piece, steps per tick.
     pub fn speed(&self, t: f64) -> f64 {
         wide(self.profile.speed(self.seconds(t)) * self.clock.tick)
@@ -89,8 +103,8 @@ impl<F: Real> Corridor<'_, F> {
         }
     }
 
-    /// Rows for all edges of a stretch; and four among them that alternate.
-    pub fn rows(&self, stretch: Stretch, rows: &mut Vec<Row>) -> [usize; 4] {
+    /// Rows for all edges of a stretch.
+    pub fn rows(&self, stretch: Stretch, rows: &mut Vec<Row>) -> Samples {
         let Stretch { first, ticks, done } = stretch;
         let (begin, n) = (first as f64, ticks as f64);
         let here = |t: f64| steps(done) + self.ahead(done, begin + t);
@@ -110,7 +124,7 @@ impl<F: Real> Corridor<'_, F> {
                 self.both_sides(rows, stretch, t, self.ahead(done, begin + t), 0.0);
             }
             self.joint(rows, stretch, self.pulses);
-            return alternating(quarters);
+            return Samples { start: alternating(quarters), standing: 2 * (SAMPLES as usize + 1) };
         }
         for quarter in [0.25, 0.5, 0.75] {
             let t = n * quarter;
@@ -121,7 +135,7 @@ impl<F: Real> Corridor<'_, F> {
             let (t, ahead) = self.edge(stretch, pulse);
             self.both_sides(rows, stretch, t, ahead, 0.0);
         }
-        alternating([0, 2, 4, 6])
+        Samples { start: alternating([0, 2, 4, 6]), standing: 0 }
     }
 
     /// Where the next stretch starts, the error is smaller; before the first edge, as small as it is there.
@@ -164,6 +178,21 @@ impl<F: Real> Corridor<'_, F> {
         rows.push(Row { at: after.map(|b| -b), error: 1.0, most: -ahead * weight - slack });
         rows.push(Row { at: before, error: 1.0, most: ahead * weight - slack });
     }
+}
+
+/// The greatest of evenly spaced values and of what a parabola through three of them says lies between.
+pub(crate) fn peak(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut greatest, mut held) = (0.0_f64, [f64::NAN; 2]);
+    for next in values {
+        let [before, here] = held;
+        let bend = before - 2.0 * here + next;
+        if here >= before && here > next {
+            greatest = greatest.max(here - (next - before).powi(2) / (8.0 * bend));
+        }
+        greatest = greatest.max(next);
+        held = [here, next];
+    }
+    greatest
 }
 
 /// Below, above, below, above: the first rows of four samples.

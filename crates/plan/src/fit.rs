@@ -8,29 +8,32 @@
 use crate::bend::{Bend, Wanted, jerk_distance};
 use crate::bounds::bounds;
 use crate::check::{speeds, start_speed};
-use crate::corridor::{Corridor, Stretch, basis, steps};
+use crate::corridor::{Corridor, JOINT, Samples, Stretch, basis, peak, steps};
 use crate::exchange::{Row, solve};
 use crate::limits::ExactLimits;
 use carrystep_profile::Real;
 use carrystep_spec::Segment;
 
-/// The part of the tolerance that samples may use up: between two samples the error is a little greater.
-const FULL: f64 = 0.94;
+/// The part of the tolerance that a segment may use up.
+const FULL: f64 = 0.97;
 
 /// What a next try aims at.
-const AIM: f64 = 0.935;
+const AIM: f64 = 0.965;
 
 /// From here on a segment is long enough.
-const ENOUGH: f64 = 0.93;
+const ENOUGH: f64 = 0.95;
 
 /// Tries for one segment, as long as one of them has been good.
 const TRIES: usize = 12;
 
+/// How much longer the next try is at least, after one with room to spare.
+const LEAP: f64 = 1.25;
+
 /// The first try for a segment after one that had to be short, ticks.
 const LEAST_GUESS: f64 = 64.0;
 
-/// Segments of so few ticks are straight.
-const STRAIGHT: u64 = 3;
+/// A next segment shorter than this part of one is better off with half of both.
+const STUB: u64 = 4;
 
 /// One segment of a fit, in the direction of travel.
 #[derive(Debug, Clone, Copy)]
@@ -62,7 +65,8 @@ impl<F: Real> Fitter<'_, F> {
         let mut guess = ticks as f64;
         let mut first = 0;
         while first < ticks {
-            let fitted = self.longest(first, done, guess);
+            let longest = self.longest(first, done, guess);
+            let fitted = self.without_stub(first, done, longest);
             let length = fitted.ticks as f64;
             let trend = segments.last().map_or(1.0, |before| (length / before.ticks as f64).clamp(0.5, 2.0));
             guess = (length * trend).max(LEAST_GUESS);
@@ -88,8 +92,8 @@ impl<F: Real> Fitter<'_, F> {
             let distance = if ends { end - done } else { distance };
             let fitted = self.whole(Fitted { ticks, bend, distance }, end - done, ends)?;
             self.rows.clear();
-            self.corridor.rows(Stretch { first, ticks, done }, &mut self.rows);
-            if self.judge(&fitted, self.rows.len(), false)? > 1.0 {
+            let samples = self.corridor.rows(Stretch { first, ticks, done }, &mut self.rows);
+            if self.judge(&fitted, (self.rows.len(), samples.standing), false)? > 1.0 {
                 return None;
             }
             first += ticks;
@@ -106,7 +110,7 @@ impl<F: Real> Fitter<'_, F> {
         let (mut good, mut bad): (Option<Fitted>, u64) = (None, most + 1);
         let mut ticks = (guess as u64).clamp(1, most);
         for attempt in 0.. {
-            if ticks <= STRAIGHT {
+            if ticks <= 1 {
                 break;
             }
             let trial = self.best(Stretch { first, ticks, done });
@@ -120,22 +124,55 @@ impl<F: Real> Fitter<'_, F> {
             if good.is_some() && (enough || attempt >= TRIES || bad - known <= known / 64 + 1) {
                 break;
             }
+            // A small error says little: it may be what the segment starts with.
             let factor = (AIM / level).powf(0.25).clamp(0.25, 4.0);
+            let factor = if level < JOINT { factor.max(LEAP) } else { factor };
             let next = (ticks as f64 * factor) as u64;
-            ticks = if next > known && next < bad { next } else { known.midpoint(bad) };
+            ticks = match next {
+                _ if next > known && next < bad => next,
+                _ if next >= bad && bad > most => most,
+                _ => known.midpoint(bad),
+            };
         }
-        good.unwrap_or_else(|| self.straight(first, done, most.min(STRAIGHT)))
+        good.unwrap_or_else(|| self.straight(first, done))
+    }
+
+    /// Where only a stub of the piece would be left, half of what is left: the stub alone could hardly make good what
+    /// the longest segment is off.
+    fn without_stub(&mut self, first: u64, done: i128, longest: Fitted) -> Fitted {
+        let left = self.corridor.piece.ticks - first;
+        let stub = left - longest.ticks;
+        if stub == 0 || stub >= longest.ticks / STUB {
+            return longest;
+        }
+        let half = self.best(Stretch { first, ticks: left / 2, done });
+        half.filter(|&(_, level)| level <= FULL).map_or(longest, |(fitted, _)| fitted)
     }
 
     /// The best cubic of a stretch, and the part of the tolerance that its integers use.
+    ///
+    /// At the end of its piece it makes good what the segments before it are off, unless that would pass a limit;
+    /// then the next piece does, as long as there is one.
     fn best(&mut self, stretch: Stretch) -> Option<(Fitted, f64)> {
+        let piece = self.corridor.piece;
+        if stretch.first + stretch.ticks < piece.ticks {
+            return self.cubic(stretch, false);
+        }
+        let closed = self.cubic(stretch, true);
+        if closed.is_some_and(|(_, level)| level <= FULL) || piece.first + piece.ticks == self.corridor.clock.ticks {
+            return closed;
+        }
+        self.cubic(stretch, false)
+    }
+
+    /// The best cubic of a stretch, `closed` if it has to come out exactly where the piece ends.
+    fn cubic(&mut self, stretch: Stretch, closed: bool) -> Option<(Fitted, f64)> {
         let Stretch { first, ticks, done } = stretch;
         let piece = self.corridor.piece;
         let n = ticks as f64;
         self.rows.clear();
-        let start = self.corridor.rows(stretch, &mut self.rows);
+        let Samples { start, standing } = self.corridor.rows(stretch, &mut self.rows);
         let samples = self.rows.len();
-        let closed = first + ticks == piece.ticks;
         let rest = piece.start + piece.units - done;
         let scale = self.rows.iter().map(|row| row.at[0].abs()).fold(f64::MIN_POSITIVE, f64::max);
         let whole = piece.first + piece.ticks == self.corridor.clock.ticks;
@@ -155,17 +192,21 @@ impl<F: Real> Fitter<'_, F> {
         let [by_v, by_a, by_j] = basis(n, n);
         let units = |x: f64| (x * 2_f64.powi(64)) as i128;
         let distance = if closed { rest } else { units(by_v * v + by_a * a + by_j * j) };
-        let wanted = Wanted {
-            ticks: ticks.into(),
-            distance,
-            doubled_middle: units((a + a + j * (1.0 - 2.0 / n)) / (n * n)),
-            jerk: units(j / (n * n * n)),
-            one_way: false,
-            first: opens,
-        };
-        let fitted = self.whole(Fitted { ticks, bend: wanted.within(self.limits), distance }, rest, ends)?;
-        let level = self.judge(&fitted, samples, opens)?;
-        Some((fitted, level))
+        // Rounded, a cubic may dip below zero between its ends; one whose A keeps its sign cannot.
+        [false, true].into_iter().find_map(|one_way| {
+            let wanted = Wanted {
+                ticks: ticks.into(),
+                distance,
+                doubled_middle: units((a + a + j * (1.0 - 2.0 / n)) / (n * n)),
+                jerk: units(j / (n * n * n)),
+                one_way,
+                least: i128::from(opens && self.corridor.steps_at_once()),
+                first: opens,
+            };
+            let fitted = self.whole(Fitted { ticks, bend: wanted.within(self.limits), distance }, rest, ends)?;
+            let level = self.judge(&fitted, (samples, standing), opens)?;
+            Some((fitted, level))
+        })
     }
 
     /// The distance that a whole V makes; that of the last segment of a move stays, and is shared out in the end.
@@ -181,36 +222,38 @@ impl<F: Real> Fitter<'_, F> {
     }
 
     /// The level that the integers reach; `None` if they break a limit, the start speed where they open a move.
-    fn judge(&self, fitted: &Fitted, samples: usize, opens: bool) -> Option<f64> {
+    fn judge(&self, fitted: &Fitted, (samples, standing): (usize, usize), opens: bool) -> Option<f64> {
         let &Fitted { ticks, bend: Bend { a, j }, distance } = fitted;
         let n = i128::from(ticks);
         let level = distance - n * (n - 1) / 2 * a - jerk_distance(n, j)?;
         let register = |x: i128| i64::try_from(x).ok();
         let (v, a64, j64) = (register(level.div_euclid(n))?, register(a)?, register(j)?);
         let segment = Segment { ticks: u32::try_from(ticks).ok()?, v, a: a64, j: j64, last: false };
-        let fastest = self.limits.speed + self.limits.tolerance;
-        if !speeds(&segment).all(|v| (0..fastest).contains(&v)) {
+        let fastest = self.limits.fastest();
+        if !speeds(&segment).all(|v| (0..=fastest).contains(&v)) {
             return None;
         }
-        if opens && start_speed(&segment, self.limits) > self.limits.start_speed + self.limits.tolerance {
+        if opens && self.corridor.steps_at_once() && v == 0 {
+            return None;
+        }
+        if opens && start_speed(&segment, false, self.limits) > self.limits.start_speed + self.limits.tolerance {
             return None;
         }
         let length = ticks as f64;
         let found = [steps(level), steps(a) * length * length, steps(j) * length * length * length];
         let error = |row: &Row| row.at[0] * found[0] + row.at[1] * found[1] + row.at[2] * found[2] - row.most;
-        Some(self.rows[..samples].iter().map(error).fold(0.0, f64::max))
+        let side = |side| peak(self.rows[side..standing.max(side)].iter().step_by(2).map(error));
+        let rest = self.rows[standing..samples].iter().map(error).fold(0.0, f64::max);
+        Some(rest.max(side(0)).max(side(1)))
     }
 
-    /// A few ticks at one speed, back to the profile as far as the speed limit allows.
-    fn straight(&self, first: u64, done: i128, ticks: u64) -> Fitted {
+    /// One tick, back to the profile as far as the speed limit allows.
+    fn straight(&self, first: u64, done: i128) -> Fitted {
         let piece = self.corridor.piece;
-        let closed = first + ticks == piece.ticks;
-        let ends = closed && piece.first + piece.ticks == self.corridor.clock.ticks;
+        let ends = first + 1 == piece.ticks && piece.first + piece.ticks == self.corridor.clock.ticks;
         let rest = piece.start + piece.units - done;
-        let ideal = (self.corridor.ahead(done, (first + ticks) as f64) * 2_f64.powi(64)) as i128;
-        let most = i128::from(ticks) * self.limits.speed;
-        let distance = if closed { rest } else { ideal.min(rest) }.min(most).max(0);
-        let fitted = Fitted { ticks, bend: Bend::default(), distance };
-        self.whole(fitted, rest, ends).unwrap_or(fitted)
+        let ideal = (self.corridor.ahead(done, (first + 1) as f64) * 2_f64.powi(64)) as i128;
+        let distance = if ends { rest } else { ideal.min(rest).clamp(0, self.limits.speed) };
+        Fitted { ticks: 1, bend: Bend::default(), distance }
     }
 }

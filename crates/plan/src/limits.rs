@@ -31,6 +31,11 @@ impl ExactLimits {
             tolerance: (speed as f64 * relative) as i128 + 1,
         })
     }
+
+    /// The speed that a segment may reach: half of what the check lets pass, since the landing may add a unit.
+    pub fn fastest(&self) -> i128 {
+        self.speed + self.tolerance / 2
+    }
 }
 
 fn units(value: &BigDecimal, ticks: &[&BigDecimal]) -> Option<i128> {

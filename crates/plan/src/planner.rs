@@ -33,6 +33,9 @@ pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
 /// A fit takes no more than this part of the length of a piece for its tolerance.
 const LEAST_RATIO: f64 = 64.0;
 
+/// The part of the tolerance that the rounding of a breakpoint may use up.
+const ROUNDED: f64 = 0.01;
+
 /// One axis in one move.
 #[derive(Debug, Clone, Copy)]
 struct Place {
@@ -126,9 +129,13 @@ impl<'a> Planner<'a> {
         let (phase, backward) = (self.build.phase, steps < 0);
         let mut writer =
             Writer { profile, clock: *clock, limits: &limits, phase, backward, segments: Vec::new(), ahead: 0 };
-        let breakpoints = if kind.is_fitted() { Breakpoints::Rounded } else { Breakpoints::Kept };
-        let pieces = share(profile, clock, total, breakpoints).ok_or(Broken::Range)?;
         let tolerance = tolerance(fit_ns, clock, self.build.timebase.tick_ns());
+        let breakpoints = if kind.is_fitted() {
+            Breakpoints::Rounded(F::from(tolerance * ROUNDED).unwrap_or_else(F::zero))
+        } else {
+            Breakpoints::Kept
+        };
+        let pieces = share(profile, clock, total, breakpoints).ok_or(Broken::Range)?;
         let (mut rows, mut risen) = (Vec::new(), Vec::new());
         for (index, &piece) in pieces.iter().enumerate() {
             let last = index + 1 == pieces.len();
@@ -146,8 +153,10 @@ impl<'a> Planner<'a> {
                     risen = segments;
                 }
             } else {
-                // In a fit, only the last piece lands: each landing costs a segment.
-                writer.piece(piece, last || !kind.is_fitted())?;
+                // In a fit, only the last piece lands: each landing costs a segment. Hardly anything could not.
+                let small = |next: &Piece| next.ticks == 1 || next.units <= i128::from(piece.ticks);
+                let lands = !kind.is_fitted() || pieces.get(index + 1).is_none_or(small);
+                writer.piece(piece, lands)?;
             }
         }
         Ok(writer.segments)

@@ -141,7 +141,7 @@ impl<F: Real> Writer<'_, F> {
         let sign = if self.backward { -1 } else { 1 };
         let distance = sign * piece.units - self.ahead;
         let (ticks, first) = (n, piece.first == 0);
-        let wanted = Wanted { ticks, distance: sign * distance, doubled_middle, jerk, one_way: true, first };
+        let wanted = Wanted { ticks, distance: sign * distance, doubled_middle, jerk, one_way: true, least: 0, first };
         self.lay(n, distance, wanted.within(self.limits), ends)
     }
 
@@ -160,9 +160,11 @@ impl<F: Real> Writer<'_, F> {
             let Registers { v, a, j } = head.after(remainder);
             self.push(n - remainder, Registers { v: v - 1, a, j })
         } else {
-            let spent = i128::from(remainder > 0);
-            self.ahead = n * spent - remainder;
-            self.push(n, Registers { v: v + spent, a, j })
+            // What a limit keeps behind stays behind.
+            let most = if a == 0 && j == 0 { self.limits.fastest() } else { i128::MAX };
+            let used = (v + i128::from(remainder > 0)).clamp(-most, most);
+            self.ahead = n * (used - v) - remainder;
+            self.push(n, Registers { v: used, a, j })
         }
     }
 

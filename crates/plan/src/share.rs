@@ -18,13 +18,12 @@ pub(crate) struct Piece {
 }
 
 /// What happens to a breakpoint inside a tick.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Breakpoints {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Breakpoints<F> {
     /// The tick becomes a piece of its own: nothing is lost.
     Kept,
-    /// The nearest boundary takes its place: at an acceleration that jumps by a, a h^2 / 8 is lost, which the
-    /// curvature of a tick costs anyway.
-    Rounded,
+    /// The nearest boundary takes its place where that moves no edge by more than so many ticks.
+    Rounded(F),
 }
 
 /// Splits the move at its breakpoints.
@@ -35,7 +34,7 @@ pub(crate) fn share<F: Real>(
     profile: &dyn Profile<F>,
     clock: &Clock<F>,
     total: i128,
-    breakpoints: Breakpoints,
+    breakpoints: Breakpoints<F>,
 ) -> Option<Vec<Piece>> {
     let cuts = cuts(profile, clock, breakpoints);
     let mut pieces = Vec::with_capacity(cuts.len());
@@ -67,7 +66,7 @@ pub(crate) fn distance<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, firs
 }
 
 /// Ticks at which pieces begin, and the end.
-fn cuts<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, breakpoints: Breakpoints) -> Vec<u64> {
+fn cuts<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, breakpoints: Breakpoints<F>) -> Vec<u64> {
     let mut cuts = vec![0, clock.ticks];
     if clock.last < F::one() {
         cuts.push(clock.ticks - 1);
@@ -77,7 +76,18 @@ fn cuts<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, breakpoints: Breakp
         let nearest = exact.round();
         // So near to a boundary that only rounding, or nothing that a pin could show, lies between.
         let noise = F::epsilon() * float(4) * exact + F::from(1e-9).unwrap_or_else(F::epsilon);
-        let on_boundary = breakpoints == Breakpoints::Rounded || (exact - nearest).abs() <= noise;
+        let off = (exact - nearest).abs();
+        let rounded = match breakpoints {
+            Breakpoints::Kept => false,
+            Breakpoints::Rounded(most) => {
+                // A cruise that takes in this much of a ramp, or of a rest, begins with the wrong speed.
+                let [here, there] = [breakpoint, nearest * clock.tick].map(|t| profile.speed(t.min(clock.seconds)));
+                // And without a ramp a move would start at its top speed.
+                let inside = nearest > F::zero() && nearest < float(clock.ticks);
+                inside && off * (here - there).abs() <= most * here
+            }
+        };
+        let on_boundary = rounded || off <= noise;
         let before = if on_boundary { nearest } else { exact.floor() };
         let Some(before) = before.to_u64() else { continue };
         cuts.push(before.min(clock.ticks));
