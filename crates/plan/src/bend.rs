@@ -64,7 +64,7 @@ impl Wanted {
         let pairs = n * (n - 1) / 2;
         let by_jerk = jerk_distance(n, j)?;
         let last_tick = (n - 1) * j;
-        let fastest = n * (limits.speed + limits.tolerance);
+        let fastest = n * limits.fastest();
         let mut a = Range { low: -limits.acceleration, high: limits.acceleration };
         // A is right a tick later than it is loaded: the run begins at A - J, ends at A + (n - 1) J.
         for end in [-j, last_tick] {

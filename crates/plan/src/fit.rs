@@ -88,6 +88,9 @@ impl<F: Real> Fitter<'_, F> {
         let mut segments = Vec::with_capacity(risen.len());
         for (left, &Fitted { ticks, bend: Bend { a, j }, distance }) in (0..risen.len()).rev().zip(risen.iter().rev()) {
             let ends = left == 0 && piece.first + piece.ticks == self.corridor.clock.ticks;
+            if distance > end - done && !ends {
+                return None;
+            }
             let bend = Bend { a: -a - (i128::from(ticks) - 2) * j, j };
             let distance = if ends { end - done } else { distance };
             let fitted = self.whole(Fitted { ticks, bend, distance }, end - done, ends)?;
@@ -191,7 +194,7 @@ impl<F: Real> Fitter<'_, F> {
         let [v, a, j] = solve(&self.rows, start)?.coefficients;
         let [by_v, by_a, by_j] = basis(n, n);
         let units = |x: f64| (x * 2_f64.powi(64)) as i128;
-        let distance = if closed { rest } else { units(by_v * v + by_a * a + by_j * j) };
+        let distance = if closed { rest } else { units(by_v * v + by_a * a + by_j * j).min(rest) };
         // Rounded, a cubic may dip below zero between its ends; one whose A keeps its sign cannot.
         [false, true].into_iter().find_map(|one_way| {
             let wanted = Wanted {

@@ -68,7 +68,9 @@ pub(crate) fn distance<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, firs
 /// Ticks at which pieces begin, and the end.
 fn cuts<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, breakpoints: Breakpoints<F>) -> Vec<u64> {
     let mut cuts = vec![0, clock.ticks];
-    if clock.last < F::one() {
+    // A fit that comes to rest may do so a part of a tick later.
+    let rests = breakpoints != Breakpoints::Kept && profile.speed(clock.seconds).is_zero();
+    if clock.last < F::one() && !rests {
         cuts.push(clock.ticks - 1);
     }
     for &breakpoint in profile.breakpoints() {
