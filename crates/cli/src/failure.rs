@@ -3,8 +3,10 @@
 use carrystep_levels::LevelError;
 use carrystep_plan::PlanError;
 use carrystep_spec::{InputError, MoveFile};
-use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
-use std::io::Write as _;
+use carrystep_trace::TraceError;
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report};
+use std::io::{IsTerminal as _, Write as _};
+use std::ops::Range;
 use std::process::ExitCode;
 
 /// Why the command did not do what was asked.
@@ -23,13 +25,18 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// Status 2, without a line of a file to show.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::Input(InputError::new(message))
+    }
+
     /// Tells the user, and gives the exit status.
     pub fn tell(self) -> ExitCode {
         let (status, text) = match self {
             Self::ReaderGone => return ExitCode::SUCCESS,
             Self::Check => return ExitCode::from(1),
-            Self::Run(message) => (1, format!("error: {message}")),
-            Self::Input(error) => (2, render(&error)),
+            Self::Run(message) => (1, format!("error: {}", harmless(&message))),
+            Self::Input(error) => (2, render(&error, std::io::stderr().is_terminal())),
             Self::Tool(message) => (3, format!("error: {message}")),
         };
         // Nobody is left to tell if this fails.
@@ -39,23 +46,45 @@ impl Failure {
 }
 
 /// What is wrong, then file, line and column, and the line itself with what is wrong in it.
-fn render(error: &InputError) -> String {
-    let mut diagnostic = MietteDiagnostic::new(error.message.clone());
-    if let Some(help) = &error.help {
-        diagnostic = diagnostic.with_help(help.clone());
+fn render(error: &InputError, terminal: bool) -> String {
+    let Some((source, span)) = error.place.as_ref().filter(|(source, _)| !source.text.is_empty()) else {
+        return format!("error: {}", harmless(&error.to_string()));
+    };
+    let mut diagnostic = MietteDiagnostic::new(harmless(&error.message));
+    diagnostic.help = error.help.as_deref().map(harmless);
+    let label = LabeledSpan::underline(shorten(&source.text, span.clone()));
+    let code = NamedSource::new(source.path.display().to_string(), harmless(&source.text));
+    format!("error:\n{}", drawn(diagnostic.with_label(label), code, terminal))
+}
+
+/// Colours and lines on a terminal; elsewhere plain ASCII, and no message broken into lines.
+fn drawn(diagnostic: MietteDiagnostic, code: NamedSource<String>, terminal: bool) -> String {
+    let report = Report::new(diagnostic).with_source_code(code);
+    if terminal {
+        return format!("{report:?}");
     }
-    match &error.place {
-        Some((source, span)) if !source.text.is_empty() => {
-            let label = LabeledSpan::underline(shorten(&source.text, span.clone()));
-            let code = NamedSource::new(source.path.display().to_string(), source.text.to_string());
-            format!("error:\n{:?}", Report::new(diagnostic.with_label(label)).with_source_code(code))
+    let mut text = String::new();
+    let plain = GraphicalReportHandler::new_themed(GraphicalTheme::none()).with_wrap_lines(false);
+    // Writing to a string cannot fail.
+    let _ = plain.render_report(&mut text, report.as_ref());
+    text
+}
+
+/// No control characters of a file reach the terminal; each byte keeps its place.
+fn harmless(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\r' | '\t' => safe.push(c),
+            c if c.is_control() => safe.extend(std::iter::repeat_n('?', c.len_utf8())),
+            c => safe.push(c),
         }
-        _ => format!("error: {error}"),
     }
+    safe
 }
 
 /// Only the first line of a long span: a whole [[move]] table underlined says nothing.
-fn shorten(text: &str, span: std::ops::Range<usize>) -> std::ops::Range<usize> {
+fn shorten(text: &str, span: Range<usize>) -> Range<usize> {
     let end = text.get(span.clone()).and_then(|s| s.find('\n')).map_or(span.end, |newline| span.start + newline);
     span.start..end
 }
@@ -75,6 +104,12 @@ impl From<LevelError> for Failure {
     }
 }
 
+impl From<TraceError> for Failure {
+    fn from(error: TraceError) -> Self {
+        Self::Input(InputError::new(error.to_string()))
+    }
+}
+
 /// A refused move, with its place in the file.
 pub fn refused(file: &MoveFile, error: &PlanError) -> Failure {
     let message = error.to_string();
@@ -82,4 +117,32 @@ pub fn refused(file: &MoveFile, error: &PlanError) -> Failure {
         Some(index) => file.move_error(index, message),
         None => InputError::new(message),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carrystep_spec::Source;
+
+    #[test]
+    fn nothing_that_a_terminal_obeys_is_shown() {
+        assert_eq!(harmless("a\u{1b}[31m\tb\u{0}\u{9b}\r\n\u{e9}"), "a?[31m\tb???\r\n\u{e9}");
+    }
+
+    #[test]
+    fn an_error_shows_its_first_line_only() {
+        let source = Source { path: "m.toml".into(), text: "[[move]]\nto = {}\n".into() };
+        let shown = render(&InputError::at(&source, 0..17, "too far").help("go less far"), false);
+        let lines = [
+            "error:",
+            "  x too far",
+            "   ,-[m.toml:1:1]",
+            " 1 | [[move]]",
+            "   : ^^^^^^^^",
+            " 2 | to = {}",
+            "   `----",
+            "  help: go less far",
+        ];
+        assert_eq!(shown.lines().map(str::trim_end).collect::<Vec<_>>(), lines);
+    }
 }

@@ -1,31 +1,25 @@
 //! One planned move file through one level: sinks on, run, and what came of it.
 
 use crate::failure::Failure;
-use crate::output::{OutputFile, write_file};
 use crate::progress::Progress;
 use crate::table::{self, Limits};
+use crate::wanted::Wanted;
 use carrystep_levels::pins::PinFeed;
 use carrystep_levels::{Job, Level};
 use carrystep_plan::Plan;
 use carrystep_profile::Timeline;
 use carrystep_spec::MoveFile;
 use carrystep_trace::{
-    AxisSetup, AxisWaves, Checker, CsvWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee, TraceError,
-    VcdWriter, Waves, save_file,
+    AxisSetup, AxisWaves, Checker, CsvWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee, VcdWriter, Waves,
+    save_file,
 };
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// The files that a run is to write.
-#[derive(Debug, Default)]
-pub struct Wanted {
-    pub vcd: Option<PathBuf>,
-    pub save: Option<PathBuf>,
-    pub csv: Option<PathBuf>,
-    pub plot: Option<PathBuf>,
-}
+/// Longest run, in seconds: captures count ps in 64 bits.
+const LONGEST_S: u64 = 4_000_000;
 
 /// What a run came to; `--json` prints it as it is.
 #[derive(Debug, Serialize)]
@@ -63,12 +57,7 @@ impl fmt::Display for Done {
         for file in &self.files {
             writeln!(f, "wrote {}", file.display())?;
         }
-        let speed = self.clocks as f64 / self.run_s / 1e6;
-        writeln!(
-            f,
-            "{}: {} clocks in {:.2} s ({speed:.1} million/s), faults: {}",
-            self.level, self.clocks, self.run_s, self.faults
-        )?;
+        writeln!(f, "{}: {} clocks, faults: {}", self.level, self.clocks, self.faults)?;
         f.write_str(if self.passed { "ALL HOLDS\n" } else { "FAILED\n" })
     }
 }
@@ -103,9 +92,21 @@ pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline
     }
 }
 
+/// Refuses a plan that is longer than a capture can be.
+pub fn fits_a_capture(plan: &Plan) -> Result<(), Failure> {
+    let ns = u128::from(plan.total_ticks()) * u128::from(plan.build.timebase.tick_ns());
+    if ns <= u128::from(LONGEST_S) * 1_000_000_000 {
+        return Ok(());
+    }
+    let seconds = ns / 1_000_000_000;
+    Err(Failure::input(format!("the moves take {seconds} s: a capture holds at most {LONGEST_S} s; split the file")))
+}
+
 /// Runs a plan at a level, checks every pulse and writes what is wanted.
 pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
     carrystep_levels::available(level)?;
+    fits_a_capture(plan)?;
+    let mut files = wanted.begin(&file.source.path)?;
     let program = plan.program();
     let job = Job::new(&plan.build, &program, plan.total_ticks());
     let timebase = plan.build.timebase;
@@ -114,8 +115,6 @@ pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Resul
     let timelines = plan.timelines();
 
     let mut checker = Checker::new(check_setup(file, plan, &timelines, Origin::Known { ps: origin_ps }));
-    let mut vcd_file = wanted.vcd.as_deref().map(OutputFile::create).transpose()?;
-    let mut csv_file = wanted.csv.as_deref().map(OutputFile::create).transpose()?;
     let named = || file.machine.axes.iter().map(|axis| axis.name.as_str()).zip(&timelines);
     let waves = || Waves {
         timebase,
@@ -127,8 +126,8 @@ pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Resul
             .map(|(i, (name, timeline))| AxisWaves { name, timeline, segments: Box::new(plan.axis_segments(i)) })
             .collect(),
     };
-    let mut vcd = vcd_file.as_mut().map(|out| VcdWriter::new(out, waves()));
-    let mut csv = csv_file.as_mut().map(|out| CsvWriter::new(out, &timebase, plan.build.phase, origin_ps, named()));
+    let mut vcd = files.vcd.as_mut().map(|out| VcdWriter::new(out, waves()));
+    let mut csv = files.csv.as_mut().map(|out| CsvWriter::new(out, &timebase, plan.build.phase, origin_ps, named()));
     let title = file.source.path.display().to_string();
     let mut plot = wanted.plot.as_ref().map(|_| {
         let axes = named().map(|(name, timeline)| PlotAxis { name, timeline }).collect();
@@ -155,26 +154,20 @@ pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Resul
             progress.at(cycle);
             feed.observe(cycle, outputs);
         })?;
-        feed.end(outcome.clocks).map_err(sink_failed)?;
+        feed.end(outcome.clocks)?;
         outcome
     };
     let run_s = started.elapsed().as_secs_f64();
     drop((vcd, csv));
 
     let check = checker.finish();
-    let mut files = Vec::new();
-    files.extend(vcd_file.map(OutputFile::keep).transpose()?);
-    if let (Some(save), Some(vcd)) = (&wanted.save, &wanted.vcd) {
+    if let (Some(out), Some(vcd)) = (&mut files.save, &wanted.vcd) {
         let names: Vec<&str> = named().map(|(name, _)| name).collect();
-        let text =
-            save_file(&seen_from(save, vcd), &names, timebase.clock_to_ps(outcome.clocks)).map_err(sink_failed)?;
-        write_file(save, &text)?;
-        files.push(save.clone());
+        let end_ps = timebase.clock_to_ps(outcome.clocks);
+        out.text(&save_file(&seen_from(out.path(), vcd), &names, end_ps)?)?;
     }
-    files.extend(csv_file.map(OutputFile::keep).transpose()?);
-    if let (Some(path), Some(plot)) = (&wanted.plot, plot) {
-        write_file(path, &plot.svg(&check).map_err(sink_failed)?)?;
-        files.push(path.clone());
+    if let (Some(out), Some(plot)) = (&mut files.plot, plot) {
+        out.text(&plot.svg(&check)?)?;
     }
 
     let limits = table::limits(file, plan);
@@ -190,12 +183,8 @@ pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Resul
         positions,
         limits,
         check,
-        files,
+        files: files.keep()?,
     })
-}
-
-fn sink_failed(error: TraceError) -> Failure {
-    Failure::Input(carrystep_spec::InputError::new(error.to_string()))
 }
 
 /// The path of the waveform as GTKWave sees it from the save file's folder.

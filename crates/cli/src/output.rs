@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use serde::Serialize;
+use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -11,7 +12,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| match error.kind() {
         ErrorKind::BrokenPipe => Failure::ReaderGone,
-        _ => Failure::Run(format!("cannot write to standard output: {error}")),
+        _ => Failure::input(format!("cannot write to standard output: {error}")),
     })
 }
 
@@ -24,29 +25,83 @@ pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
 /// A file that is there under its name only once [`OutputFile::keep`] has succeeded.
 pub struct OutputFile {
     path: PathBuf,
-    writer: BufWriter<NamedTempFile>,
+    writer: BufWriter<Place>,
+}
+
+/// Where the bytes go until then.
+enum Place {
+    /// A file without a name, beside the place where the result will be.
+    Beside(NamedTempFile),
+    /// A pipe or a device is written as it is: to rename a file over it would destroy it.
+    Itself(File),
+}
+
+impl Write for Place {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        match self {
+            Self::Beside(file) => file.write(bytes),
+            Self::Itself(file) => file.write(bytes),
+        }
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        match self {
+            Self::Beside(file) => file.flush(),
+            Self::Itself(file) => file.flush(),
+        }
+    }
 }
 
 impl OutputFile {
-    /// Makes the folder if need be, and a nameless file beside the place where the result will be.
+    /// Makes the folder if need be. Whatever forbids the file is found here, before any work is done.
     pub fn create(path: &Path) -> Result<Self, Failure> {
-        let folder = match path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
-        let made = std::fs::create_dir_all(folder).and_then(|()| NamedTempFile::new_in(folder));
-        let file = made.map_err(|error| cannot_write(path, &error))?;
-        Ok(Self { path: path.to_owned(), writer: BufWriter::with_capacity(1 << 18, file) })
+        let place = place(path).map_err(|error| cannot_write(path, &error))?;
+        Ok(Self { path: path.to_owned(), writer: BufWriter::with_capacity(1 << 18, place) })
+    }
+
+    /// Where the result will be.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Who writes into us says only what is wrong; this adds where.
+    fn named(&self, error: &std::io::Error) -> std::io::Error {
+        std::io::Error::new(error.kind(), format!("{}: {error}", self.path.display()))
+    }
+
+    /// Writes a whole text.
+    pub fn text(&mut self, text: &str) -> Result<(), Failure> {
+        self.writer.write_all(text.as_bytes()).map_err(|error| cannot_write(&self.path, &error))
+    }
+
+    /// Nothing is left to be written.
+    pub fn whole(&mut self) -> Result<(), Failure> {
+        self.writer.flush().map_err(|error| cannot_write(&self.path, &error))
     }
 
     /// Everything is written: let it appear.
     pub fn keep(self) -> Result<PathBuf, Failure> {
         let wrong = |error: std::io::Error| cannot_write(&self.path, &error);
-        let file = self.writer.into_inner().map_err(|error| wrong(error.into_error()))?;
-        readable_by_all(&file).map_err(wrong)?;
-        file.persist(&self.path).map_err(|error| wrong(error.error))?;
+        let place = self.writer.into_inner().map_err(|error| wrong(error.into_error()))?;
+        if let Place::Beside(file) = place {
+            readable_by_all(&file).map_err(wrong)?;
+            file.persist(&self.path).map_err(|error| wrong(error.error))?;
+        }
         Ok(self.path)
     }
+}
+
+fn place(path: &Path) -> std::io::Result<Place> {
+    match std::fs::metadata(path) {
+        Ok(there) if there.is_dir() => return Err(ErrorKind::IsADirectory.into()),
+        Ok(there) if !there.is_file() => return Ok(Place::Itself(File::options().write(true).open(path)?)),
+        _ => {}
+    }
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if folder.is_file() {
+        return Err(ErrorKind::NotADirectory.into());
+    }
+    std::fs::create_dir_all(folder)?;
+    NamedTempFile::new_in(folder).map(Place::Beside)
 }
 
 /// Temporary files are private; results are ordinary files.
@@ -62,20 +117,20 @@ fn readable_by_all(file: &NamedTempFile) -> std::io::Result<()> {
 
 impl Write for OutputFile {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.writer.write(bytes)
+        self.writer.write(bytes).map_err(|error| self.named(&error))
     }
     fn flush(&mut self) -> std::io::Result<()> {
-        self.writer.flush()
+        self.writer.flush().map_err(|error| self.named(&error))
     }
 }
 
 /// Writes a whole text file.
 pub fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
     let mut file = OutputFile::create(path)?;
-    file.write_all(text.as_bytes()).map_err(|error| cannot_write(path, &error))?;
+    file.text(text)?;
     file.keep().map(|_| ())
 }
 
 fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Input(carrystep_spec::InputError::new(format!("cannot write {}: {error}", path.display())))
+    Failure::input(format!("cannot write {}: {error}", path.display()))
 }

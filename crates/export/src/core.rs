@@ -7,7 +7,7 @@ use crate::netlist::{self, Module};
 use carrystep_hdl::{HdlError, SixAxis};
 use carrystep_spec::{Build, StartPhase};
 use rust_hdl::prelude::{Block, check_all};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Name of the core's top module and of its files.
@@ -57,8 +57,8 @@ pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, Expo
 /// [`ExportError`] where the build cannot be made or a file cannot be written.
 pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<PathBuf>, ExportError> {
     let files = [("v", six_axis_verilog(build, description)?), ("vlt", CORE_WAIVERS.to_owned())];
+    std::fs::create_dir_all(dir).map_err(|source| ExportError::Io { path: dir.to_owned(), source: folder(source) })?;
     let write = |path: &Path, text: &str| {
-        std::fs::create_dir_all(dir)?;
         let mut file = new_file(dir)?;
         file.write_all(text.as_bytes())?;
         file.persist(path)?;
@@ -72,6 +72,11 @@ pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<Pa
             Ok(path)
         })
         .collect()
+}
+
+/// A file in the folder's place is told as what it is; the system says only that something exists.
+fn folder(error: std::io::Error) -> std::io::Error {
+    if error.kind() == ErrorKind::AlreadyExists { ErrorKind::NotADirectory.into() } else { error }
 }
 
 /// A file without a name yet, with the permissions of any other new file (a temporary one is its owner's only).

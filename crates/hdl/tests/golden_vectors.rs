@@ -1,10 +1,10 @@
-//! The axis module gives every edge of the golden vectors: tick, phase and direction.
+//! The axis module gives the first edges of the golden vectors, tick, phase and direction; rung 4 of the
+//! ladder goes on to the last.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_hdl::AxisSim;
 use carrystep_spec::{Segment, StartPhase};
 use serde_json::Value;
-use sha2::{Digest, Sha256};
 
 const VECTORS: &str = include_str!("../../../tests/golden/engine_vectors.json");
 
@@ -26,15 +26,14 @@ fn segments(case: &Value) -> Vec<Segment> {
         .collect()
 }
 
-/// Runs a case for some ticks; the edges as `tick:phase:direction`, and P at the end.
-fn run(case: &Value, ticks: u64) -> (Vec<String>, u64) {
+/// Runs a case for some ticks; the edges as `tick:phase:direction`.
+fn run(case: &Value, ticks: u64) -> Vec<String> {
     let start = if number::<u64>(&case["P0"]) == 0 { StartPhase::Zero } else { StartPhase::Half };
     let mut axis = AxisSim::new(16, start).unwrap();
     let mut segments = segments(case).into_iter();
     assert!(axis.offer(&segments.next().unwrap()));
     axis.tick(true); // the strobe that loads
     let mut edges = Vec::new();
-    let mut p = start.start_value();
     for tick in 1..=ticks {
         if !axis.waiting()
             && let Some(segment) = segments.next()
@@ -45,22 +44,8 @@ fn run(case: &Value, ticks: u64) -> (Vec<String>, u64) {
         if now.crossed {
             edges.push(format!("{tick}:{}:{}", now.q, if now.back { "-1" } else { "+1" }));
         }
-        p = now.p;
     }
-    (edges, p)
-}
-
-#[test]
-#[cfg_attr(debug_assertions, ignore = "millions of clocks: run it with --release")]
-fn every_edge_of_the_golden_vectors() {
-    let vectors: Value = serde_json::from_str(VECTORS).unwrap();
-    for case in vectors["cases"].as_array().unwrap() {
-        let (edges, p) = run(case, case["total_ticks"].as_u64().unwrap());
-        let hash: String =
-            Sha256::digest(edges.join(",").as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
-        assert_eq!(hash, case["sha256_edges_csv"].as_str().unwrap(), "{}", case["name"]);
-        assert_eq!(p, number::<u64>(&case["P_end"]), "{}", case["name"]);
-    }
+    edges
 }
 
 #[test]
@@ -68,7 +53,7 @@ fn the_first_edges_of_the_golden_vectors() {
     let vectors: Value = serde_json::from_str(VECTORS).unwrap();
     for case in vectors["cases"].as_array().unwrap() {
         let first = case["first8"].as_array().unwrap();
-        let (edges, _) = run(case, first.last().unwrap()[0].as_u64().unwrap());
+        let edges = run(case, first.last().unwrap()[0].as_u64().unwrap());
         let expected = first.iter().map(|edge| format!("{}:{}:{:+}", edge[0], edge[1], edge[2].as_i64().unwrap()));
         assert_eq!(edges, expected.collect::<Vec<_>>(), "{}", case["name"]);
     }

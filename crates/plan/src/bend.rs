@@ -141,8 +141,15 @@ mod tests {
 
     #[test]
     fn what_cannot_be_bent_is_straight() {
-        let wanted =
-            Wanted { ticks: 1000, distance: 5, doubled_middle: 1 << 30, jerk: 1 << 20, one_way: true, least: 0, first: false };
+        let wanted = Wanted {
+            ticks: 1000,
+            distance: 5,
+            doubled_middle: 1 << 30,
+            jerk: 1 << 20,
+            one_way: true,
+            least: 0,
+            first: false,
+        };
         assert_eq!(wanted.within(&LIMITS), Bend::default());
         let endless = Wanted { ticks: 1 << 50, distance: 1 << 100, jerk: i128::MAX >> 2, ..wanted };
         assert_eq!(endless.within(&LIMITS).j, 0);

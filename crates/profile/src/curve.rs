@@ -1,6 +1,6 @@
 //! What a user has to know before trusting a curve.
 
-use crate::profile::{Profile, Real};
+use crate::profile::{Profile, Real, real};
 
 /// A profile that knows its extremes.
 pub trait Curve<F: Real>: Profile<F> {
@@ -39,6 +39,11 @@ pub trait Curve<F: Real>: Profile<F> {
 
     /// Greatest sudden change of acceleration, steps/s^2, the ends included; 0 where acceleration is continuous.
     fn acceleration_jump(&self) -> F;
+}
+
+/// Whether a part of a move takes time, or is nothing but the rounding of its whole.
+pub(crate) fn is_time<F: Real>(part: F, whole: F) -> bool {
+    part > real::<F>(64.0) * F::epsilon() * whole
 }
 
 /// The extremes of a ramp or a move.

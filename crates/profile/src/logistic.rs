@@ -86,11 +86,12 @@ impl<F: Real> LogisticRamp<F> {
             let (zero, one) = (F::zero(), F::one());
             return Self { duration: zero, distance: zero, ..Self::cut(zero, one, one, shortfall) };
         }
-        let jump = limits.start_speed / asymptote;
-        let start = if jump > F::zero() { jump.min(shortfall) } else { shortfall };
-        let by_acceleration = real::<F>(4.0) * limits.acceleration / asymptote;
-        let by_jerk = (limits.jerk / (asymptote * real(PEAK_JERK))).sqrt();
-        Self::cut(asymptote, by_acceleration.min(by_jerk), -start.ln(), shortfall)
+        Self::between(asymptote, steepest(limits, asymptote), start_fraction(limits, asymptote))
+    }
+
+    /// From `start` of the asymptote to [`SHORTFALL`] under it.
+    pub(crate) fn between(asymptote: F, steepness: F, start: F) -> Self {
+        Self::cut(asymptote, steepness, -start.ln(), real(SHORTFALL))
     }
 
     /// w, approached but never reached, steps/s.
@@ -125,6 +126,20 @@ impl<F: Real> LogisticRamp<F> {
 
 /// max |d^2 f/dz^2| of f = 1 / (1 + e^-z): 1 / (6 sqrt 3), where f is (1 -+ 1/sqrt 3) / 2.
 const PEAK_JERK: f64 = 0.096_225_044_864_937_63;
+
+/// The greatest k within acceleration and jerk limit.
+pub(crate) fn steepest<F: Real>(limits: &Limits<F>, asymptote: F) -> F {
+    let by_acceleration = real::<F>(4.0) * limits.acceleration / asymptote;
+    let by_jerk = (limits.jerk / (asymptote * real(PEAK_JERK))).sqrt();
+    by_acceleration.min(by_jerk)
+}
+
+/// The jump at the start over the asymptote: as much as is missing at the end, or the start speed where
+/// that is stated and less.
+pub(crate) fn start_fraction<F: Real>(limits: &Limits<F>, asymptote: F) -> F {
+    let (jump, shortfall) = (limits.start_speed / asymptote, real(SHORTFALL));
+    if jump > F::zero() { jump.min(shortfall) } else { shortfall }
+}
 
 /// k times the time from the centre to where `shortfall` of the asymptote is missing.
 fn tail<F: Real>(shortfall: F) -> F {

@@ -1,6 +1,6 @@
 //! A whole move from two ramps: up, a cruise, and down.
 
-use crate::curve::Curve;
+use crate::curve::{Curve, is_time};
 use crate::profile::{Profile, Real, real};
 
 /// A move that ramps up, cruises at the speed the ramp has reached, and ramps down, mirrored in time.
@@ -201,7 +201,7 @@ impl<F: Real, R: Curve<F>> Curve<F> for RampedMove<F, R> {
 
     fn acceleration_jump(&self) -> F {
         let ends = self.up.acceleration_jump().max(self.down.acceleration_jump());
-        if self.cruise_time() > F::zero() {
+        if is_time(self.cruise_time(), self.duration) {
             return ends;
         }
         // From one ramp straight into the other: the two jumps at the top are one.

@@ -5,6 +5,7 @@
 //! runs at one speed.
 
 use crate::constant::Constant;
+use crate::curve::Curve;
 use crate::profile::{Profile, Real, real};
 use crate::ramp::Ramp;
 use crate::refusal::{Limit, Limits, Refusal};
@@ -15,6 +16,14 @@ use std::sync::Arc;
 /// # Errors
 /// [`Refusal`] names the limit that fails and the least time.
 pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Profile<F>>, Refusal> {
+    Ok(ranade_curve(distance, time, limits)?)
+}
+
+/// [`ranade`], with its figures.
+///
+/// # Errors
+/// [`Refusal`] names the limit that fails and the least time.
+pub fn ranade_curve<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Curve<F>>, Refusal> {
     let Limits { start_speed, speed, acceleration: limit, .. } = *limits;
     let average = distance / time;
     if average <= start_speed {

@@ -54,7 +54,7 @@ impl<F: Real> ScurveRamp<F> {
         Ok(Self::steepest(start, end, acceleration, jerk))
     }
 
-    fn steepest(start: F, end: F, acceleration: F, jerk: F) -> Self {
+    pub(crate) fn steepest(start: F, end: F, acceleration: F, jerk: F) -> Self {
         let gain = end - start;
         let (peak, rise, hold) = if gain <= F::zero() {
             (F::zero(), F::zero(), F::zero())

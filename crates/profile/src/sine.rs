@@ -37,8 +37,13 @@ impl<F: Real> SineRamp<F> {
         Self::new(top, real::<F>(2.0) * top / positive("the acceleration", acceleration)?)
     }
 
+    /// [`Self::new`] of what has been checked.
+    pub(crate) fn lasting(top: F, duration: F) -> Self {
+        Self { top, duration }
+    }
+
     /// The steepest ramp within `limits` that ends at `top`.
-    fn within(limits: &Limits<F>, top: F) -> Self {
+    pub(crate) fn within(limits: &Limits<F>, top: F) -> Self {
         if top <= F::zero() {
             return Self { top: F::zero(), duration: F::zero() };
         }

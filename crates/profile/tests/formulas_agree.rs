@@ -24,7 +24,12 @@ fn the_articles_planning_cases() {
     let shapes = ["triangle", "refused", "constant"];
     for (case, shape) in golden()["planning_cases"].as_array().unwrap().iter().zip(shapes) {
         let get = |key: &str| number(&case[key]);
-        let limits = Limits { start_speed: get("start"), speed: get("limit"), acceleration: get("acc_limit"), jerk: f64::INFINITY };
+        let limits = Limits {
+            start_speed: get("start"),
+            speed: get("limit"),
+            acceleration: get("acc_limit"),
+            jerk: f64::INFINITY,
+        };
         let (n, t) = (get("N"), get("T"));
         let least = rule::ranade_least_time(n, &limits);
         assert!(close(least, get("t_min")), "{least}");

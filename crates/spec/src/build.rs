@@ -12,6 +12,9 @@ pub const MIN_CLOCKS_PER_TICK: u32 = 16;
 /// Most clocks in a tick or in one pin timing (timers are at most 17 bits wide).
 pub const MAX_CLOCKS: u32 = 1 << 16;
 
+/// Fastest clock, Hz: captures count time in ps, and a clock must be many of them.
+pub const MAX_CLOCK_HZ: u64 = 1_000_000_000;
+
 /// Clock, tick and phases of a build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Timebase {
@@ -24,6 +27,9 @@ pub struct Timebase {
 /// Why a [`Timebase`] cannot be.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum TimebaseError {
+    /// No clock, or one too fast.
+    #[error("a clock of {0} Hz: between 1 and {MAX_CLOCK_HZ} Hz are needed")]
+    Clock(u64),
     /// Q is not 1, 4 or 16.
     #[error("{0} phases: a tick has 1, 4 or 16 phases")]
     Phases(u32),
@@ -59,6 +65,9 @@ impl Timebase {
     /// [`TimebaseError`] names the parameter that does not fit.
     pub fn new(clock_hz: u64, tick_ns: u64, phases: u32) -> Result<Self, TimebaseError> {
         const NS: u128 = 1_000_000_000;
+        if !(1..=MAX_CLOCK_HZ).contains(&clock_hz) {
+            return Err(TimebaseError::Clock(clock_hz));
+        }
         if ![1, 4, 16].contains(&phases) {
             return Err(TimebaseError::Phases(phases));
         }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A text file that was read, kept so that an error can show the line.
@@ -46,10 +46,7 @@ impl InputError {
     /// Line and column, both from 1, of the place.
     pub fn line_column(&self) -> Option<(usize, usize)> {
         let (source, span) = self.place.as_ref()?;
-        let before = source.text.get(..span.start)?;
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-        Some((line, column))
+        Some(line_column(source.text.get(..span.start)?))
     }
 }
 
@@ -73,9 +70,14 @@ impl Source {
     ///
     /// # Errors
     /// The file cannot be read or is not UTF-8.
-    pub fn read(path: &std::path::Path) -> Result<Self, InputError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| InputError::new(format!("cannot read {}: {error}", path.display())))?;
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let shown = path.display();
+        let bytes = std::fs::read(path).map_err(|error| InputError::new(format!("cannot read {shown}: {error}")))?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+            let (line, column) = line_column(&String::from_utf8_lossy(good));
+            InputError::new(format!("{shown}:{line}:{column}: not UTF-8")).help("a text file in TOML is expected")
+        })?;
         Ok(Self { path: path.to_owned(), text: text.into() })
     }
 
@@ -84,6 +86,28 @@ impl Source {
     /// # Errors
     /// Syntax errors, unknown keys, missing fields, wrong types.
     pub(crate) fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, InputError> {
-        toml::from_str(&self.text).map_err(|error| InputError::at(self, error.span().unwrap_or(0..0), error.message()))
+        toml::from_str(&self.text)
+            .map_err(|error| InputError::at(self, error.span().unwrap_or(0..0), in_plain_words(error.message())))
     }
+}
+
+/// Line and column, both from 1, right behind a text.
+fn line_column(before: &str) -> (usize, usize) {
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+    (line, column)
+}
+
+/// What the parser says in the words of its language, for who writes the file.
+fn in_plain_words(message: &str) -> String {
+    const WORDS: [(&str, &str); 7] = [
+        ("expected f64", "expected a number"),
+        ("expected u64", "expected a whole number, zero or more"),
+        ("expected u32", "expected a whole number, zero or more"),
+        ("expected a sequence", "expected tables in double brackets, as in [[move]] and [[machine.axis]]"),
+        ("expected a map", "expected distances, as in { x = 1.5 }"),
+        ("integer number overflowed", "a number of too many digits: at most 38, or 60 with a point, are expected"),
+        ("floating-point number overflowed", "a number too great: a finite one of at most 60 digits is expected"),
+    ];
+    WORDS.iter().fold(message.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))
 }

@@ -11,6 +11,7 @@ pub mod fault;
 pub mod fixed;
 pub mod machine;
 pub mod move_file;
+mod number;
 pub mod ports;
 pub mod segment;
 

@@ -2,12 +2,13 @@
 //!
 //! Raw structures mirror the TOML; [`Machine`] is what is left after every value has been checked.
 
-use crate::build::{AXES, Build, MAX_CLOCKS, PinTiming, Timebase};
+use crate::build::{AXES, Build, MAX_CLOCKS, PinTiming, Timebase, TimebaseError};
 use crate::decimal;
 use crate::driver::drivers;
 use crate::error::{InputError, Source};
 use crate::fixed::StartPhase;
-use bigdecimal::{BigDecimal, Signed, Zero};
+use crate::number::{not_negative, positive};
+use bigdecimal::{BigDecimal, Zero};
 use serde::Deserialize;
 use std::ops::Range;
 use std::path::Path;
@@ -85,14 +86,14 @@ impl Machine {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a machine file")]
 struct RawMachineFile {
     machine: RawMachine,
 }
 
 /// `[machine]` as the file has it.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a [machine] table")]
 pub(crate) struct RawMachine {
     clock_hz: Option<Spanned<u64>>,
     tick_ns: Option<Spanned<u64>>,
@@ -103,7 +104,7 @@ pub(crate) struct RawMachine {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a [[machine.axis]] table")]
 struct RawAxis {
     name: Spanned<String>,
     steps_per_unit: Spanned<f64>,
@@ -153,17 +154,22 @@ impl RawMachine {
         let tick_ns = get(&self.tick_ns, 1000);
         let phases = self.phases.as_ref().map_or(16, |v| *v.as_ref());
         Timebase::new(clock_hz, tick_ns, phases).map_err(|error| {
-            let spans = [
-                self.tick_ns.as_ref().map(Spanned::span),
-                self.clock_hz.as_ref().map(Spanned::span),
-                self.phases.as_ref().map(Spanned::span),
-            ];
-            let help = "clock_hz x tick_ns must be a whole number of clocks, divisible by `phases`: 48 MHz x 1000 ns = 48 clocks = 16 phases x 3";
-            match spans.into_iter().flatten().next() {
-                Some(span) => InputError::at(source, span, error.to_string()),
-                None => InputError::new(error.to_string()),
-            }
-            .help(help)
+            let tick = self.tick_ns.as_ref().map(Spanned::span);
+            let clock = self.clock_hz.as_ref().map(Spanned::span);
+            let phases = self.phases.as_ref().map(Spanned::span);
+            // The value that is wrong, or else one that has a part in it: the others are defaults.
+            let span = match error {
+                TimebaseError::Clock(_) => clock,
+                TimebaseError::Phases(_) => phases,
+                TimebaseError::NotWhole { .. } | TimebaseError::Range(_) => tick.or(clock),
+                TimebaseError::NotDivisible { .. } => phases.or(tick).or(clock),
+            };
+            let mut told = InputError::new(error.to_string());
+            told.place = span.map(|span| (source.clone(), span));
+            told.help(
+                "clock_hz x tick_ns must be a whole number of clocks, divisible by `phases`: \
+                 48 MHz x 1000 ns = 48 clocks = 16 phases x 3",
+            )
         })
     }
 }
@@ -173,7 +179,7 @@ impl RawAxis {
         let name = self.name.as_ref().clone();
         let fit = |c: char| c.is_ascii_alphanumeric() || c == '_';
         if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(fit) || name.len() > 32 {
-            return Err(InputError::at(source, self.name.span(), format!("axis name '{name}'")).help(
+            return Err(InputError::at(source, self.name.span(), format!("{name:?} cannot name an axis")).help(
                 "a name starts with a letter and has letters, digits and _ only, 32 at most: it becomes a signal name",
             ));
         }
@@ -185,6 +191,8 @@ impl RawAxis {
         };
         let speed_limit = in_steps(positive(source, &self.speed_limit, "speed_limit")?);
         let accel_limit = in_steps(positive(source, &self.accel_limit, "accel_limit")?);
+        not_too_slow(source, self.speed_limit.span(), "speed_limit", &speed_limit, "steps/s")?;
+        not_too_slow(source, self.accel_limit.span(), "accel_limit", &accel_limit, "steps/s^2")?;
         let jerk_limit = match &self.jerk_limit {
             None => None,
             Some(value) => Some(in_steps(positive(source, value, "jerk_limit")?)),
@@ -230,7 +238,7 @@ impl RawAxis {
                 .help("name a driver, or give step_ns, gap_ns, setup_ns and hold_ns"));
             };
             ns[slot] = value;
-            let span = given.as_ref().or(None).map(Spanned::span).unwrap_or_else(|| self.name.span());
+            let span = given.as_ref().map_or_else(|| self.name.span(), Spanned::span);
             let exact = timebase.clocks_for_ns(value);
             clocks[slot] = u32::try_from(exact).ok().filter(|&c| c < MAX_CLOCKS).ok_or_else(|| {
                 InputError::at(
@@ -242,6 +250,23 @@ impl RawAxis {
         }
         Ok((ns, PinTiming { width: clocks[0], gap: clocks[1], setup: clocks[2], hold: clocks[3] }))
     }
+}
+
+/// Limits under a thousandth of a step ask for plans of months, and are too coarse in units of 2^-64 step per tick.
+fn not_too_slow(
+    source: &Source,
+    span: Range<usize>,
+    key: &str,
+    limit: &BigDecimal,
+    unit: &str,
+) -> Result<(), InputError> {
+    let least = BigDecimal::new(1.into(), 3);
+    if *limit >= least {
+        return Ok(());
+    }
+    let limit = decimal::to_f64(limit);
+    Err(InputError::at(source, span, format!("{key} is {limit} {unit}: under {least} {unit}"))
+        .help("check steps_per_unit and the unit of the limit; a moving axis makes a step in a quarter of an hour"))
 }
 
 impl Axis {
@@ -286,38 +311,18 @@ impl Axis {
         let tick = BigDecimal::from(timebase.tick_ns());
         if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {
             let limit = decimal::to_f64(&self.accel_limit);
+            let half = 0.5e18 / (timebase.tick_ns() as f64).powi(2);
             return Err(InputError::at(
                 source,
                 span,
                 format!("accel_limit is {limit} steps/s^2: half a step per tick^2 or more"),
-            ));
+            )
+            .help(format!(
+                "with ticks of {} ns stay under {half} steps/s^2, {} units/s^2",
+                timebase.tick_ns(),
+                half / decimal::to_f64(&self.steps_per_unit)
+            )));
         }
         Ok(())
     }
-}
-
-/// The exact value of a number in the file, which must be finite.
-pub(crate) fn exact(source: &Source, value: &Spanned<f64>, key: &str) -> Result<BigDecimal, InputError> {
-    let literal = source.text.get(value.span()).unwrap_or("");
-    let exact = if value.as_ref().is_finite() { decimal::parse(literal) } else { None };
-    exact.filter(|v| decimal::to_f64(v).abs() < 1e30).ok_or_else(|| {
-        InputError::at(source, value.span(), format!("{key} = {literal}: not a usable number"))
-            .help("a finite decimal number of at most 60 digits is expected")
-    })
-}
-
-fn positive(source: &Source, value: &Spanned<f64>, key: &str) -> Result<BigDecimal, InputError> {
-    let exact = exact(source, value, key)?;
-    if exact.is_positive() {
-        return Ok(exact);
-    }
-    Err(InputError::at(source, value.span(), format!("{key} = {exact}: must be over zero")))
-}
-
-fn not_negative(source: &Source, value: &Spanned<f64>, key: &str) -> Result<BigDecimal, InputError> {
-    let exact = exact(source, value, key)?;
-    if exact.is_negative() {
-        return Err(InputError::at(source, value.span(), format!("{key} = {exact}: must be zero or more")));
-    }
-    Ok(exact)
 }

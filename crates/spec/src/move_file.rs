@@ -5,8 +5,9 @@
 
 use crate::decimal;
 use crate::error::{InputError, Source};
-use crate::machine::{Machine, RawMachine, exact};
-use bigdecimal::{BigDecimal, Signed, Zero};
+use crate::machine::{Machine, RawMachine};
+use crate::number::{exact, positive};
+use bigdecimal::{BigDecimal, Zero};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -86,7 +87,7 @@ pub struct Move {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a move file")]
 struct RawMoveFile {
     machine_file: Option<Spanned<PathBuf>>,
     machine: Option<RawMachine>,
@@ -95,7 +96,7 @@ struct RawMoveFile {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a [[move]] table")]
 struct RawMove {
     profile: Spanned<ProfileKind>,
     time: Option<Spanned<f64>>,
@@ -165,58 +166,27 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
     for entry in raw {
         let span = entry.span();
         let RawMove { profile, time, fit_ns, to } = entry.into_inner();
-        let time = match &time {
-            None => None,
-            Some(value) => Some(exact(source, value, "time").and_then(|t| {
-                let fits = t.is_positive() && t <= 1_000_000;
-                if fits {
-                    Ok(t)
-                } else {
-                    Err(InputError::at(
-                        source,
-                        value.span(),
-                        format!("time = {t} s: must be over zero and at most 10^6"),
-                    ))
-                }
-            })?),
-        };
-        let fit_ns = match &fit_ns {
-            None => machine.timebase.tick_ns(),
-            Some(ns) if *ns.as_ref() > 0 => *ns.as_ref(),
-            Some(ns) => {
-                return Err(InputError::at(source, ns.span(), "fit_ns = 0: no fit is without an error")
-                    .help("give the greatest error of an edge in ns, from 1 up"));
-            }
-        };
+        let time = time.map(|value| check_time(source, &value)).transpose()?;
+        let fit_ns = fit_ns.map_or(Ok(machine.timebase.tick_ns()), |value| check_fit(source, &value))?;
         let before = positions.clone();
         for (name, distance) in &to {
-            let Some(axis) = machine.axis_index(name.as_ref()) else {
-                return Err(InputError::at(
-                    source,
-                    name.span(),
-                    format!("the machine has no axis '{}'", name.as_ref()),
-                )
-                .help(format!("its axes are {}", machine.axis_names())));
-            };
+            let axis = machine.axis_index(name.as_ref()).ok_or_else(|| {
+                InputError::at(source, name.span(), format!("the machine has no axis {:?}", name.as_ref()))
+                    .help(format!("its axes are {}", machine.axis_names()))
+            })?;
             if *profile.as_ref() == ProfileKind::Scurve && machine.axes[axis].jerk_limit.is_none() {
-                return Err(InputError::at(
-                    source,
-                    profile.span(),
-                    format!("profile = \"scurve\": axis '{}' has no jerk_limit", name.as_ref()),
-                )
-                .help("give the axis a jerk_limit in units/s^3, or take another profile"));
+                let message = format!("profile = \"scurve\": axis {:?} has no jerk_limit", name.as_ref());
+                return Err(InputError::at(source, profile.span(), message)
+                    .help("give the axis a jerk_limit in units/s^3, or take another profile"));
             }
             targets[axis] += exact(source, distance, name.as_ref())?;
-            positions[axis] = decimal::round_half_away(&(&targets[axis] * &machine.axes[axis].steps_per_unit))
-                .filter(|steps| i32::try_from(*steps).is_ok() && *steps != i64::from(i32::MIN))
-                .ok_or_else(|| {
-                    InputError::at(
-                        source,
-                        distance.span(),
-                        format!("axis '{}' leaves its position register", name.as_ref()),
-                    )
-                    .help("the sum of all moves must stay within +-2147483647 steps of the start")
-                })?;
+            let target = &targets[axis] * &machine.axes[axis].steps_per_unit;
+            positions[axis] = register(&target).ok_or_else(|| {
+                let steps = decimal::to_f64(&target);
+                let message = format!("axis '{}' would stand at {steps:.0} steps, beyond its register", name.as_ref());
+                InputError::at(source, distance.span(), message)
+                    .help(format!("the sum of all moves must stay within +-{} steps of the start", i32::MAX))
+            })?;
         }
         let rounding = targets.iter().zip(&machine.axes).zip(&positions);
         let rounding = rounding.map(|((target, axis), &steps)| {
@@ -232,4 +202,28 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
         });
     }
     Ok(moves)
+}
+
+/// Over zero, and short enough for every count of clocks.
+fn check_time(source: &Source, value: &Spanned<f64>) -> Result<BigDecimal, InputError> {
+    let time = positive(source, value, "time")?;
+    if time <= 1_000_000 {
+        return Ok(time);
+    }
+    let message = format!("time = {} s: a move takes at most 10^6 s", decimal::to_f64(&time));
+    Err(InputError::at(source, value.span(), message).help("split it into shorter moves"))
+}
+
+fn check_fit(source: &Source, value: &Spanned<u64>) -> Result<u64, InputError> {
+    let ns = *value.as_ref();
+    if ns > 0 {
+        return Ok(ns);
+    }
+    Err(InputError::at(source, value.span(), "fit_ns = 0: no fit is without an error")
+        .help("give the greatest error of an edge in ns, from 1 up"))
+}
+
+/// The nearest whole step, where the position register can hold it and its negative.
+fn register(target: &BigDecimal) -> Option<i64> {
+    decimal::round_half_away(target).filter(|steps| steps.unsigned_abs() <= u64::from(i32::MAX.unsigned_abs()))
 }

@@ -13,7 +13,7 @@ use std::fmt;
 mod draw;
 
 /// Stretches that pulses are thinned out to; each keeps two points.
-const STRETCHES: usize = 1000;
+const STRETCHES: usize = 400;
 
 /// What is drawn, beside the pulses.
 #[derive(Debug, Clone)]

@@ -35,8 +35,7 @@ pub fn run(program: &str, arguments: &[&str]) -> Done {
 
 /// Runs a command and takes what it prints.
 pub fn read(program: &str, arguments: &[&str]) -> Result<String, String> {
-    let output =
-        command(program, arguments).output().map_err(|error| format!("cannot start {program}: {error}"))?;
+    let output = command(program, arguments).output().map_err(|error| format!("cannot start {program}: {error}"))?;
     if !output.status.success() {
         let stderr = String::from_utf8_lossy(&output.stderr);
         return Err(format!("`{program} {}` failed ({}): {stderr}", arguments.join(" "), output.status));

@@ -4,7 +4,7 @@ use crate::arguments::Check;
 use crate::failure::{Failure, refused};
 use crate::{job, output};
 use carrystep_plan::plan;
-use carrystep_spec::{InputError, MoveFile};
+use carrystep_spec::{MoveFile, Timebase};
 use carrystep_trace::{Checker, Origin, Report, SignalMap, TraceError, VcdReader};
 use serde::Serialize;
 use std::fs::File;
@@ -38,11 +38,20 @@ fn read(
     plan: &carrystep_plan::Plan,
     timelines: &[carrystep_profile::Timeline],
 ) -> Result<Report, Failure> {
-    let unusable = |error: String| Failure::Input(InputError::new(format!("{}: {error}", arguments.capture.display())));
+    job::fits_a_capture(plan)?;
+    let unusable = |error: String| Failure::input(format!("{}: {error}", arguments.capture.display()));
     let capture = File::open(&arguments.capture).map_err(|error| unusable(error.to_string()))?;
-    let map = SignalMap::parse(&arguments.map).map_err(|error| Failure::Input(InputError::new(error.to_string())))?;
+    let map = SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
     let names: Vec<&str> = file.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
     let reader = VcdReader::new(BufReader::new(capture), &names, &map).map_err(|error| unusable(error.to_string()))?;
+    if let Some(own) = reader.own().filter(|own| own.timebase != plan.build.timebase) {
+        return Err(unusable(format!(
+            "recorded from gateware with {}, but the machine of {} has {}",
+            figures(&own.timebase),
+            arguments.file.display(),
+            figures(&plan.build.timebase)
+        )));
+    }
     let origin = match (arguments.origin_ps, reader.own()) {
         (Some(ps), _) => Origin::Fixed { ps },
         (None, Some(own)) => Origin::Known { ps: own.origin_ps },
@@ -53,7 +62,12 @@ fn read(
     let mut checker = Checker::new(setup);
     reader.play(&mut checker).map_err(|error| match error {
         TraceError::Read(error) => unusable(error.to_string()),
-        other => Failure::Run(other.to_string()),
+        other => other.into(),
     })?;
     Ok(checker.finish())
+}
+
+/// What makes two builds' time the same.
+fn figures(timebase: &Timebase) -> String {
+    format!("clock_hz = {}, tick_ns = {}, phases = {}", timebase.clock_hz(), timebase.tick_ns(), timebase.phases())
 }

@@ -2,8 +2,9 @@
 
 use crate::arguments::Demo;
 use crate::failure::{Failure, refused};
-use crate::job::{self, Done, Wanted};
+use crate::job::{self, Done};
 use crate::output::{self, write_file};
+use crate::wanted::Wanted;
 use carrystep_plan::plan;
 use carrystep_spec::{Machine, MoveFile};
 use std::path::Path;

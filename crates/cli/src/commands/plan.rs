@@ -97,14 +97,14 @@ fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
         for ((planned, axis), rounding) in planned.axes.iter().zip(&file.machine.axes).zip(&asked.rounding) {
             let _ = writeln!(
                 text,
-                "  {:<4} {:>10} steps  {:<10} {:>4} segments  {:>9.0} steps/s  {:>11.0} steps/s^2  rounded by {:+.4} steps",
+                "  {:<4} {:>10} steps  {:<10} {:>4} segments  {:>9.0} steps/s  {:>11.0} steps/s^2{}",
                 axis.name,
                 planned.steps,
                 planned.shape,
                 planned.segments.len(),
                 planned.peaks.steps_per_s(&plan.build.timebase),
                 planned.peaks.steps_per_s2(&plan.build.timebase),
-                -rounding
+                rounded(*rounding)
             );
             for Segment { ticks, v, a, j, last } in planned.segments.iter().filter(|_| segments) {
                 let mark = if *last { "  last" } else { "" };
@@ -114,6 +114,11 @@ fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
     }
     let _ = writeln!(text, "{}", table::limits(file, plan));
     text
+}
+
+/// What rounding to whole steps added, where it did.
+fn rounded(rounding: f64) -> String {
+    if rounding == 0.0 { String::new() } else { format!("  rounded by {:+.4} steps", -rounding) }
 }
 
 fn heading(number: usize, planned: &PlannedMove, profile: &str) -> String {

@@ -2,8 +2,8 @@
 
 use crate::arguments::Simulate;
 use crate::failure::{Failure, refused};
-use crate::job::{self, Wanted};
-use crate::output;
+use crate::wanted::Wanted;
+use crate::{job, output};
 use carrystep_plan::plan;
 
 /// Plans and simulates a move file.
@@ -18,9 +18,9 @@ pub fn run(arguments: &Simulate) -> Result<(), Failure> {
     };
     let done = job::run(&file, &plan, arguments.level, &wanted)?;
     if arguments.json {
-        output::print_json(&done)?
+        output::print_json(&done)?;
     } else {
-        output::print(&done.to_string())?
+        output::print(&done.to_string())?;
     }
     done.verdict()
 }

@@ -4,7 +4,7 @@ use crate::arguments::Verilog;
 use crate::commands::demo;
 use crate::failure::Failure;
 use crate::output;
-use carrystep_spec::{InputError, Machine};
+use carrystep_spec::Machine;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -20,10 +20,10 @@ struct Written {
 pub fn run(arguments: &Verilog) -> Result<(), Failure> {
     let (machine, name) = match &arguments.machine {
         Some(path) => (Machine::load(path)?, path.display().to_string()),
-        None => (demo::machine()?, demo::MACHINE_FILE.to_owned()),
+        None => (demo::machine()?, "sim/six-axis.toml".to_owned()),
     };
     let files = carrystep_export::write_core(&arguments.out, &machine.build(), &name)
-        .map_err(|error| Failure::Input(InputError::new(error.to_string())))?;
+        .map_err(|error| Failure::input(error.to_string()))?;
     let written = Written { passed: true, top: carrystep_export::CORE_NAME, files };
     if arguments.json {
         return output::print_json(&written);

@@ -1,0 +1,94 @@
+//! What the README and `hdl-out/` show of the demo: written anew on demand, compared in every test run.
+
+use crate::shell::{self, Done};
+use std::fs;
+use std::path::PathBuf;
+
+const BEGIN: &str = "<!-- `cargo xtask readme` writes from here ... -->";
+const END: &str = "<!-- ... to here -->";
+const PLOT: &str = "docs/pictures/demo.svg";
+const WAVEFORM: &str = "docs/pictures/demo-waveform.png";
+
+/// Makes GTKWave save a picture of what it shows.
+const GRAB: &str =
+    "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File docs/pictures/demo-waveform.png\nexit\n";
+
+/// Writes `hdl-out/` anew.
+pub fn generate() -> Done {
+    shell::run("cargo", &["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core"])
+}
+
+/// Fails where the README or the committed plot is not what the demo gives now.
+pub fn check() -> Done {
+    let (table, plot) = demo()?;
+    let stale = |what: &str| Err(format!("{what} is not what the demo gives: run `cargo xtask readme`"));
+    if !read("README.md")?.contains(&block(&table)) {
+        return stale("the table in README.md");
+    }
+    if read(PLOT)? != plot {
+        return stale(PLOT);
+    }
+    if !shell::root().join(WAVEFORM).is_file() {
+        return stale(WAVEFORM);
+    }
+    shell::say("README: true");
+    Ok(())
+}
+
+/// Writes the README's table and both pictures.
+pub fn write() -> Done {
+    let (table, plot) = demo()?;
+    let readme = read("README.md")?;
+    let (before, rest) = readme.split_once(BEGIN).ok_or("README.md has lost its mark for the table")?;
+    let (_, after) = rest.split_once(END).ok_or("README.md has lost the end of its table")?;
+    save("README.md", &format!("{before}{}{after}", block(&table)))?;
+    fs::create_dir_all(shell::root().join("docs/pictures")).map_err(|error| error.to_string())?;
+    save(PLOT, &plot)?;
+    waveform()
+}
+
+/// The demo's table, and its plot.
+fn demo() -> Result<(String, String), String> {
+    let table = shell::read("cargo", &["run", "--quiet", "--release", "--", "demo"])?;
+    Ok((table, read("sim/out/demo/demo.svg")?))
+}
+
+fn block(table: &str) -> String {
+    format!("{BEGIN}\n\n```text\n$ cargo run --release -- demo\n{}\n```\n\n{END}", table.trim_end())
+}
+
+/// The waveform as GTKWave shows it with the save file that the demo writes.
+fn waveform() -> Done {
+    for (tool, package) in [("gtkwave", "gtkwave"), ("xvfb-run", "xvfb xauth")] {
+        if !shell::is_there(tool) {
+            return Err(format!("{tool} is missing for the picture: sudo apt-get install {package}"));
+        }
+    }
+    let script = shell::root().join("sim/out/grab.tcl");
+    fs::write(&script, GRAB).map_err(|error| format!("{}: {error}", script.display()))?;
+    let screen = "-screen 0 1600x1100x24";
+    let show = [
+        "-a",
+        "-s",
+        screen,
+        "gtkwave",
+        "-a",
+        "sim/out/demo/demo.gtkw",
+        "-S",
+        "sim/out/grab.tcl",
+        "sim/out/demo/demo.vcd",
+    ];
+    shell::run("xvfb-run", &show)
+}
+
+fn path(name: &str) -> PathBuf {
+    shell::root().join(name)
+}
+
+fn read(name: &str) -> Result<String, String> {
+    fs::read_to_string(path(name)).map_err(|error| format!("{name}: {error}"))
+}
+
+fn save(name: &str, text: &str) -> Done {
+    fs::write(path(name), text).map_err(|error| format!("{name}: {error}"))
+}
