@@ -365,7 +365,7 @@ fn verified(case: &Case) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 600, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn linear_plans_land_keep_their_limits_and_their_edges(case in case(&LINEAR)) {

@@ -124,6 +124,7 @@ impl<F: Real> Corridor<'_, F> {
                 self.both_sides(rows, stretch, t, self.ahead(done, begin + t), 0.0);
             }
             self.joint(rows, stretch, self.pulses);
+            self.neighbours(rows, stretch, before, until);
             return Samples { start: alternating(quarters), standing: 2 * (SAMPLES as usize + 1) };
         }
         for quarter in [0.25, 0.5, 0.75] {
@@ -131,6 +132,7 @@ impl<F: Real> Corridor<'_, F> {
             self.both_sides(rows, stretch, t, self.ahead(done, begin + t), BETWEEN);
         }
         self.joint(rows, stretch, until);
+        self.neighbours(rows, stretch, before, until);
         for pulse in before + 1..=until {
             let (t, ahead) = self.edge(stretch, pulse);
             self.both_sides(rows, stretch, t, ahead, 0.0);
@@ -149,6 +151,26 @@ impl<F: Real> Corridor<'_, F> {
         let ahead = self.ahead(done, end);
         for sign in [-1.0, 1.0] {
             rows.push(Row { at: basis(n, n).map(|b| sign * b / width), error: 1.0, most: sign * ahead / width });
+        }
+    }
+
+    /// The pulse due before the stretch may come in it, but not too late; the one due after it not too early.
+    fn neighbours(&self, rows: &mut Vec<Row>, stretch: Stretch, before: u64, until: u64) {
+        let n = stretch.ticks as f64;
+        let mut keep = |sign: f64, pulse: u64| {
+            let (t, ahead) = self.edge(stretch, pulse);
+            let width = self.speed(stretch.first as f64 + t) * self.tolerance;
+            let at = t - sign * self.tolerance;
+            if width > 0.0 && (0.0..=n).contains(&at) {
+                let most = sign * ahead / width - 1.0;
+                rows.push(Row { at: basis(at, n).map(|b| sign * b / width), error: 1.0, most });
+            }
+        };
+        if before > 0 {
+            keep(-1.0, before);
+        }
+        if until < self.pulses {
+            keep(1.0, until + 1);
         }
     }
 

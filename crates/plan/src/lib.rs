@@ -13,6 +13,7 @@ mod edges;
 mod error;
 mod exchange;
 mod fit;
+mod landing;
 mod limits;
 mod peaks;
 mod plan;

@@ -1,9 +1,11 @@
 //! A piece of constant jerk as segments: J and A from the profile, rounded toward zero, V from the distance.
 
 use crate::bend::{Bend, Wanted, jerk_distance};
+use crate::check::speeds;
 use crate::demand::Clock;
 use crate::error::Broken;
 use crate::fit::Fitted;
+use crate::landing;
 use crate::limits::ExactLimits;
 use crate::share::{self, Piece};
 use crate::units;
@@ -55,11 +57,42 @@ impl<F: Real> Writer<'_, F> {
         let mut done = self.position(piece);
         self.ahead = 0;
         for (index, &Fitted { ticks, bend, distance }) in segments.iter().enumerate() {
-            self.lay(ticks.into(), sign * distance, bend, ends && index + 1 == segments.len())?;
+            let lands = ends && index + 1 == segments.len();
+            if lands && self.land(segments, sign * distance)? {
+                return Ok(());
+            }
+            self.lay(ticks.into(), sign * distance, bend, lands)?;
             done += distance;
         }
         self.ahead = sign * (done - piece.start - piece.units);
         Ok(())
+    }
+
+    /// Lands the last segment of a fit without a split, if one of the others can give it a few units of V.
+    fn land(&mut self, segments: &[Fitted], distance: i128) -> Result<bool, Broken> {
+        let Some((last, others)) = segments.split_last() else { return Ok(false) };
+        let laid = self.segments.len();
+        let sign = if self.backward { -1 } else { 1 };
+        let n = i128::from(last.ticks);
+        self.lay(n, distance, last.bend, false)?;
+        let rest = -sign * self.ahead;
+        for (other, fitted) in (1..laid).rev().zip(others.iter().rev()) {
+            let Some((slower, faster)) = landing::shared(fitted.ticks.into(), n, rest) else { continue };
+            let faster = [(other, slower), (laid, faster)].map(|(i, units)| {
+                let segment = self.segments.get(i).copied()?;
+                let v = i64::try_from(i128::from(segment.v) + sign * units).ok()?;
+                let faster = Segment { v, ..segment };
+                let kept = speeds(&faster).all(|v| (0..=self.limits.fastest()).contains(&(sign * v)));
+                kept.then_some(faster)
+            });
+            if let [Some(other_faster), Some(last_faster)] = faster {
+                (self.segments[other], self.segments[laid]) = (other_faster, last_faster);
+                self.ahead = 0;
+                return Ok(true);
+            }
+        }
+        self.segments.truncate(laid);
+        Ok(false)
     }
 
     fn middle(&self, Piece { first, ticks, .. }: Piece) -> F {
