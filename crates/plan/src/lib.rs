@@ -15,6 +15,7 @@ mod exchange;
 mod fit;
 mod landing;
 mod limits;
+mod line;
 mod peaks;
 mod plan;
 mod planner;

@@ -57,6 +57,17 @@ impl fmt::Display for ProfileKind {
     }
 }
 
+/// Which way a move of several axes takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PathKind {
+    /// Each axis as its own limits allow, in the common time.
+    #[default]
+    Free,
+    /// All along one straight line: one profile, scaled for each axis.
+    Straight,
+}
+
 /// A checked move file.
 #[derive(Debug, Clone)]
 pub struct MoveFile {
@@ -73,6 +84,8 @@ pub struct MoveFile {
 pub struct Move {
     /// Its speed profile.
     pub profile: ProfileKind,
+    /// The way that its axes take together.
+    pub path: PathKind,
     /// Seconds available; `None`: as fast as the limits allow.
     pub time: Option<BigDecimal>,
     /// How far an edge may be from a profile that has to be fitted, ns, at least 1; one tick where the file
@@ -99,6 +112,8 @@ struct RawMoveFile {
 #[serde(deny_unknown_fields, expecting = "a [[move]] table")]
 struct RawMove {
     profile: Spanned<ProfileKind>,
+    #[serde(default)]
+    path: PathKind,
     time: Option<Spanned<f64>>,
     fit_ns: Option<Spanned<u64>>,
     to: BTreeMap<Spanned<String>, Spanned<f64>>,
@@ -165,7 +180,7 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
     let mut moves = Vec::with_capacity(raw.len());
     for entry in raw {
         let span = entry.span();
-        let RawMove { profile, time, fit_ns, to } = entry.into_inner();
+        let RawMove { profile, path, time, fit_ns, to } = entry.into_inner();
         let time = time.map(|value| check_time(source, &value)).transpose()?;
         let fit_ns = fit_ns.map_or(Ok(machine.timebase.tick_ns()), |value| check_fit(source, &value))?;
         let before = positions.clone();
@@ -194,6 +209,7 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
         });
         moves.push(Move {
             profile: profile.into_inner(),
+            path,
             time,
             fit_ns,
             steps: positions.iter().zip(&before).map(|(now, old)| now - old).collect(),
