@@ -15,8 +15,19 @@ pub fn root() -> &'static Path {
 
 /// The demo's moves, planned.
 pub fn demo() -> Plan {
-    let file = MoveFile::load(&root().join("sim/demo.toml")).expect("the demo's move file");
-    carrystep_plan::plan::<f64>(&file).expect("the demo's plan")
+    shipped("demo").1
+}
+
+/// Every profile, free and straight, planned.
+pub fn curves() -> Plan {
+    shipped("curves").1
+}
+
+/// A move file that is shipped in `sim/`, and its plan.
+pub fn shipped(name: &str) -> (MoveFile, Plan) {
+    let file = MoveFile::load(&root().join("sim").join(name).with_extension("toml")).expect("a shipped move file");
+    let plan = carrystep_plan::plan::<f64>(&file).expect("a shipped plan");
+    (file, plan)
 }
 
 /// Golden cases side by side, case i on axis i, started on one tick; and their greatest length in ticks.
@@ -54,6 +65,7 @@ pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline
         timebase: time,
         phase: plan.build.phase,
         axes: file.machine.axes.iter().zip(timelines).enumerate().map(axis).collect(),
+        lines: plan.lines(),
         origin: Origin::Known { ps: time.clock_to_ps(load + time.latency_clocks()).cast_signed() },
         slack_ps: 0,
     }

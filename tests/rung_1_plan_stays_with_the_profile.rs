@@ -364,6 +364,15 @@ fn verified(case: &Case) {
     }
 }
 
+#[test]
+fn every_profile_free_and_straight() {
+    let (file, plan) = carrystep_tests::moves::shipped("curves");
+    verify(&file, &plan, Some(2e-9));
+    for kind in ProfileKind::ALL {
+        assert!(file.moves.iter().any(|moved| moved.profile == kind), "{kind}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 600, failure_persistence: None, ..ProptestConfig::default() })]
 

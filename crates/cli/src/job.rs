@@ -87,6 +87,7 @@ pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline
         timebase: plan.build.timebase,
         phase: plan.build.phase,
         axes: file.machine.axes.iter().zip(timelines).enumerate().map(axis).collect(),
+        lines: plan.lines(),
         origin,
         slack_ps: 0,
     }

@@ -89,9 +89,9 @@ impl<'a> Planner<'a> {
         let start_tick = self.ticks + rest;
         self.ticks = start_tick + clock.ticks;
         let seconds = clock.seconds.to_f64().unwrap_or(f64::NAN);
-        let Move { profile, fit_ns, .. } = self.file.moves[index];
+        let Move { profile, path, fit_ns, .. } = self.file.moves[index];
         let fit_seconds = if profile.is_fitted() { fit_ns as f64 * 1e-9 } else { 0.0 };
-        Ok(PlannedMove { start_tick, rest_ticks: rest, ticks: clock.ticks, seconds, fit_seconds, axes: planned })
+        Ok(PlannedMove { start_tick, rest_ticks: rest, ticks: clock.ticks, seconds, fit_seconds, path, axes: planned })
     }
 
     fn draft<F: Real>(&self, place: Place, profile: SharedProfile<F>, clock: &Clock<F>) -> Result<Draft<F>, Broken> {

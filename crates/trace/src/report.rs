@@ -87,6 +87,10 @@ pub struct AxisReport {
     pub speed_ripple_max_percent: Option<f64>,
     /// One phase in the shortest period of the profile, percent.
     pub speed_ripple_theory_percent: f64,
+    /// Where a move is to be straight: how far the axis has been off the line, at its worst.
+    pub line_off_max_steps: Option<f64>,
+    /// Half a step, and what the axis travels in the time by which edges may be late: it must not be off further.
+    pub line_off_bound_steps: Option<f64>,
     /// What is wrong, in sentences.
     pub failures: Vec<String>,
     /// Failures beyond those that are spelled out.
@@ -179,6 +183,11 @@ impl fmt::Display for Report {
         let fit = self.axes.iter().map(|axis| axis.error_fit_ns).fold(0.0, f64::max);
         if fit > 0.0 {
             writeln!(f, "curves are fitted: up to {fit} ns of a bound are for that")?;
+        }
+        for axis in &self.axes {
+            if let (Some(off), Some(bound)) = (axis.line_off_max_steps, axis.line_off_bound_steps) {
+                writeln!(f, "straight: axis {} up to {off:.3} steps off the line, bound {bound:.3}", axis.axis)?;
+            }
         }
         for axis in &self.axes {
             for failure in &axis.failures {

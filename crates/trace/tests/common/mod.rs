@@ -63,7 +63,8 @@ impl Machine {
                 .map(|leg| if leg.backward { -(leg.steps as i64) } else { leg.steps as i64 })
                 .sum(),
         });
-        Setup { timebase: self.timebase, phase: StartPhase::Half, axes: axes.collect(), origin, slack_ps: 0 }
+        let (timebase, phase, lines) = (self.timebase, StartPhase::Half, Vec::new());
+        Setup { timebase, phase, axes: axes.collect(), lines, origin, slack_ps: 0 }
     }
 
     /// The train of an ideal generator, rounding down to its grid: all axes, in time order.
