@@ -4,10 +4,11 @@
 
 use carrystep_levels::{Job, Level, run, run_verilog};
 use carrystep_plan::Plan;
-use carrystep_spec::{Build, Command, Program, Segment, StartPhase};
+use carrystep_profile::Line;
+use carrystep_spec::{Build, Command, MoveFile, PathKind, Program, Segment, StartPhase};
 use carrystep_tests::lockstep::{self, Record};
 use carrystep_tests::moves;
-use carrystep_trace::{Checker, Report};
+use carrystep_trace::{Checker, Report, Setup};
 
 /// A change of the exported Verilog: what is wrong then, the text, and what it becomes.
 struct Bug {
@@ -105,15 +106,28 @@ fn rung_5_catches_each_bug_in_the_gateware() {
 }
 
 /// Runs a plan's program on the model and checks the pins: what `carrystep simulate` does.
-fn check(plan: &Plan, program: &Program, build: &Build) -> Report {
-    let file = carrystep_spec::MoveFile::load(&moves::root().join("sim/demo.toml")).expect("the demo's move file");
+fn check(file: &MoveFile, plan: &Plan, lines: &[Line], program: &Program, build: &Build) -> Report {
     let timelines = plan.timelines();
     let job = Job::new(build, program, plan.total_ticks());
-    let mut checker = Checker::new(moves::check_setup(&file, plan, &timelines, &job));
+    let mut checker = Checker::new(Setup { lines: lines.to_vec(), ..moves::check_setup(file, plan, &timelines, &job) });
     let mut feed = carrystep_levels::pins::PinFeed::new(build.timebase, timelines.len(), &mut checker);
     let outcome = run(Level::Model, &job, &mut |cycle, outputs| feed.observe(cycle, outputs)).expect("the model");
     feed.end(outcome.clocks).expect("the checker");
     checker.finish()
+}
+
+/// A planner that forgets the path: the axes arrive together, but not along the line.
+#[test]
+fn the_checker_catches_a_line_that_is_not_straight() {
+    let (file, straight) = moves::shipped("curves");
+    let mut free = file.clone();
+    free.moves.iter_mut().for_each(|moved| moved.path = PathKind::Free);
+    for (file, is_straight) in [(file, true), (free, false)] {
+        let plan = carrystep_plan::plan::<f64>(&file).expect("a plan");
+        let report = check(&file, &plan, &straight.lines(), &plan.program(), &plan.build);
+        let off = report.failures().any(|failure| failure.contains("off its line"));
+        assert_eq!((report.passed(), off), (is_straight, !is_straight), "{report}");
+    }
 }
 
 /// The plan's program with every segment changed.
@@ -130,8 +144,8 @@ fn changed(plan: &Plan, mut change: impl FnMut(&mut Segment)) -> Program {
 /// Rung 1, by the checker that judges pulses against the float profile.
 #[test]
 fn rung_1_catches_each_bug_in_the_plan() {
-    let plan = moves::demo();
-    let good = check(&plan, &plan.program(), &plan.build);
+    let (file, plan) = moves::shipped("demo");
+    let good = check(&file, &plan, &[], &plan.program(), &plan.build);
     assert!(good.passed(), "without a bug all must hold:\n{good}");
 
     let half_terms = changed(&plan, |segment| segment.v -= segment.a / 2);
@@ -142,13 +156,13 @@ fn rung_1_catches_each_bug_in_the_plan() {
         ("long segments one tick too long", longer),
         ("registers of 42 fraction bits", rounded),
     ] {
-        assert!(!check(&plan, &program, &plan.build).passed(), "rung 1 does not catch '{name}'");
+        assert!(!check(&file, &plan, &[], &program, &plan.build).passed(), "rung 1 does not catch '{name}'");
     }
 
     let mut early = plan.build.clone();
     early.pins[3].width -= 1;
     early.pins[3].gap += 1;
-    let report = check(&plan, &plan.program(), &early);
+    let report = check(&file, &plan, &[], &plan.program(), &early);
     assert!(!report.axes[3].passed, "rung 1 does not catch 'a pulse one clock short'");
 }
 

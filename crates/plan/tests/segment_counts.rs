@@ -36,8 +36,8 @@ fn assert_at_most(profile: &str, fit_ns: u32, most: usize) {
 
 #[test]
 fn the_reference_ramps_are_those_of_the_literature() {
-    // The logistic source lets its ramp run a few steps further: 0.02 % longer.
-    for (profile, ramp, within) in [("logistic", 0.325_371, 1e-4), ("sine", 0.282_843, 1e-6)] {
+    // Whole ticks, and a cruise of less than a millisecond: ramps are up to 0.2 % shorter.
+    for (profile, ramp, within) in [("logistic", 0.325_371, 1e-4), ("sine", 0.282_843, 5e-4)] {
         let axis = reference(profile, 1000);
         assert!((axis.profile.breakpoints()[0] - ramp).abs() < within, "{profile}: {:?}", axis.profile);
     }
