@@ -117,7 +117,7 @@ impl<F: Real> Corridor<'_, F> {
             let low = if sparse(0.0) { self.edge(stretch, before + 1).0 } else { 0.0 };
             let high = if sparse(n) { self.edge(stretch, until).0 } else { n };
             let last = f64::from(SAMPLES);
-            let quarters = [4, 8, 12, 16].map(|k| 2 * k);
+            let quarters = [1, 2, 3, 4].map(|k| 2 * (k * SAMPLES as usize / 4));
             for k in 0..=SAMPLES {
                 let part = (1.0 - (std::f64::consts::PI * f64::from(k) / last).cos()) / 2.0;
                 let t = low + (high - low) * part;

@@ -18,10 +18,10 @@ use carrystep_spec::Segment;
 const FULL: f64 = 0.97;
 
 /// What a next try aims at.
-const AIM: f64 = 0.965;
+const AIM: f64 = 0.95;
 
 /// From here on a segment is long enough.
-const ENOUGH: f64 = 0.95;
+const ENOUGH: f64 = 0.90;
 
 /// Tries for one segment, as long as one of them has been good.
 const TRIES: usize = 12;

@@ -1,5 +1,6 @@
 //! What a person does twice, one command each. CI calls nothing else.
 
+mod accuracy;
 mod arrows;
 mod ladder;
 mod readme;
@@ -31,6 +32,8 @@ enum Chore {
     Generate,
     /// Write the README's table and pictures anew from the demo (the waveform needs gtkwave and xvfb).
     Readme,
+    /// Write the table of `docs/accuracy.md` anew from the checker's figures.
+    Accuracy,
 }
 
 fn main() -> ExitCode {
@@ -41,6 +44,7 @@ fn main() -> ExitCode {
         Chore::Lint => ladder::lint(),
         Chore::Generate => readme::generate(),
         Chore::Readme => readme::write(),
+        Chore::Accuracy => accuracy::write(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
