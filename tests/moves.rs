@@ -4,7 +4,7 @@ use crate::golden::Case;
 use carrystep_levels::pins::PinFeed;
 use carrystep_levels::{Job, Level};
 use carrystep_plan::Plan;
-use carrystep_profile::Timeline;
+use carrystep_profile::{Line, Timeline};
 use carrystep_spec::{AXES, Build, Command, MoveFile, Program, Segment};
 use carrystep_trace::{AxisSetup, Checker, Origin, Report, Setup};
 use std::path::Path;
@@ -16,8 +16,19 @@ pub fn root() -> &'static Path {
 
 /// The demo's moves, planned.
 pub fn demo() -> Plan {
-    let file = MoveFile::load(&root().join("sim/demo.toml")).expect("the demo's move file");
-    carrystep_plan::plan::<f64>(&file).expect("the demo's plan")
+    shipped("demo").1
+}
+
+/// Every profile, free and straight, planned.
+pub fn curves() -> Plan {
+    shipped("curves").1
+}
+
+/// A move file that is shipped in `sim/`, and its plan.
+pub fn shipped(name: &str) -> (MoveFile, Plan) {
+    let file = MoveFile::load(&root().join("sim").join(name).with_extension("toml")).expect("a shipped move file");
+    let plan = carrystep_plan::plan::<f64>(&file).expect("a shipped plan");
+    (file, plan)
 }
 
 /// Golden cases side by side, case i on axis i, started on one tick; and their greatest length in ticks.
@@ -37,11 +48,12 @@ pub fn side_by_side(cases: &[&Case]) -> (Program, u64) {
     (program, cases.iter().map(|case| case.total_ticks).max().unwrap_or(0))
 }
 
-/// Runs a plan's program, or another in its place, on the fast model and checks the pins: what `carrystep simulate` does.
-pub fn check(file: &MoveFile, plan: &Plan, program: &Program, build: &Build) -> Report {
+/// Runs a plan's program, or another in its place, on the fast model and checks the pins, and that they keep to the lines:
+/// what `carrystep simulate` does.
+pub fn check(file: &MoveFile, plan: &Plan, lines: &[Line], program: &Program, build: &Build) -> Report {
     let timelines = plan.timelines();
     let job = Job::new(build, program, plan.total_ticks());
-    let mut checker = Checker::new(check_setup(file, plan, &timelines, &job));
+    let mut checker = Checker::new(Setup { lines: lines.to_vec(), ..check_setup(file, plan, &timelines, &job) });
     let mut feed = PinFeed::new(build.timebase, timelines.len(), &mut checker);
     let outcome = carrystep_levels::run(Level::Fast, &job, &mut |cycle, outputs| feed.observe(cycle, outputs));
     feed.end(outcome.expect("the model").clocks).expect("the checker");
@@ -66,6 +78,7 @@ fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], j
         timebase: time,
         phase: plan.build.phase,
         axes: file.machine.axes.iter().zip(timelines).enumerate().map(axis).collect(),
+        lines: plan.lines(),
         origin: Origin::Known { ps: time.clock_to_ps(load + time.latency_clocks()).cast_signed() },
         slack_ps: 0,
     }

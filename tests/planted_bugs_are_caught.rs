@@ -4,10 +4,9 @@
 
 use carrystep_levels::{Job, Level, run_verilog};
 use carrystep_plan::Plan;
-use carrystep_spec::{Build, Command, Program, Segment, StartPhase};
+use carrystep_spec::{Command, PathKind, Program, Segment, StartPhase};
 use carrystep_tests::lockstep::{self, Record};
 use carrystep_tests::moves;
-use carrystep_trace::Report;
 
 /// A change of the exported Verilog: what is wrong then, the text, and what it becomes.
 struct Bug {
@@ -104,10 +103,18 @@ fn rung_5_catches_each_bug_in_the_gateware() {
     }
 }
 
-/// The demo's pins, checked.
-fn check(plan: &Plan, program: &Program, build: &Build) -> Report {
-    let file = carrystep_spec::MoveFile::load(&moves::root().join("sim/demo.toml")).expect("the demo's move file");
-    moves::check(&file, plan, program, build)
+/// A planner that forgets the path: the axes arrive together, but not along the line.
+#[test]
+fn the_checker_catches_a_line_that_is_not_straight() {
+    let (file, straight) = moves::shipped("curves");
+    let mut free = file.clone();
+    free.moves.iter_mut().for_each(|moved| moved.path = PathKind::Free);
+    for (file, is_straight) in [(file, true), (free, false)] {
+        let plan = carrystep_plan::plan::<f64>(&file).expect("a plan");
+        let report = moves::check(&file, &plan, &straight.lines(), &plan.program(), &plan.build);
+        let off = report.failures().any(|failure| failure.contains("off its line"));
+        assert_eq!((report.passed(), off), (is_straight, !is_straight), "{report}");
+    }
 }
 
 /// The plan's program with every segment changed.
@@ -124,8 +131,8 @@ fn changed(plan: &Plan, mut change: impl FnMut(&mut Segment)) -> Program {
 /// Rung 1, by the checker that judges pulses against the float profile.
 #[test]
 fn rung_1_catches_each_bug_in_the_plan() {
-    let plan = moves::demo();
-    let good = check(&plan, &plan.program(), &plan.build);
+    let (file, plan) = moves::shipped("demo");
+    let good = moves::check(&file, &plan, &[], &plan.program(), &plan.build);
     assert!(good.passed(), "without a bug all must hold:\n{good}");
 
     let half_terms = changed(&plan, |segment| segment.v -= segment.a / 2);
@@ -136,13 +143,13 @@ fn rung_1_catches_each_bug_in_the_plan() {
         ("long segments one tick too long", longer),
         ("registers of 42 fraction bits", rounded),
     ] {
-        assert!(!check(&plan, &program, &plan.build).passed(), "rung 1 does not catch '{name}'");
+        assert!(!moves::check(&file, &plan, &[], &program, &plan.build).passed(), "rung 1 does not catch '{name}'");
     }
 
     let mut early = plan.build.clone();
     early.pins[3].width -= 1;
     early.pins[3].gap += 1;
-    let report = check(&plan, &plan.program(), &early);
+    let report = moves::check(&file, &plan, &[], &plan.program(), &early);
     assert!(!report.axes[3].passed, "rung 1 does not catch 'a pulse one clock short'");
 }
 

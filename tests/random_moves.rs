@@ -28,6 +28,9 @@ pub struct RandomMove {
     phases: u32,
     zero: bool,
     axes: Vec<Axis>,
+    straight: bool,
+    /// Tolerance of a fit, ns.
+    fit_ns: Option<u64>,
     /// Over the least time by this factor.
     stretch: Option<f64>,
 }
@@ -65,7 +68,9 @@ impl RandomMove {
             .zip(least)
             .map_or(String::new(), |(stretch, least)| format!("time = {:.digits$}\n", least * stretch));
         let profile = self.profile;
-        write!(text, "[[move]]\nprofile = \"{profile}\"\n{time}to = {{ {} }}\n", to.join(", "))
+        let path = if self.straight { "straight" } else { "free" };
+        let fit = self.fit_ns.map_or(String::new(), |ns| format!("fit_ns = {ns}\n"));
+        write!(text, "[[move]]\npath = \"{path}\"\n{fit}profile = \"{profile}\"\n{time}to = {{ {} }}\n", to.join(", "))
             .expect("a string takes all");
         text
     }
@@ -92,11 +97,16 @@ pub fn random_move(profile: ProfileKind) -> impl Strategy<Value = RandomMove> {
     let axes = proptest::collection::vec(axis(), 1..=3);
     let stretch = proptest::option::of(1.01..3.0);
     let phases = prop_oneof![3 => Just(16_u32), 1 => Just(4)];
-    (axes, phases, any::<bool>(), stretch).prop_map(move |(axes, phases, zero, stretch)| RandomMove {
-        profile,
-        phases,
-        zero,
-        axes,
-        stretch,
-    })
+    let fit_ns = proptest::option::of((0.0..10.0_f64).prop_map(|power| power.exp2() as u64));
+    (axes, phases, any::<[bool; 2]>(), fit_ns, stretch).prop_map(
+        move |(axes, phases, [zero, straight], fit_ns, stretch)| RandomMove {
+            profile,
+            phases,
+            zero,
+            axes,
+            straight,
+            fit_ns,
+            stretch,
+        },
+    )
 }

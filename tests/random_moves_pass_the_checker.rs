@@ -23,7 +23,7 @@ fn passes(random: &RandomMove) -> Result<u64, TestCaseError> {
     if random.is_stretched() {
         (file, plan) = planned(&random.text(Some(plan.moves[0].seconds)));
     }
-    let report = moves::check(&file, &plan, &plan.program(), &plan.build);
+    let report = moves::check(&file, &plan, &plan.lines(), &plan.program(), &plan.build);
     prop_assert!(report.passed, "{report}\n{}", file.source.text);
     Ok(report.axes.iter().map(|axis| axis.pulses_found).sum())
 }
@@ -45,6 +45,8 @@ fn a_thousand_trapezoids() {
 }
 
 #[test]
-fn three_hundred_moves_by_ranade() {
-    all_pass(ProfileKind::Ranade, 300);
+fn three_hundred_moves_of_each_other_kind() {
+    for profile in [ProfileKind::Ranade, ProfileKind::Scurve, ProfileKind::Logistic, ProfileKind::Sine] {
+        all_pass(profile, 300);
+    }
 }

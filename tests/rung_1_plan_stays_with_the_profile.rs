@@ -8,7 +8,7 @@
 
 use carrystep_plan::{Plan, PlanError, plan};
 use carrystep_profile::Profile;
-use carrystep_spec::{BigDecimal, MoveFile, Segment, Source, StartPhase};
+use carrystep_spec::{BigDecimal, MoveFile, ProfileKind, Segment, Source, StartPhase};
 use proptest::prelude::*;
 
 const STEP: i128 = 1 << 64;
@@ -32,6 +32,18 @@ fn after(s: &Segment, n: i128) -> i128 {
     n * v + n * (n - 1) / 2 * a + if j == 0 { 0 } else { n * (n - 1) * (n - 2) / 6 * j }
 }
 
+/// V in tick `k`, from 0.
+fn speed_in(s: &Segment, k: i128) -> i128 {
+    i128::from(s.v) + k * i128::from(s.a) + k * (k - 1) / 2 * i128::from(s.j)
+}
+
+/// The ticks in which V may be least or greatest: the ends, and where A changes sign.
+fn extremes(s: &Segment) -> impl Iterator<Item = i128> {
+    let last = i128::from(s.ticks) - 1;
+    let turn = if s.j == 0 { 0 } else { -i128::from(s.a) / i128::from(s.j) };
+    [0, last, turn - 1, turn, turn + 1, turn + 2].into_iter().filter(move |k| (0..=last).contains(k))
+}
+
 /// Every edge of a segment sequence that starts at `p`; speeds of one sign within a segment.
 fn edges_of(segments: impl Iterator<Item = (u64, Segment)>, mut p: i128, bits: u32) -> (Vec<Edge>, i128) {
     let mut edges = Vec::new();
@@ -52,7 +64,7 @@ fn edges_of(segments: impl Iterator<Item = (u64, Segment)>, mut p: i128, bits: u
                 if beyond(middle) { high = middle } else { low = middle + 1 }
             }
             let old = p + after(&s, low - 1);
-            let v = i128::from(s.v) + (low - 1) * i128::from(s.a);
+            let v = speed_in(&s, low - 1);
             let phase = bisect((old >> 32) as u32, (v >> 32) as i32, bits);
             edges.push(Edge { tick: first + (low as u64 - 1), phase, backward });
         }
@@ -97,7 +109,7 @@ fn verify(file: &MoveFile, plan: &Plan, slack: Option<f64>) {
             let a = steepest(&*leg.profile, due.seconds - h, due.seconds + h);
             // At phase zero the last pulse is due at rest; it cannot be later than its tick.
             let v = due.speed.max(h * a / 8.0);
-            let within = h * h * a / (8.0 * v) + slack * (1.0 / v).max(1.0);
+            let within = h * h * a / (8.0 * v) + slack * (1.0 / v).max(1.0) + leg.fit_seconds;
             let phase = h / f64::from(timebase.phases());
             assert!(
                 -phase - within <= error && error <= within,
@@ -145,7 +157,7 @@ fn lands(file: &MoveFile, plan: &Plan, axis: usize) {
     assert_eq!(plan.total_ticks(), end);
 }
 
-/// Limits, from V at the ends of each segment (A is constant in these profiles), in exact decimals.
+/// Limits, from V, A and J at the ends and extremes of each segment, in exact decimals.
 fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_spec::Axis, tick_ns: u64, f64_used: bool) {
     let one = BigDecimal::from(STEP);
     let tick = BigDecimal::new(tick_ns.into(), 9);
@@ -162,20 +174,28 @@ fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_spec::Axis, tick_ns: 
                 rest -= u64::from(s.ticks);
                 continue;
             }
-            let last = i128::from(s.v) + (i128::from(s.ticks) - 1) * i128::from(s.a);
-            for v in [i128::from(s.v), last] {
+            for v in extremes(s).map(|k| speed_in(s, k)) {
                 assert!(v * i128::from(moved.steps.signum()) >= 0, "the speed never changes sign: {s:?}");
                 assert!(&speed + &tolerance >= v.abs(), "speed: {s:?}");
                 assert!(v.unsigned_abs() as u64 <= moved.peaks.speed, "peaks");
             }
-            let a = i128::from(s.a).abs();
-            assert!(a == 0 || acceleration >= a - 1, "acceleration: {s:?}");
+            let j = i128::from(s.j);
+            for a in [0, i128::from(s.ticks) - 1].map(|k| (i128::from(s.a) + k * j).abs()) {
+                assert!(a == 0 || acceleration >= a - 1, "acceleration: {s:?}");
+            }
+            if let Some(jerk) = &axis.jerk_limit {
+                assert!(jerk * &one * &tick * &tick * &tick >= j.abs() - 1, "jerk: {s:?}");
+            }
             if std::mem::take(&mut first) {
-                // 2 v = 2 V - A; a first tick of its own may contain the ramp.
-                let slope = if s.ticks == 1 { acceleration.clone() } else { BigDecimal::from(a) };
-                let doubled = BigDecimal::from(2 * i128::from(s.v).abs()) - slope;
-                let start = &axis.start_speed * &one * &tick;
-                assert!(doubled <= (start + &tolerance) * BigDecimal::from(2), "start speed: {s:?}");
+                // 6 v = 6 V - 3 A + 2 J; a first tick of its own may contain the ramp.
+                let sign = i128::from(moved.steps.signum());
+                let slope = if s.ticks == 1 { acceleration.clone() } else { BigDecimal::from(sign * i128::from(s.a)) };
+                let sixfold = BigDecimal::from(sign * (6 * i128::from(s.v) + 2 * j)) - slope * BigDecimal::from(3);
+                // A logistic curve is never at rest: without a start speed, its own jump counts.
+                let own = BigDecimal::try_from(moved.profile.speed(0.0)).unwrap();
+                let logistic = moved.shape == "logistic" && axis.start_speed == 0;
+                let start = if logistic { &own } else { &axis.start_speed } * &one * &tick;
+                assert!(sixfold <= (start + &tolerance) * BigDecimal::from(6), "start speed: {s:?}");
             }
         }
     }
@@ -188,9 +208,9 @@ fn pins_are_free(plan: &Plan, axis: usize, edges: &[Edge]) {
     let clock = |edge: &Edge| i128::from(edge.tick) * clocks + i128::from(edge.phase * timebase.clocks_per_phase());
     let [width, gap, setup, hold] = [pins.width, pins.gap, pins.setup, pins.hold].map(i128::from);
     let mut signs = plan.axis_segments(axis).filter_map(|(first, s)| {
-        let begins = if s.v != 0 { 0 } else { 1 };
-        let sign = if s.v != 0 { s.v } else { s.a };
-        (sign != 0 && begins < s.ticks).then_some((i128::from(first + u64::from(begins)) * clocks, sign < 0))
+        let begins = [s.v, s.a, s.j].iter().position(|&r| r != 0)? as u32;
+        let sign = [s.v, s.a, s.j][begins as usize];
+        (begins < s.ticks).then_some((i128::from(first + u64::from(begins)) * clocks, sign < 0))
     });
     let mut next = signs.next();
     let (mut dir, mut turned, mut last): (bool, i128, Option<i128>) =
@@ -216,6 +236,8 @@ struct AxisCase {
     speed: f64,
     start: f64,
     accel: f64,
+    /// The jerk limit is this many times the acceleration limit, 1/s.
+    jerk: f64,
     per_unit: f64,
     pins: [u64; 4],
 }
@@ -226,8 +248,18 @@ struct Case {
     phases: u32,
     zero: bool,
     axes: Vec<AxisCase>,
-    /// Profile number, steps (about) of each axis, and how much more than the least time, if any.
-    moves: Vec<(u8, Vec<i32>, Option<f64>)>,
+    moves: Vec<MoveCase>,
+}
+
+#[derive(Debug, Clone)]
+struct MoveCase {
+    profile: ProfileKind,
+    /// About so many, for each axis.
+    steps: Vec<i32>,
+    /// How much more than the least time, if any.
+    stretch: Option<f64>,
+    /// Tolerance of a fit.
+    fit_ns: Option<u64>,
 }
 
 impl Case {
@@ -251,21 +283,24 @@ impl Case {
             write!(
                 text,
                 "[[machine.axis]]\nname = \"a{i}\"\nsteps_per_unit = {u:?}\nspeed_limit = {:?}\nstart_speed = {:?}\n\
-                 accel_limit = {:?}\nstep_ns = {step}\ngap_ns = {gap}\nsetup_ns = {setup}\nhold_ns = {hold}\n",
+                 accel_limit = {:?}\njerk_limit = {:?}\nstep_ns = {step}\ngap_ns = {gap}\nsetup_ns = {setup}\n\
+                 hold_ns = {hold}\n",
                 speed / u,
                 speed * axis.start / u * 0.9999999,
-                accel / u
+                accel / u,
+                accel / u * axis.jerk
             )
             .unwrap();
         }
-        for (i, (profile, steps, _)) in self.moves.iter().enumerate() {
-            let constant = self.axes.iter().all(|axis| axis.start > 0.0);
-            let profile = ["ranade", "trapezoid", if constant { "constant" } else { "ranade" }][usize::from(*profile)];
+        let constant = self.axes.iter().all(|axis| axis.start > 0.0);
+        for (i, MoveCase { profile, steps, fit_ns, .. }) in self.moves.iter().enumerate() {
+            let profile = if *profile == ProfileKind::Constant && !constant { ProfileKind::Ranade } else { *profile };
             let to: Vec<String> = (steps.iter().zip(&self.axes).enumerate())
                 .map(|(i, (&n, axis))| format!("a{i} = {:?}", f64::from(n) / axis.per_unit))
                 .collect();
             let time = times.get(i).cloned().flatten().map_or(String::new(), |t| format!("time = {t}\n"));
-            write!(text, "[[move]]\nprofile = \"{profile}\"\n{time}to = {{ {} }}\n", to.join(", ")).unwrap();
+            let fit = fit_ns.map_or(String::new(), |ns| format!("fit_ns = {ns}\n"));
+            write!(text, "[[move]]\nprofile = \"{profile}\"\n{time}{fit}to = {{ {} }}\n", to.join(", ")).unwrap();
         }
         text
     }
@@ -275,7 +310,7 @@ impl Case {
         let fast = file(&self.text(&[]));
         let planned = plan::<f64>(&fast).unwrap_or_else(|error| panic!("{error}\n{}", self.text(&[])));
         let times: Vec<Option<String>> = (self.moves.iter().zip(&planned.moves))
-            .map(|((_, _, stretch), planned)| {
+            .map(|(MoveCase { stretch, .. }, planned)| {
                 // A file gives 10^6 s at most.
                 if planned.seconds > 0.9e6 {
                     return None;
@@ -297,37 +332,77 @@ fn axis() -> impl Strategy<Value = AxisCase> {
     let start = prop_oneof![2 => Just(0.0), 2 => 0.001..0.9, 1 => Just(1.0)];
     let pins = [1_u64..3000, 1_u64..3000, 1_u64..40_000, 1_u64..40_000];
     let unit = prop_oneof![Just(1.0), Just(80.0), decades(0.01, 1000.0)];
-    (decades(1.0, 1e6), start, decades(1.0, 1e8), unit, pins)
-        .prop_map(|(speed, start, accel, per_unit, pins)| AxisCase { speed, start, accel, per_unit, pins })
+    (decades(1.0, 1e6), start, decades(1.0, 1e8), decades(0.1, 1e5), unit, pins)
+        .prop_map(|(speed, start, accel, jerk, per_unit, pins)| AxisCase { speed, start, accel, jerk, per_unit, pins })
 }
 
-fn case() -> impl Strategy<Value = Case> {
+/// Moves of these kinds, for machines of one to three axes.
+fn case(kinds: &'static [ProfileKind]) -> impl Strategy<Value = Case> {
     let tick = prop_oneof![Just(500_u64), Just(1000), Just(2000), Just(10_000)];
     let phases = prop_oneof![Just(1_u32), Just(4), Just(16)];
     (tick, phases, any::<bool>(), proptest::collection::vec(axis(), 1..4)).prop_flat_map(
-        |(tick_ns, phases, zero, axes)| {
+        move |(tick_ns, phases, zero, axes)| {
             let steps = prop_oneof![1 => Just(0), 2 => -3..4, 3 => -40..40, 3 => -3000..3000];
             let steps = proptest::collection::vec(steps, axes.len());
             let stretch = proptest::option::of(prop_oneof![Just(1.0000001), 1.0001..1.5, 1.0001..20.0]);
-            let moves = proptest::collection::vec((0_u8..3, steps, stretch), 1..5);
+            let fit_ns = proptest::option::of(decades(1.0, 1e5).prop_map(|ns| ns as u64));
+            let moved = (prop::sample::select(kinds), steps, stretch, fit_ns)
+                .prop_map(|(profile, steps, stretch, fit_ns)| MoveCase { profile, steps, stretch, fit_ns });
+            let moves = proptest::collection::vec(moved, 1..5);
             moves.prop_map(move |moves| Case { tick_ns, phases, zero, axes: axes.clone(), moves })
         },
     )
 }
 
+/// The profiles whose segments are straight in A, and those that need a J.
+const LINEAR: [ProfileKind; 3] = [ProfileKind::Ranade, ProfileKind::Trapezoid, ProfileKind::Constant];
+
+fn verified(case: &Case) {
+    for file in case.files() {
+        let plan = plan::<f64>(&file).unwrap_or_else(|error| panic!("{error}"));
+        verify(&file, &plan, Some(2e-9));
+    }
+}
+
+#[test]
+fn every_profile_free_and_straight() {
+    let (file, plan) = carrystep_tests::moves::shipped("curves");
+    verify(&file, &plan, Some(2e-9));
+    for kind in ProfileKind::ALL {
+        assert!(file.moves.iter().any(|moved| moved.profile == kind), "{kind}");
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 600, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_plan_lands_keeps_its_limits_and_its_edges(case in case()) {
-        for file in case.files() {
-            let plan = plan::<f64>(&file).unwrap_or_else(|error| panic!("{error}"));
-            verify(&file, &plan, Some(2e-9));
-        }
+    fn linear_plans_land_keep_their_limits_and_their_edges(case in case(&LINEAR)) {
+        verified(&case);
     }
 
     #[test]
-    fn f32_lands_exactly_too(case in case()) {
+    fn scurves_land_keep_their_limits_and_their_edges(case in case(&[ProfileKind::Scurve])) {
+        verified(&case);
+    }
+
+    #[test]
+    fn sines_land_keep_their_limits_and_their_edges(case in case(&[ProfileKind::Sine])) {
+        verified(&case);
+    }
+
+    #[test]
+    fn logistics_land_keep_their_limits_and_their_edges(case in case(&[ProfileKind::Logistic])) {
+        verified(&case);
+    }
+
+    #[test]
+    fn mixed_moves_land_keep_their_limits_and_their_edges(case in case(&ProfileKind::ALL)) {
+        verified(&case);
+    }
+
+    #[test]
+    fn f32_lands_exactly_too(case in case(&ProfileKind::ALL)) {
         for file in case.files() {
             match plan::<f32>(&file) {
                 Ok(plan) => verify(&file, &plan, None),

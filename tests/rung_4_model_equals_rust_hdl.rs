@@ -1,4 +1,4 @@
-//! Rung 4: the Rust-HDL simulation is the model: random programs and the demo, every output in every
+//! Rung 4: the Rust-HDL simulation is the model: random programs, the demo and every profile, every output in every
 //! clock; the golden vectors to the last edge and phase.
 
 use carrystep_hdl::AxisSim;
@@ -36,6 +36,12 @@ fn random_programs_at_1_phase() {
 #[test]
 fn the_demo() {
     let plan = moves::demo();
+    lockstep::assert_equals_model(Level::RustHdl, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+}
+
+#[test]
+fn every_profile() {
+    let plan = moves::curves();
     lockstep::assert_equals_model(Level::RustHdl, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
 }
 

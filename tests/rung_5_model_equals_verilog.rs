@@ -1,7 +1,8 @@
-//! Rung 5: the exported Verilog, in Icarus and in Verilator, is the model: random programs and the demo,
-//! every output in every clock; the golden vectors to the last edge and phase.
+//! Rung 5: the exported Verilog, in Icarus and in Verilator, is the model: random programs, the demo
+//! and every profile, every output in every clock; the golden vectors to the last edge and phase.
 
 use carrystep_levels::{Job, Level};
+use carrystep_plan::Plan;
 use carrystep_spec::StartPhase;
 use carrystep_tests::golden::{Case, engine_vectors};
 use carrystep_tests::{axis_bench, lockstep, moves, programs};
@@ -17,8 +18,7 @@ fn random_programs(level: Level, phases: u32, phase: StartPhase, cases: u32) {
     held.unwrap_or_else(|error| panic!("{error}"));
 }
 
-fn demo(level: Level) {
-    let plan = moves::demo();
+fn planned(level: Level, plan: &Plan) {
     lockstep::assert_equals_model(level, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
 }
 
@@ -44,12 +44,22 @@ fn random_programs_in_icarus_at_1_phase() {
 
 #[test]
 fn the_demo_in_verilator() {
-    demo(Level::Verilator);
+    planned(Level::Verilator, &moves::demo());
 }
 
 #[test]
 fn the_demo_in_icarus() {
-    demo(Level::Icarus);
+    planned(Level::Icarus, &moves::demo());
+}
+
+#[test]
+fn every_profile_in_verilator() {
+    planned(Level::Verilator, &moves::curves());
+}
+
+#[test]
+fn every_profile_in_icarus() {
+    planned(Level::Icarus, &moves::curves());
 }
 
 /// On the pins: the cases of one start phase side by side, one on each axis.

@@ -62,6 +62,9 @@ pub struct Plan {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
+    pub fit_ns: Option<u64>,
     /// List every segment: ticks, V, A, J.
     #[arg(long)]
     pub segments: bool,
@@ -79,6 +82,9 @@ pub struct Simulate {
     /// Where the gateware runs.
     #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
     pub level: Level,
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
+    pub fit_ns: Option<u64>,
     /// Write the waveform: pins, position and V beside the float profile.
     #[arg(long, value_name = "FILE")]
     pub vcd: Option<PathBuf>,
@@ -105,6 +111,9 @@ pub struct Check {
     /// The move file that the pulses should follow.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
+    pub fit_ns: Option<u64>,
     /// Where a signal is in the capture: x.step=top.la.D0. Repeat for each pin.
     #[arg(long = "map", value_name = "AXIS.PIN=SIGNAL")]
     pub map: Vec<String>,

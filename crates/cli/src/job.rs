@@ -62,6 +62,15 @@ impl fmt::Display for Done {
     }
 }
 
+/// Reads a move file; `fit_ns` overrides the tolerance of its moves.
+pub fn load(path: &Path, fit_ns: Option<u64>) -> Result<MoveFile, Failure> {
+    let mut file = MoveFile::load(path)?;
+    if let Some(fit_ns) = fit_ns {
+        file.moves.iter_mut().for_each(|moved| moved.fit_ns = fit_ns);
+    }
+    Ok(file)
+}
+
 /// What a capture of this plan is checked against.
 pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], origin: Origin) -> Setup<'a> {
     let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_spec::Axis, &'a Timeline))| {
@@ -78,6 +87,7 @@ pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline
         timebase: plan.build.timebase,
         phase: plan.build.phase,
         axes: file.machine.axes.iter().zip(timelines).enumerate().map(axis).collect(),
+        lines: plan.lines(),
         origin,
         slack_ps: 0,
     }

@@ -47,7 +47,10 @@ pub(crate) fn check(segments: &[Segment], duty: &Duty, limits: &ExactLimits) -> 
     if peaks[1] > limits.acceleration + 1 {
         return Err(Broken::Acceleration);
     }
-    let start = segments.first().map_or(0, |first| start_speed(first, limits));
+    if limits.jerk.is_some_and(|most| peaks[2] > most + 1) {
+        return Err(Broken::Jerk);
+    }
+    let start = segments.first().map_or(0, |first| start_speed(first, duty.backward, limits));
     if start > limits.start_speed + limits.tolerance {
         return Err(Broken::StartSpeed);
     }
@@ -61,17 +64,17 @@ pub(crate) fn check(segments: &[Segment], duty: &Duty, limits: &ExactLimits) -> 
 }
 
 /// V - A/2 + J/3 in the direction of travel, rounded up, at least 0.
-fn start_speed(first: &Segment, limits: &ExactLimits) -> i128 {
+pub(crate) fn start_speed(first: &Segment, backward: bool, limits: &ExactLimits) -> i128 {
     let sixfold = 6 * i128::from(first.v) - 3 * i128::from(first.a) + 2 * i128::from(first.j);
-    let sixfold = if first.v < 0 { -sixfold } else { sixfold };
+    let sixfold = if backward { -sixfold } else { sixfold };
     // A tick of its own says only how far it goes, not how fast it began.
     let explained = if first.ticks == 1 { 3 * limits.acceleration } else { 0 };
     let sixfold = (sixfold - explained).max(0);
     (sixfold + 5) / 6
 }
 
-/// V in the first and last tick, and on either side of where A changes sign.
-fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
+/// V in the first and last tick, and on either side of where A changes sign: its extremes are among them.
+pub(crate) fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
     let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
     let last = i128::from(segment.ticks) - 1;
     let vertex = if j == 0 { 0 } else { (-a).div_euclid(j) };
@@ -85,7 +88,8 @@ fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
 mod tests {
     use super::*;
 
-    const LIMITS: ExactLimits = ExactLimits { start_speed: 1000, speed: 1_000_000, acceleration: 100, tolerance: 1 };
+    const LIMITS: ExactLimits =
+        ExactLimits { start_speed: 1000, speed: 1_000_000, acceleration: 100, jerk: Some(7), tolerance: 1 };
 
     fn segment(ticks: u32, v: i64, a: i64, j: i64) -> Segment {
         Segment { ticks, v, a, j, last: false }
@@ -111,7 +115,12 @@ mod tests {
         assert_eq!(checked(segment(10, 1050, 102, 0), false), Err(Broken::Acceleration));
         assert_eq!(checked(segment(10_001, 1001, 100, 0), false), Err(Broken::Speed));
         assert!(checked(segment(9_991, 1001, 100, 0), false).is_ok());
+        assert_eq!(checked(segment(5, 1000, 10, 9), false), Err(Broken::Jerk));
+        assert!(checked(segment(5, 1000, 10, 8), false).is_ok());
         assert_eq!(checked(segment(10, 1050, 100, 0), false).map(|p| p.start_speed), Ok(1000));
+        // From V = 0 it is the sign of the move that counts.
+        let backward = checked(segment(10, 0, -100, 0), true);
+        assert_eq!(backward.map(|p| p.start_speed), Ok(0));
         assert_eq!(checked(segment(1, 1051, 0, 0), false).map(|p| p.start_speed), Ok(1001));
     }
 

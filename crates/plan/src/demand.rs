@@ -2,9 +2,10 @@
 
 use crate::error::PlanError;
 use crate::limits::float_limits;
+use crate::line;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, rule};
-use carrystep_spec::{Axis, MoveFile, ProfileKind, StartPhase, Timebase};
+use carrystep_spec::{MoveFile, PathKind, ProfileKind, StartPhase, Timebase};
 use std::sync::Arc;
 
 /// Most ticks of a move, 12 days at 1 us: closed forms over it stay well inside i128, its segments in memory.
@@ -39,19 +40,23 @@ pub(crate) fn float<F: Real>(n: u64) -> F {
 pub(crate) fn demand<F: Real>(file: &MoveFile, index: usize) -> Result<(Clock<F>, Vec<SharedProfile<F>>), PlanError> {
     let timebase = file.machine.timebase;
     let moved = &file.moves[index];
-    let axes: Vec<(&Axis, F, Limits<F>)> = (file.machine.axes.iter().zip(&moved.steps))
-        .map(|(axis, steps)| (axis, float(steps.unsigned_abs()), float_limits(axis)))
+    let own: Vec<(F, Limits<F>)> = (file.machine.axes.iter().zip(&moved.steps))
+        .map(|(axis, steps)| (float(steps.unsigned_abs()), float_limits(axis)))
         .collect();
-    let moving = || axes.iter().filter(|(_, steps, _)| !steps.is_zero());
+    let mut axes = own.clone();
+    let straight = moved.path == PathKind::Straight;
+    if straight {
+        line::share_limits(moved.profile, &mut axes);
+    }
+    let refused = |axis: usize, refusal: Refusal, least_time| {
+        let (axis, refusal) = if straight { line::blame(moved.profile, &own, axis, refusal) } else { (axis, refusal) };
+        PlanError::Refused { index, axis: file.machine.axes[axis].name.clone(), refusal, least_time }
+    };
 
     let mut least = F::zero();
-    for (axis, steps, limits) in moving() {
-        match least_time(moved.profile, *steps, limits) {
-            Ok(time) => least = least.max(time),
-            Err(refusal) => {
-                return Err(PlanError::Refused { index, axis: axis.name.clone(), refusal, least_time: None });
-            }
-        }
+    for (axis, (steps, limits)) in axes.iter().enumerate().filter(|(_, (steps, _))| !steps.is_zero()) {
+        let time = least_time(moved.profile, *steps, limits).map_err(|refusal| refused(axis, refusal, None))?;
+        least = least.max(time);
     }
     let clock = match &moved.time {
         Some(time) => given(time, &timebase, file.machine.phase, index)?,
@@ -59,9 +64,9 @@ pub(crate) fn demand<F: Real>(file: &MoveFile, index: usize) -> Result<(Clock<F>
     };
 
     // Where several axes are refused, the slowest one is named: its time is what all can do.
-    let mut worst: Option<(&Axis, Refusal)> = None;
+    let mut worst: Option<(usize, Refusal)> = None;
     let mut profiles: Vec<SharedProfile<F>> = Vec::with_capacity(axes.len());
-    for (axis, steps, limits) in &axes {
+    for (axis, (steps, limits)) in axes.iter().enumerate() {
         if steps.is_zero() {
             profiles.push(Arc::new(Constant::rest(clock.seconds)));
             continue;
@@ -79,8 +84,7 @@ pub(crate) fn demand<F: Real>(file: &MoveFile, index: usize) -> Result<(Clock<F>
         None => Ok((clock, profiles)),
         Some((axis, refusal)) => {
             let ticks = whole(least, &timebase, index)?.ticks;
-            let least_time = Some(seconds(ticks, &timebase));
-            Err(PlanError::Refused { index, axis: axis.name.clone(), refusal, least_time })
+            Err(refused(axis, refusal, Some(seconds(ticks, &timebase))))
         }
     }
 }
@@ -89,6 +93,9 @@ fn least_time<F: Real>(kind: ProfileKind, steps: F, limits: &Limits<F>) -> Resul
     match kind {
         ProfileKind::Ranade => Ok(rule::ranade_least_time(steps, limits)),
         ProfileKind::Trapezoid => Ok(rule::trapezoid_least_time(steps, limits)),
+        ProfileKind::Scurve => Ok(rule::scurve_least_time(steps, limits)),
+        ProfileKind::Logistic => Ok(rule::logistic_least_time(steps, limits)),
+        ProfileKind::Sine => Ok(rule::sine_least_time(steps, limits)),
         ProfileKind::Constant => rule::constant_least_time(steps, limits),
     }
 }
@@ -97,6 +104,9 @@ fn profile<F: Real>(kind: ProfileKind, steps: F, time: F, limits: &Limits<F>) ->
     Ok(match kind {
         ProfileKind::Ranade => rule::ranade(steps, time, limits)?,
         ProfileKind::Trapezoid => Arc::new(rule::trapezoid(steps, time, limits)?),
+        ProfileKind::Scurve => Arc::new(rule::scurve(steps, time, limits)?),
+        ProfileKind::Logistic => Arc::new(rule::logistic(steps, time, limits)?),
+        ProfileKind::Sine => Arc::new(rule::sine(steps, time, limits)?),
         ProfileKind::Constant => Arc::new(rule::constant(steps, time, limits)?),
     })
 }

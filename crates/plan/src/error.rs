@@ -70,6 +70,9 @@ pub enum Broken {
     /// Over `accel_limit`.
     #[error("accel_limit is passed")]
     Acceleration,
+    /// Over `jerk_limit`.
+    #[error("jerk_limit is passed")]
+    Jerk,
     /// Over `start_speed`.
     #[error("start_speed is passed")]
     StartSpeed,

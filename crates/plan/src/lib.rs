@@ -3,12 +3,19 @@
 //! A float profile says where each axis should be; [`plan`] turns it into segments whose sums are exact:
 //! floats decide how the distance of a move is spread over its ticks, never how long it is.
 
+mod bend;
+mod bounds;
 mod check;
+mod corridor;
 mod demand;
 mod direction;
 mod edges;
 mod error;
+mod exchange;
+mod fit;
+mod landing;
 mod limits;
+mod line;
 mod peaks;
 mod plan;
 mod planner;

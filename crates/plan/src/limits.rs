@@ -4,12 +4,14 @@ use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
 use carrystep_profile::{Limits, Real};
 use carrystep_spec::{Axis, Timebase};
 
-/// Limits in 2^-64 step per tick, and per tick^2, rounded down from the file's decimals.
+/// Limits in 2^-64 step per tick, per tick^2 and per tick^3, rounded down from the file's decimals.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ExactLimits {
     pub start_speed: i128,
     pub speed: i128,
     pub acceleration: i128,
+    /// `None`: the axis has no jerk limit.
+    pub jerk: Option<i128>,
     /// What speeds may be over for the rounding of floats: 1e-9 of the speed limit in f64.
     pub tolerance: i128,
 }
@@ -24,8 +26,15 @@ impl ExactLimits {
             start_speed: units(&axis.start_speed, &[&tick])?,
             speed,
             acceleration: units(&axis.accel_limit, &[&tick, &tick])?,
+            // A limit beyond all registers limits nothing.
+            jerk: axis.jerk_limit.as_ref().and_then(|jerk| units(jerk, &[&tick, &tick, &tick])),
             tolerance: (speed as f64 * relative) as i128 + 1,
         })
+    }
+
+    /// The speed that a segment may reach: half of what the check lets pass, since the landing may add a unit.
+    pub fn fastest(&self) -> i128 {
+        self.speed + self.tolerance / 2
     }
 }
 

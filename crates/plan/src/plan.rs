@@ -1,8 +1,8 @@
 //! What planning gives: for each move and axis a profile, and the segments that follow it.
 
 use crate::peaks::Peaks;
-use carrystep_profile::{Leg, SharedProfile, Timeline};
-use carrystep_spec::{Build, Command, Program, Segment};
+use carrystep_profile::{Leg, Line, SharedProfile, Timeline};
+use carrystep_spec::{Build, Command, PathKind, Program, Segment};
 
 /// All moves of a file, ready for the gateware; origin is the first tick of the first move.
 #[derive(Debug, Clone)]
@@ -24,6 +24,10 @@ pub struct PlannedMove {
     pub ticks: u64,
     /// Seconds of the motion as asked for; not always whole ticks.
     pub seconds: f64,
+    /// How far an edge may be from a profile that is fitted, seconds; 0 where it is followed exactly.
+    pub fit_seconds: f64,
+    /// The way that the axes take together.
+    pub path: PathKind,
     /// One for each axis of the machine.
     pub axes: Vec<PlannedAxis>,
 }
@@ -37,7 +41,7 @@ pub struct PlannedAxis {
     pub segments: Vec<Segment>,
     /// The float reference, in the direction of travel.
     pub profile: SharedProfile,
-    /// What the profile is called: triangle, trapezoid, constant or rest.
+    /// What the profile is called: triangle, trapezoid, scurve, logistic, sine, constant or rest.
     pub shape: &'static str,
     /// Greatest speed, acceleration, jerk and start speed, from the integers.
     pub peaks: Peaks,
@@ -47,6 +51,28 @@ impl Plan {
     /// Ticks from the origin to the end of the last move.
     pub fn total_ticks(&self) -> u64 {
         self.moves.last().map_or(0, |last| last.start_tick + last.ticks)
+    }
+
+    /// The moves along a straight line, for the checker.
+    pub fn lines(&self) -> Vec<Line> {
+        let mut before = vec![0; self.moves.first().map_or(0, |planned| planned.axes.len())];
+        let mut lines = Vec::new();
+        let per_second = 2_f64.powi(-64) / self.build.timebase.tick_seconds();
+        for PlannedMove { path, axes, .. } in &self.moves {
+            if *path == PathKind::Straight {
+                let part = |axis: &PlannedAxis| axis.peaks.speed as f64 * per_second / axis.steps.unsigned_abs() as f64;
+                let moving = axes.iter().filter(|axis| axis.steps != 0);
+                lines.push(Line {
+                    before: before.clone(),
+                    steps: axes.iter().map(|axis| axis.steps).collect(),
+                    speed: moving.map(part).fold(0.0, f64::max),
+                });
+            }
+            for (sum, axis) in before.iter_mut().zip(axes) {
+                *sum += axis.steps.unsigned_abs();
+            }
+        }
+        lines
     }
 
     /// The segments of one axis, each with its first tick from the origin, ascending.
@@ -99,6 +125,7 @@ impl Plan {
                 backward: moved.steps < 0,
                 steps: moved.steps.unsigned_abs(),
                 profile: moved.profile.clone(),
+                fit_seconds: planned.fit_seconds,
             })
         };
         let timeline = |axis| Timeline {

@@ -1,17 +1,20 @@
 //! From a move file to a plan: time, profiles, shares, segments, rest, and the exact check.
 
 use crate::check::{Duty, check};
+use crate::corridor::Corridor;
 use crate::demand::{Clock, demand};
 use crate::direction::{Pins, Strokes, borrows, turning_rest};
 use crate::edges;
 use crate::error::{Broken, PlanError};
+use crate::fit::Fitter;
 use crate::limits::ExactLimits;
 use crate::peaks::Peaks;
 use crate::plan::{Plan, PlannedAxis, PlannedMove};
 use crate::run::Writer;
-use crate::share::share;
+use crate::share::{Breakpoints, Piece, share};
+use crate::units;
 use carrystep_profile::{Profile, Real, SharedProfile, Widened};
-use carrystep_spec::{Axis, Build, MoveFile, Segment, fixed::ONE_STEP};
+use carrystep_spec::{Axis, Build, Move, MoveFile, ProfileKind, Segment, fixed::ONE_STEP};
 use std::sync::Arc;
 
 /// Plans all moves of a file, in floats of type `F`.
@@ -25,6 +28,19 @@ pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
     let mut planner = Planner::new::<F>(file)?;
     let moves = (0..file.moves.len()).map(|index| planner.plan_move::<F>(index)).collect::<Result<_, _>>()?;
     Ok(Plan { build: planner.build, moves })
+}
+
+/// A fit takes no more than this part of the length of a piece for its tolerance.
+const LEAST_RATIO: f64 = 64.0;
+
+/// The part of the tolerance that the rounding of a breakpoint may use up.
+const ROUNDED: f64 = 0.01;
+
+/// One axis in one move.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    index: usize,
+    axis: usize,
 }
 
 struct Planner<'a> {
@@ -61,35 +77,30 @@ impl<'a> Planner<'a> {
     fn plan_move<F: Real>(&mut self, index: usize) -> Result<PlannedMove, PlanError> {
         let (clock, profiles) = demand::<F>(self.file, index)?;
         let axes = &self.file.machine.axes;
-        let drafts = profiles
-            .into_iter()
-            .enumerate()
-            .map(|(axis, profile)| self.draft(index, axis, profile, &clock).map_err(|b| broken(index, &axes[axis], b)));
+        let drafts = profiles.into_iter().enumerate().map(|(axis, profile)| {
+            self.draft(Place { index, axis }, profile, &clock).map_err(|b| broken(index, &axes[axis], b))
+        });
         let drafts = drafts.collect::<Result<Vec<_>, _>>()?;
         let rest = drafts.iter().map(|draft| draft.rest).max().unwrap_or(0);
-        let planned = drafts
-            .into_iter()
-            .enumerate()
-            .map(|(axis, draft)| self.finish(axis, draft, rest, &clock).map_err(|b| broken(index, &axes[axis], b)));
+        let planned = drafts.into_iter().enumerate().map(|(axis, draft)| {
+            self.finish(Place { index, axis }, draft, rest, &clock).map_err(|b| broken(index, &axes[axis], b))
+        });
         let planned = planned.collect::<Result<Vec<_>, _>>()?;
         let start_tick = self.ticks + rest;
         self.ticks = start_tick + clock.ticks;
         let seconds = clock.seconds.to_f64().unwrap_or(f64::NAN);
-        Ok(PlannedMove { start_tick, rest_ticks: rest, ticks: clock.ticks, seconds, axes: planned })
+        let Move { profile, path, fit_ns, .. } = self.file.moves[index];
+        let fit_seconds = if profile.is_fitted() { fit_ns as f64 * 1e-9 } else { 0.0 };
+        Ok(PlannedMove { start_tick, rest_ticks: rest, ticks: clock.ticks, seconds, fit_seconds, path, axes: planned })
     }
 
-    fn draft<F: Real>(
-        &self,
-        index: usize,
-        axis: usize,
-        profile: SharedProfile<F>,
-        clock: &Clock<F>,
-    ) -> Result<Draft<F>, Broken> {
+    fn draft<F: Real>(&self, place: Place, profile: SharedProfile<F>, clock: &Clock<F>) -> Result<Draft<F>, Broken> {
+        let Place { index, axis } = place;
         let steps = self.file.moves[index].steps[axis];
         if steps == 0 {
             return Ok(Draft { steps, profile, segments: still(clock.ticks), strokes: None, rest: 0 });
         }
-        let segments = self.motion(axis, steps, &*profile, clock, 0)?;
+        let segments = self.motion(place, steps, &*profile, clock, 0)?;
         let (timebase, phase) = (&self.build.timebase, self.build.phase);
         let backward = steps < 0;
         let edge = |k| edges::edge(&segments, phase.start_value(), backward, k, timebase).ok_or(Broken::Landing);
@@ -106,37 +117,72 @@ impl<'a> Planner<'a> {
     /// The segments of the motion alone; `borrowed` units have been travelled before it.
     fn motion<F: Real>(
         &self,
-        axis: usize,
+        place: Place,
         steps: i64,
         profile: &dyn Profile<F>,
         clock: &Clock<F>,
         borrowed: i128,
     ) -> Result<Vec<Segment>, Broken> {
         let total = i128::from(steps.unsigned_abs()) * ONE_STEP - borrowed;
-        let mut writer = Writer {
-            profile,
-            clock: *clock,
-            limits: &self.limits[axis],
-            phase: self.build.phase,
-            backward: steps < 0,
-            segments: Vec::new(),
-            ahead: 0,
+        let Move { profile: kind, fit_ns, .. } = self.file.moves[place.index];
+        let limits = self.limits(place, profile);
+        let (phase, backward) = (self.build.phase, steps < 0);
+        let mut writer =
+            Writer { profile, clock: *clock, limits: &limits, phase, backward, segments: Vec::new(), ahead: 0 };
+        let tolerance = tolerance(fit_ns, clock, self.build.timebase.tick_ns());
+        let breakpoints = if kind.is_fitted() {
+            Breakpoints::Rounded(F::from(tolerance * ROUNDED).unwrap_or_else(F::zero))
+        } else {
+            Breakpoints::Kept
         };
-        for piece in share(profile, clock, total).ok_or(Broken::Range)? {
-            writer.piece(piece)?;
+        let pieces = share(profile, clock, total, breakpoints).ok_or(Broken::Range)?;
+        let (mut rows, mut risen) = (Vec::new(), Vec::new());
+        for (index, &piece) in pieces.iter().enumerate() {
+            let last = index + 1 == pieces.len();
+            if kind.is_fitted() && !is_straight(profile, clock, piece) {
+                let pulses = steps.unsigned_abs();
+                let tolerance = tolerance.min(piece.ticks as f64 / LEAST_RATIO);
+                let [begin, end] = [piece.first, piece.first + piece.ticks].map(|tick| profile.speed(clock.at(tick)));
+                let rises = begin <= end;
+                let corridor = Corridor { profile, clock: *clock, phase, backward, pulses, piece, rises, tolerance };
+                let mut fitter = Fitter { corridor, limits: &limits, rows: std::mem::take(&mut rows) };
+                let segments = fitter.segments(writer.position(piece), &risen);
+                rows = fitter.rows;
+                writer.fitted(piece, &segments, last)?;
+                if rises {
+                    risen = segments;
+                }
+            } else {
+                // In a fit, only the last piece lands: each landing costs a segment. Hardly anything could not.
+                let small = |next: &Piece| next.ticks == 1 || next.units <= i128::from(piece.ticks);
+                let lands = !kind.is_fitted() || pieces.get(index + 1).is_none_or(small);
+                writer.piece(piece, lands)?;
+            }
         }
         Ok(writer.segments)
+    }
+
+    /// What the integers of an axis in a move must keep.
+    fn limits<F: Real>(&self, Place { index, axis }: Place, profile: &dyn Profile<F>) -> ExactLimits {
+        let limits = self.limits[axis];
+        if self.file.moves[index].profile != ProfileKind::Logistic || limits.start_speed > 0 {
+            return limits;
+        }
+        // Never at rest: the jump of the curve itself is what a start speed of 0 leaves open.
+        let per_tick = profile.speed(F::zero()) * F::from(self.build.timebase.tick_seconds()).unwrap_or_else(F::nan);
+        ExactLimits { start_speed: units::nearest(per_tick).unwrap_or(0), ..limits }
     }
 
     /// Puts the rest before the motion, marks the end, checks all of it, and moves the pins on.
     fn finish<F: Real>(
         &mut self,
-        axis: usize,
+        place: Place,
         draft: Draft<F>,
         rest: u64,
         clock: &Clock<F>,
     ) -> Result<PlannedAxis, Broken> {
         let Draft { steps, profile, segments: mut motion, strokes, rest: own_rest } = draft;
+        let axis = place.axis;
         let phase = self.build.phase;
         let backward = steps < 0;
         let mut before = still(rest);
@@ -147,11 +193,12 @@ impl<'a> Planner<'a> {
             early = Some(i128::from(self.build.timebase.clocks_per_tick()));
             if borrows(phase, backward) {
                 (early, borrowed) = (Some(0), 1);
-                motion = self.motion(axis, steps, &*profile, clock, borrowed)?;
+                motion = self.motion(place, steps, &*profile, clock, borrowed)?;
             }
         }
         let duty = Duty { backward, distance: i128::from(steps) * ONE_STEP - borrowed, ticks: clock.ticks };
-        let peaks = if steps == 0 { Peaks::default() } else { check(&motion, &duty, &self.limits[axis])? };
+        let limits = self.limits(place, &*profile);
+        let peaks = if steps == 0 { Peaks::default() } else { check(&motion, &duty, &limits)? };
         if before.iter().map(|s| edges::travel(s, s.ticks.into())).sum::<i128>() != borrowed {
             return Err(Broken::Landing);
         }
@@ -172,6 +219,18 @@ impl<'a> Planner<'a> {
     fn now(&self) -> i128 {
         i128::from(self.ticks) * i128::from(self.build.timebase.clocks_per_tick())
     }
+}
+
+/// Ticks that an edge may be off: at least what the floats of the profile can tell apart.
+fn tolerance<F: Real>(fit_ns: u64, clock: &Clock<F>, tick_ns: u64) -> f64 {
+    let noise = F::epsilon().to_f64().unwrap_or(0.0) * 16.0 * clock.ticks as f64;
+    (fit_ns as f64 / tick_ns as f64).max(noise)
+}
+
+/// Whether a piece needs no fit: one tick, or one speed.
+fn is_straight<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, piece: Piece) -> bool {
+    let middle = (clock.at(piece.first) + clock.at(piece.first + piece.ticks)) / (F::one() + F::one());
+    piece.ticks == 1 || (profile.acceleration(middle).is_zero() && profile.jerk(middle).is_zero())
 }
 
 /// An axis that stands.

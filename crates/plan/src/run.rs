@@ -1,14 +1,18 @@
-//! A piece of a move as segments: A from the profile, rounded toward zero, V from the distance.
+//! A piece of constant jerk as segments: J and A from the profile, rounded toward zero, V from the distance.
 
+use crate::bend::{Bend, Wanted, jerk_distance};
+use crate::check::speeds;
 use crate::demand::Clock;
 use crate::error::Broken;
+use crate::fit::Fitted;
+use crate::landing;
 use crate::limits::ExactLimits;
 use crate::share::{self, Piece};
 use crate::units;
 use carrystep_profile::{Profile, Real};
 use carrystep_spec::{Segment, StartPhase};
 
-/// How far the rounding of A and V may move an edge, seconds; the rest of 2 ns is for the 32-bit bisection.
+/// How far the rounding of A, J and V may move an edge, seconds; the rest of 2 ns is for the 32-bit bisection.
 const EDGE_SHIFT: f64 = 0.5e-9;
 
 /// Speeds below this, steps/s, are held to [`EDGE_SHIFT`] as if they were this fast.
@@ -26,9 +30,9 @@ pub(crate) struct Writer<'a, F> {
     pub ahead: i128,
 }
 
-/// The acceleration of a piece in units, in the direction of travel.
-#[derive(Debug, Clone, Copy)]
-struct Slope {
+/// A rate of a piece in units, in the direction of travel.
+#[derive(Debug, Clone, Copy, Default)]
+struct Rate {
     /// Rounded toward zero, and within the limit.
     units: i128,
     /// What that left out: units, in magnitude.
@@ -36,54 +40,122 @@ struct Slope {
 }
 
 impl<F: Real> Writer<'_, F> {
-    /// Writes the segments of a piece; their distances add up to it exactly.
-    pub fn piece(&mut self, piece: Piece) -> Result<(), Broken> {
-        let slope = if piece.ticks == 1 { Slope { units: 0, lost: 0.0 } } else { self.slope(piece)? };
-        self.divide(piece, slope, true)
+    /// Writes the segments of a piece of constant jerk; where it `ends`, what they travel adds up exactly.
+    pub fn piece(&mut self, piece: Piece, ends: bool) -> Result<(), Broken> {
+        let jerk = if piece.ticks == 1 { Rate::default() } else { self.jerk(piece)? };
+        self.divide(piece, jerk, ends)
     }
 
-    fn slope(&self, Piece { first, ticks, .. }: Piece) -> Result<Slope, Broken> {
-        let middle = (self.clock.at(first) + self.clock.at(first + ticks)) / (F::one() + F::one());
-        let per_tick = self.profile.acceleration(middle) * self.clock.tick * self.clock.tick;
-        let rounded = units::toward_zero(per_tick).ok_or(Broken::Range)?;
-        let most = self.limits.acceleration;
-        let clamped = rounded.clamp(-most, most);
-        let exact = per_tick.to_f64().unwrap_or(f64::NAN) * 2_f64.powi(64);
-        Ok(Slope { units: clamped, lost: (exact - clamped as f64).abs() })
+    /// Where the axis is when a piece begins, in the direction of travel, given what is carried into it.
+    pub fn position(&self, piece: Piece) -> i128 {
+        piece.start + if self.backward { -self.ahead } else { self.ahead }
     }
 
-    /// Halves a piece until the rounding of A and V moves no edge by more than [`EDGE_SHIFT`].
+    /// Writes the segments of a fitted piece, and carries on what they are off.
+    pub fn fitted(&mut self, piece: Piece, segments: &[Fitted], ends: bool) -> Result<(), Broken> {
+        let sign = if self.backward { -1 } else { 1 };
+        let mut done = self.position(piece);
+        self.ahead = 0;
+        for (index, &Fitted { ticks, bend, distance }) in segments.iter().enumerate() {
+            let lands = ends && index + 1 == segments.len();
+            if lands && self.land(segments, sign * distance)? {
+                return Ok(());
+            }
+            self.lay(ticks.into(), sign * distance, bend, lands)?;
+            done += distance;
+        }
+        self.ahead = sign * (done - piece.start - piece.units);
+        Ok(())
+    }
+
+    /// Lands the last segment of a fit without a split, if one of the others can give it a few units of V.
+    fn land(&mut self, segments: &[Fitted], distance: i128) -> Result<bool, Broken> {
+        let Some((last, others)) = segments.split_last() else { return Ok(false) };
+        let laid = self.segments.len();
+        let sign = if self.backward { -1 } else { 1 };
+        let n = i128::from(last.ticks);
+        self.lay(n, distance, last.bend, false)?;
+        let rest = -sign * self.ahead;
+        for (other, fitted) in (1..laid).rev().zip(others.iter().rev()) {
+            let Some((slower, faster)) = landing::shared(fitted.ticks.into(), n, rest) else { continue };
+            let faster = [(other, slower), (laid, faster)].map(|(i, units)| {
+                let segment = self.segments.get(i).copied()?;
+                let v = i64::try_from(i128::from(segment.v) + sign * units).ok()?;
+                let faster = Segment { v, ..segment };
+                let kept = speeds(&faster).all(|v| (0..=self.limits.fastest()).contains(&(sign * v)));
+                kept.then_some(faster)
+            });
+            if let [Some(other_faster), Some(last_faster)] = faster {
+                (self.segments[other], self.segments[laid]) = (other_faster, last_faster);
+                self.ahead = 0;
+                return Ok(true);
+            }
+        }
+        self.segments.truncate(laid);
+        Ok(false)
+    }
+
+    fn middle(&self, Piece { first, ticks, .. }: Piece) -> F {
+        (self.clock.at(first) + self.clock.at(first + ticks)) / (F::one() + F::one())
+    }
+
+    fn jerk(&self, piece: Piece) -> Result<Rate, Broken> {
+        let tick = self.clock.tick;
+        let per_tick = self.profile.jerk(self.middle(piece)) * tick * tick * tick;
+        rate(per_tick, self.limits.jerk.unwrap_or(i128::MAX))
+    }
+
+    /// The acceleration in the middle of a run: twice, in units, and what rounding it leaves out.
+    fn acceleration(&self, piece: Piece, jerk: Rate) -> Result<(i128, f64), Broken> {
+        let tick = self.clock.tick;
+        let per_tick = self.profile.acceleration(self.middle(piece)) * tick * tick;
+        let doubled = units::toward_zero(per_tick + per_tick).ok_or(Broken::Range)?;
+        let lost = rate(per_tick, self.limits.acceleration)?.lost;
+        // A starts half a run of J away from the middle, which rounds once more.
+        Ok((doubled, if jerk.units == 0 { lost } else { lost.max(1.0) }))
+    }
+
+    /// Halves a piece until the rounding of A, J and V moves no edge by more than [`EDGE_SHIFT`].
     ///
     /// The slower half gets its distance from the profile, the faster one what remains: float rounding
     /// is relative to a distance, so this keeps it small where edges are far apart.
-    fn divide(&mut self, piece: Piece, slope: Slope, ends: bool) -> Result<(), Broken> {
-        let Piece { first, ticks, units } = piece;
-        if ticks < 4 || self.fine(piece, slope) {
-            return self.run(piece, slope.units, ends);
+    fn divide(&mut self, piece: Piece, jerk: Rate, ends: bool) -> Result<(), Broken> {
+        let Piece { first, ticks, start, units } = piece;
+        let (doubled, lost) = if ticks == 1 { (0, 0.0) } else { self.acceleration(piece, jerk)? };
+        if ticks < 4 || self.fine(piece, lost, jerk.lost) {
+            return self.run(piece, doubled, jerk.units, ends);
         }
         let half = ticks / 2;
         let local = |first, ticks| {
             let local = share::distance(self.profile, &self.clock, first, ticks);
             local.map(|local| local.min(units)).ok_or(Broken::Range)
         };
-        let head = if slope.units >= 0 { local(first, half)? } else { units - local(first + half, ticks - half)? };
-        self.divide(Piece { first, ticks: half, units: head }, slope, false)?;
-        self.divide(Piece { first: first + half, ticks: ticks - half, units: units - head }, slope, ends)
+        let rises = self.profile.speed(self.clock.at(first)) <= self.profile.speed(self.clock.at(first + ticks));
+        let head = if rises { local(first, half)? } else { units - local(first + half, ticks - half)? };
+        self.divide(Piece { ticks: half, units: head, ..piece }, jerk, false)?;
+        let (first, start) = (first + half, start + head);
+        self.divide(Piece { first, ticks: ticks - half, start, units: units - head }, jerk, ends)
     }
 
-    fn fine(&self, Piece { first, ticks, .. }: Piece, Slope { lost, .. }: Slope) -> bool {
+    /// Whether a run may be as long as this, given what rounding leaves out of A and J.
+    fn fine(&self, Piece { first, ticks, .. }: Piece, acceleration: f64, jerk: f64) -> bool {
         let length = ticks as f64;
-        // V makes up for A, so that a long first run would start too fast by half of this.
-        if first == 0 && lost * length > self.limits.tolerance as f64 {
+        // V makes up for A and J, so that a long first run would start too fast by half of this.
+        let late = (acceleration + jerk * length / 3.0) * length;
+        if first == 0 && late > self.limits.tolerance as f64 {
             return false;
         }
         let [begin, end] = [first, first + ticks].map(|tick| self.clock.at(tick));
         let wide = |x: F| x.to_f64().unwrap_or(f64::NAN);
         let slowest = wide(self.profile.speed(begin).min(self.profile.speed(end)));
-        // From rest, the first edge comes half a step later, at speed sqrt(a).
-        let at_edge = slowest.max(wide(self.profile.acceleration(begin).abs().sqrt())).max(SLOWEST);
-        // The second term: V is ahead by up to a unit a tick.
-        let shift = (lost * length / 8.0 + 1.0) * length * 2_f64.powi(-64) / at_edge;
+        // From rest, the first edge comes half a step later, at speed sqrt(a) or over cbrt(j).
+        let by_acceleration = wide(self.profile.acceleration(begin).abs().sqrt());
+        let by_jerk = wide(self.profile.jerk(begin).abs().cbrt());
+        let at_edge = slowest.max(by_acceleration).max(by_jerk).max(SLOWEST);
+        // A parabola t(n-t)/2 per unit of A, at most a cubic t^2 (n-t)/6 per unit of J; and V is ahead by up to
+        // a unit a tick.
+        let lost = (jerk * length / 40.0 + acceleration / 8.0) * length + 1.0;
+        let shift = lost * length * 2_f64.powi(-64) / at_edge;
         shift <= EDGE_SHIFT || !self.has_edge(wide(self.profile.position(begin)), wide(self.profile.position(end)))
     }
 
@@ -96,43 +168,72 @@ impl<F: Real> Writer<'_, F> {
         (to - offset + 1e-3).floor() > (from - offset - 1e-3).floor()
     }
 
-    /// One run of constant A. What V cannot share evenly goes to the first ticks, one unit each, where
-    /// the piece ends; before that it is carried into the next run.
-    fn run(&mut self, Piece { ticks, units, .. }: Piece, slope: i128, ends: bool) -> Result<(), Broken> {
-        let n = i128::from(ticks);
+    /// One run of constant jerk.
+    fn run(&mut self, piece: Piece, doubled_middle: i128, jerk: i128, ends: bool) -> Result<(), Broken> {
+        let n = i128::from(piece.ticks);
         let sign = if self.backward { -1 } else { 1 };
-        let distance = sign * units - self.ahead;
-        let pairs = n * (n - 1) / 2;
-        // Under this |A| the speed neither changes sign nor passes its limit at either end, whatever
-        // floats have made of the distance.
-        let fastest = n * (self.limits.speed + self.limits.tolerance);
-        let room = distance.abs().min(fastest - distance.abs()).max(0);
-        let most = if pairs == 0 { 0 } else { room / pairs };
-        let a = sign * slope.clamp(-most, most);
-        let level = distance - pairs * a;
+        let distance = sign * piece.units - self.ahead;
+        let (ticks, first) = (n, piece.first == 0);
+        let wanted = Wanted { ticks, distance: sign * distance, doubled_middle, jerk, one_way: true, least: 0, first };
+        self.lay(n, distance, wanted.within(self.limits), ends)
+    }
+
+    /// A run over a signed distance. What V cannot share evenly goes to the first ticks, one unit each, where the
+    /// piece ends; before that it is carried into the next run.
+    fn lay(&mut self, n: i128, distance: i128, Bend { a, j }: Bend, ends: bool) -> Result<(), Broken> {
+        let sign = if self.backward { -1 } else { 1 };
+        let level = sign * distance - n * (n - 1) / 2 * a - jerk_distance(n, j).ok_or(Broken::Range)?;
+        let (level, a, j) = (sign * level, sign * a, sign * j);
         let v = level.div_euclid(n);
         let remainder = level.rem_euclid(n);
         if ends {
             self.ahead = 0;
-            self.push(remainder, v + 1, a)?;
-            self.push(n - remainder, v + remainder * a, a)
+            let head = Registers { v: v + 1, a, j };
+            self.push(remainder, head)?;
+            let Registers { v, a, j } = head.after(remainder);
+            self.push(n - remainder, Registers { v: v - 1, a, j })
         } else {
-            let spent = i128::from(remainder > 0);
-            self.ahead = n * spent - remainder;
-            self.push(n, v + spent, a)
+            // What a limit keeps behind stays behind.
+            let most = if a == 0 && j == 0 { self.limits.fastest() } else { i128::MAX };
+            let used = (v + i128::from(remainder > 0)).clamp(-most, most);
+            self.ahead = n * (used - v) - remainder;
+            self.push(n, Registers { v: used, a, j })
         }
     }
 
-    /// Ticks of constant A, in as many segments as their counters need.
-    fn push(&mut self, mut ticks: i128, mut v: i128, a: i128) -> Result<(), Broken> {
-        let a64 = i64::try_from(a).map_err(|_| Broken::Range)?;
+    /// Ticks of one cubic, in as many segments as their counters need.
+    fn push(&mut self, mut ticks: i128, mut now: Registers) -> Result<(), Broken> {
         while ticks > 0 {
             let length = ticks.min(u32::MAX.into());
-            let v64 = i64::try_from(v).map_err(|_| Broken::Range)?;
-            self.segments.push(Segment { ticks: length as u32, v: v64, a: a64, j: 0, last: false });
-            v += length * a;
+            let register = |value: i128| i64::try_from(value).map_err(|_| Broken::Range);
+            let (v, a, j) = (register(now.v)?, register(now.a)?, register(now.j)?);
+            self.segments.push(Segment { ticks: length as u32, v, a, j, last: false });
+            now = now.after(length);
             ticks -= length;
         }
         Ok(())
     }
+}
+
+/// V, A and J before a tick.
+#[derive(Debug, Clone, Copy)]
+struct Registers {
+    v: i128,
+    a: i128,
+    j: i128,
+}
+
+impl Registers {
+    /// What the gateware has added up `n` ticks later.
+    fn after(self, n: i128) -> Self {
+        let Self { v, a, j } = self;
+        Self { v: v + n * a + n * (n - 1) / 2 * j, a: a + n * j, j }
+    }
+}
+
+/// `per_tick` steps in units, rounded toward zero and clamped.
+fn rate<F: Real>(per_tick: F, most: i128) -> Result<Rate, Broken> {
+    let units = units::toward_zero(per_tick).ok_or(Broken::Range)?.clamp(-most, most);
+    let exact = per_tick.to_f64().unwrap_or(f64::NAN) * 2_f64.powi(64);
+    Ok(Rate { units, lost: (exact - units as f64).abs() })
 }

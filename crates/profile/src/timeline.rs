@@ -23,6 +23,9 @@ pub struct Leg {
     pub steps: u64,
     /// How.
     pub profile: SharedProfile,
+    /// How far from the profile its edges may be because it had to be fitted, seconds; 0 where it is followed
+    /// exactly.
+    pub fit_seconds: f64,
 }
 
 /// The moment at which a pulse is due.

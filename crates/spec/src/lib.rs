@@ -21,5 +21,5 @@ pub use error::{InputError, Source};
 pub use fault::Faults;
 pub use fixed::StartPhase;
 pub use machine::{Axis, Machine};
-pub use move_file::{Move, MoveFile, ProfileKind};
+pub use move_file::{Move, MoveFile, PathKind, ProfileKind};
 pub use segment::{Command, Program, Segment};

@@ -23,8 +23,25 @@ pub enum ProfileKind {
     Ranade,
     /// From rest to rest at the acceleration limit.
     Trapezoid,
+    /// Seven segments: limits on speed, acceleration and jerk.
+    Scurve,
+    /// Along a logistic curve: gentle at both ends, never quite at rest.
+    Logistic,
+    /// Acceleration as 1 - cos: jerk continuous too.
+    Sine,
     /// One speed, at most the start speed.
     Constant,
+}
+
+impl ProfileKind {
+    /// Every kind.
+    pub const ALL: [Self; 6] =
+        [Self::Ranade, Self::Trapezoid, Self::Scurve, Self::Logistic, Self::Sine, Self::Constant];
+
+    /// Whether cubic segments can only come close to it; the others they follow exactly.
+    pub const fn is_fitted(self) -> bool {
+        matches!(self, Self::Logistic | Self::Sine)
+    }
 }
 
 impl fmt::Display for ProfileKind {
@@ -32,9 +49,23 @@ impl fmt::Display for ProfileKind {
         f.write_str(match self {
             Self::Ranade => "ranade",
             Self::Trapezoid => "trapezoid",
+            Self::Scurve => "scurve",
+            Self::Logistic => "logistic",
+            Self::Sine => "sine",
             Self::Constant => "constant",
         })
     }
+}
+
+/// Which way a move of several axes takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PathKind {
+    /// Each axis as its own limits allow, in the common time.
+    #[default]
+    Free,
+    /// All along one straight line: one profile, scaled for each axis.
+    Straight,
 }
 
 /// A checked move file.
@@ -53,8 +84,13 @@ pub struct MoveFile {
 pub struct Move {
     /// Its speed profile.
     pub profile: ProfileKind,
+    /// The way that its axes take together.
+    pub path: PathKind,
     /// Seconds available; `None`: as fast as the limits allow.
     pub time: Option<BigDecimal>,
+    /// How far an edge may be from a profile that has to be fitted, ns, at least 1; one tick where the file
+    /// does not say.
+    pub fit_ns: u64,
     /// Steps of each axis of the machine, either sign.
     pub steps: Vec<i64>,
     /// What rounding to steps left over so far, per axis, in steps: exact target less rounded target.
@@ -75,8 +111,11 @@ struct RawMoveFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a [[move]] table")]
 struct RawMove {
-    profile: ProfileKind,
+    profile: Spanned<ProfileKind>,
+    #[serde(default)]
+    path: PathKind,
     time: Option<Spanned<f64>>,
+    fit_ns: Option<Spanned<u64>>,
     to: BTreeMap<Spanned<String>, Spanned<f64>>,
 }
 
@@ -141,14 +180,20 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
     let mut moves = Vec::with_capacity(raw.len());
     for entry in raw {
         let span = entry.span();
-        let RawMove { profile, time, to } = entry.into_inner();
+        let RawMove { profile, path, time, fit_ns, to } = entry.into_inner();
         let time = time.map(|value| check_time(source, &value)).transpose()?;
+        let fit_ns = fit_ns.map_or(Ok(machine.timebase.tick_ns()), |value| check_fit(source, &value))?;
         let before = positions.clone();
         for (name, distance) in &to {
             let axis = machine.axis_index(name.as_ref()).ok_or_else(|| {
                 InputError::at(source, name.span(), format!("the machine has no axis {:?}", name.as_ref()))
                     .help(format!("its axes are {}", machine.axis_names()))
             })?;
+            if *profile.as_ref() == ProfileKind::Scurve && machine.axes[axis].jerk_limit.is_none() {
+                let message = format!("profile = \"scurve\": axis {:?} has no jerk_limit", name.as_ref());
+                return Err(InputError::at(source, profile.span(), message)
+                    .help("give the axis a jerk_limit in units/s^3, or take another profile"));
+            }
             targets[axis] += exact(source, distance, name.as_ref())?;
             let target = &targets[axis] * &machine.axes[axis].steps_per_unit;
             positions[axis] = register(&target).ok_or_else(|| {
@@ -163,8 +208,10 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
             decimal::to_f64(&(target * &axis.steps_per_unit - BigDecimal::from(steps)))
         });
         moves.push(Move {
-            profile,
+            profile: profile.into_inner(),
+            path,
             time,
+            fit_ns,
             steps: positions.iter().zip(&before).map(|(now, old)| now - old).collect(),
             rounding: rounding.collect(),
             span,
@@ -181,6 +228,15 @@ fn check_time(source: &Source, value: &Spanned<f64>) -> Result<BigDecimal, Input
     }
     let message = format!("time = {} s: a move takes at most 10^6 s", decimal::to_f64(&time));
     Err(InputError::at(source, value.span(), message).help("split it into shorter moves"))
+}
+
+fn check_fit(source: &Source, value: &Spanned<u64>) -> Result<u64, InputError> {
+    let ns = *value.as_ref();
+    if ns > 0 {
+        return Ok(ns);
+    }
+    Err(InputError::at(source, value.span(), "fit_ns = 0: no fit is without an error")
+        .help("give the greatest error of an edge in ns, from 1 up"))
 }
 
 /// The nearest whole step, where the position register can hold it and its negative.

@@ -2,6 +2,7 @@
 
 use crate::edge::{Pin, PinChange};
 use crate::ideal::{NS, PS, curvature_ps, due_ps, lateness_ps, moment, phase_ps, tick_ps};
+use crate::line_check::Off;
 use crate::pins::{PinWatch, Stretch};
 use crate::report::AxisReport;
 use crate::spread::Spread;
@@ -124,11 +125,17 @@ impl<'a> AxisCheck<'a> {
         }
     }
 
-    /// Takes a change; `origin_ps` may still be an estimate, the same for all axes, `sure` tells.
-    pub(crate) fn change(&mut self, change: PinChange, origin_ps: i64, sure: bool) {
-        if !self.watch.change(change) {
-            return;
+    /// Takes a change, and tells whether it is a pulse; `origin_ps` may still be an estimate, the same for all axes,
+    /// `sure` tells.
+    pub(crate) fn change(&mut self, change: PinChange, origin_ps: i64, sure: bool) -> bool {
+        let pulse = self.watch.change(change);
+        if pulse {
+            self.pulse(change, origin_ps, sure);
         }
+        pulse
+    }
+
+    fn pulse(&mut self, change: PinChange, origin_ps: i64, sure: bool) {
         let backward = self.watch.backward();
         self.position += if backward { -1 } else { 1 };
         if self.is_extra(change.ps, origin_ps, sure) {
@@ -235,8 +242,18 @@ impl<'a> AxisCheck<'a> {
         Some((self.errors.min()?.value, self.errors.max()?.value))
     }
 
+    /// How late or early an edge may be, in ps.
+    pub(crate) fn bound_ps(&self) -> f64 {
+        phase_ps(&self.timebase) + self.curvature_ps + self.fit_ps() + ROUNDING_PS + self.slack_ps
+    }
+
+    /// The greatest tolerance of a fit, in ps.
+    fn fit_ps(&self) -> f64 {
+        self.setup.timeline.legs.iter().map(|leg| (leg.fit_seconds * PS).round()).fold(0.0, f64::max)
+    }
+
     /// Judges; `origin_ps` is what all changes were given, `shift_ps` is added to it.
-    pub(crate) fn finish(mut self, origin_ps: i64, shift_ps: i64) -> AxisReport {
+    pub(crate) fn finish(mut self, origin_ps: i64, shift_ps: i64, line: Option<Off>) -> AxisReport {
         if self.watch.step() {
             self.fail("STEP is still high when the capture ends");
         }
@@ -249,8 +266,11 @@ impl<'a> AxisCheck<'a> {
             self.fail(&format!("final position {}, {} expected", self.position, self.setup.expected_position));
         }
         let phase = phase_ps(&self.timebase);
-        let bound = phase + self.curvature_ps + ROUNDING_PS + self.slack_ps;
+        let (fit, bound) = (self.fit_ps(), self.bound_ps());
         self.judge_errors(shift_ps as f64, bound);
+        if let Some(Off { steps, bound, pulse }) = line.filter(|off| off.steps > off.bound) {
+            self.fail(&format!("{steps:.3} steps off its line after a pulse {pulse}, the bound is {bound:.3} steps"));
+        }
         let shortest = self.watch.shortest();
         let measured = [shortest.high, shortest.low, shortest.setup, shortest.hold];
         self.judge_pins(measured);
@@ -272,6 +292,7 @@ impl<'a> AxisCheck<'a> {
             error_rms_ns: errors.rms().map(|rms| rms / NS),
             error_std_ns: errors.deviation().map(|std| std / NS),
             error_std_theory_ns: phase / 12_f64.sqrt() / NS,
+            error_fit_ns: fit / NS,
             error_bound_ns: bound / NS,
             high_min_ns,
             high_required_ns,
@@ -285,6 +306,8 @@ impl<'a> AxisCheck<'a> {
             period_jitter_theory_ns: (phase + 2.0 * self.curvature_ps) / NS,
             speed_ripple_max_percent: self.ripple.map(|ripple| 100.0 * ripple),
             speed_ripple_theory_percent: 100.0 * phase / self.shortest_ideal_ps,
+            line_off_max_steps: line.map(|off| off.steps),
+            line_off_bound_steps: line.map(|off| off.bound),
             failures: self.failures,
             failures_omitted: self.omitted,
         }

@@ -8,7 +8,9 @@
 use crate::axis_check::{AxisCheck, AxisSetup};
 use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
+use crate::line_check::LinesCheck;
 use crate::report::{OriginKind, Report};
+use carrystep_profile::Line;
 use carrystep_spec::{StartPhase, Timebase};
 use std::fmt;
 
@@ -39,6 +41,8 @@ pub struct Setup<'a> {
     pub phase: StartPhase,
     /// The axes, in the order of their numbers.
     pub axes: Vec<AxisSetup<'a>>,
+    /// The moves in which the axes keep to a straight line.
+    pub lines: Vec<Line>,
     /// Where times are counted from.
     pub origin: Origin,
     /// Uncertainty of the capture's times in ps (a logic analyser's sample period); 0 for a simulator.
@@ -48,6 +52,7 @@ pub struct Setup<'a> {
 /// Checks a capture as it streams by.
 pub struct Checker<'a> {
     axes: Vec<AxisCheck<'a>>,
+    lines: LinesCheck,
     origin: Origin,
     /// The origin that errors are counted from meanwhile; a foreign capture's comes with its first pulse.
     base_ps: Option<i64>,
@@ -64,14 +69,15 @@ impl fmt::Debug for Checker<'_> {
 impl<'a> Checker<'a> {
     /// A checker that has seen nothing yet.
     pub fn new(setup: Setup<'a>) -> Self {
-        let Setup { timebase, phase, axes, origin, slack_ps } = setup;
+        let Setup { timebase, phase, axes, lines, origin, slack_ps } = setup;
+        let lines = LinesCheck::new(lines, phase, axes.len());
         let axes = axes.into_iter().map(|axis| AxisCheck::new(axis, phase, timebase, slack_ps)).collect();
         let base_ps = match origin {
             Origin::Known { ps } | Origin::Fixed { ps } => Some(ps),
             Origin::Midpoint => None,
         };
         let phase_ns = crate::ideal::phase_ps(&timebase) / crate::ideal::NS;
-        Self { axes, origin, base_ps, slack_ps, phase_ns }
+        Self { axes, lines, origin, base_ps, slack_ps, phase_ns }
     }
 
     /// The verdict: the capture is over.
@@ -83,7 +89,9 @@ impl<'a> Checker<'a> {
             Origin::Fixed { .. } => OriginKind::Fixed,
         };
         let shift = if kind == OriginKind::Midpoint { midpoint(&self.axes) } else { 0 };
-        let axes: Vec<_> = self.axes.into_iter().map(|axis| axis.finish(base, shift)).collect();
+        let late = self.axes.iter().map(AxisCheck::bound_ps).fold(0.0, f64::max) / crate::ideal::PS;
+        let axes = self.axes.into_iter().enumerate();
+        let axes: Vec<_> = axes.map(|(i, axis)| axis.finish(base, shift, self.lines.off(i, late))).collect();
         Report {
             passed: axes.iter().all(|axis| axis.passed),
             origin: kind,
@@ -115,7 +123,9 @@ impl PinSink for Checker<'_> {
             if self.base_ps.is_none() && change.pin == crate::edge::Pin::Step && change.level {
                 self.base_ps = axis.origin_for(change.ps);
             }
-            axis.change(change, self.base_ps.unwrap_or(0), self.origin != Origin::Midpoint);
+            if axis.change(change, self.base_ps.unwrap_or(0), self.origin != Origin::Midpoint) {
+                self.lines.pulse(usize::from(change.axis));
+            }
         }
         Ok(())
     }

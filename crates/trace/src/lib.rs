@@ -11,6 +11,7 @@ mod error;
 mod follow;
 mod gtkw;
 mod ideal;
+mod line_check;
 mod pins;
 mod plot;
 mod report;

@@ -59,7 +59,9 @@ pub struct AxisReport {
     pub error_std_ns: Option<f64>,
     /// What rounding down to the phase grid alone gives: h/Q / sqrt(12).
     pub error_std_theory_ns: f64,
-    /// h/Q + h^2 max(|a| / (8 v)) + 2 ns + slack: |e| must not exceed it.
+    /// The part of the bound that a fit may take: the greatest tolerance of the axis' moves.
+    pub error_fit_ns: f64,
+    /// h/Q + h^2 max(|a| / (8 v)) + fit + 2 ns + slack: |e| must not exceed it.
     pub error_bound_ns: f64,
     /// Shortest STEP high.
     pub high_min_ns: Option<f64>,
@@ -85,6 +87,10 @@ pub struct AxisReport {
     pub speed_ripple_max_percent: Option<f64>,
     /// One phase in the shortest period of the profile, percent.
     pub speed_ripple_theory_percent: f64,
+    /// Where a move is to be straight: how far the axis has been off the line, at its worst.
+    pub line_off_max_steps: Option<f64>,
+    /// Half a step, and what the axis travels in the time by which edges may be late: it must not be off further.
+    pub line_off_bound_steps: Option<f64>,
     /// What is wrong, in sentences.
     pub failures: Vec<String>,
     /// Failures beyond those that are spelled out.
@@ -173,6 +179,15 @@ impl fmt::Display for Report {
         }
         if self.slack_ns > 0.0 {
             writeln!(f, "the capture is good to {} ns: every bound is wider by that", self.slack_ns)?;
+        }
+        let fit = self.axes.iter().map(|axis| axis.error_fit_ns).fold(0.0, f64::max);
+        if fit > 0.0 {
+            writeln!(f, "curves are fitted: up to {fit} ns of a bound are for that")?;
+        }
+        for axis in &self.axes {
+            if let (Some(off), Some(bound)) = (axis.line_off_max_steps, axis.line_off_bound_steps) {
+                writeln!(f, "straight: axis {} up to {off:.3} steps off the line, bound {bound:.3}", axis.axis)?;
+            }
         }
         for axis in &self.axes {
             for failure in &axis.failures {

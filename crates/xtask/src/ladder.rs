@@ -1,7 +1,7 @@
 //! The ladder: tools, arrows, lints, then every rung as a test of its own.
 
 use crate::shell::{self, Done};
-use crate::{arrows, readme, tools};
+use crate::{accuracy, arrows, readme, tools};
 
 /// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an error.
 pub fn climb() -> Done {
@@ -10,6 +10,7 @@ pub fn climb() -> Done {
     lint()?;
     shell::run("cargo", &["test", "--release", "--workspace"])?;
     readme::check()?;
+    accuracy::check()?;
     shell::say("the whole ladder holds");
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! What a person does twice, one command each. CI calls nothing else.
 
+mod accuracy;
 mod arrows;
 mod ladder;
 mod readme;
@@ -37,6 +38,8 @@ enum Chore {
     Generate,
     /// Write the README's table and pictures anew from the demo (the waveform needs gtkwave and xvfb).
     Readme,
+    /// Write the table of `docs/accuracy.md` anew from the checker's figures.
+    Accuracy,
 }
 
 /// Times everything; what is printed is the bench's own.
@@ -55,6 +58,7 @@ fn main() -> ExitCode {
         Chore::Bench { json } => bench(json),
         Chore::Generate => readme::generate(),
         Chore::Readme => readme::write(),
+        Chore::Accuracy => accuracy::write(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

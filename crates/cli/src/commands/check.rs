@@ -20,7 +20,7 @@ struct Checked<'a> {
 
 /// Checks a capture.
 pub fn run(arguments: &Check) -> Result<(), Failure> {
-    let file = MoveFile::load(&arguments.file)?;
+    let file = job::load(&arguments.file, arguments.fit_ns)?;
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
     let timelines = plan.timelines();
     let report = read(arguments, &file, &plan, &timelines)?;

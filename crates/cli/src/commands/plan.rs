@@ -2,6 +2,7 @@
 
 use crate::arguments::Plan as Arguments;
 use crate::failure::{Failure, refused};
+use crate::job;
 use crate::output;
 use crate::table::{self, Limits};
 use carrystep_plan::{Plan, PlannedMove, plan};
@@ -49,7 +50,7 @@ struct SegmentJson {
 
 /// Plans a move file and shows the plan.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let file = MoveFile::load(&arguments.file)?;
+    let file = job::load(&arguments.file, arguments.fit_ns)?;
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
     if arguments.json {
         return output::print_json(&json(&file, &plan));

@@ -5,11 +5,10 @@ use crate::failure::{Failure, refused};
 use crate::wanted::Wanted;
 use crate::{job, output};
 use carrystep_plan::plan;
-use carrystep_spec::MoveFile;
 
 /// Plans and simulates a move file.
 pub fn run(arguments: &Simulate) -> Result<(), Failure> {
-    let file = MoveFile::load(&arguments.file)?;
+    let file = job::load(&arguments.file, arguments.fit_ns)?;
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
     let wanted = Wanted {
         vcd: arguments.vcd.clone(),

@@ -24,7 +24,7 @@ impl Machine {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         let timeline = |index: usize| {
             let steps = 1000 / (index as u64 + 1);
-            let leg = |start_tick, backward, profile| Leg { start_tick, backward, steps, profile };
+            let leg = |start_tick, backward, profile| Leg { start_tick, backward, steps, profile, fit_seconds: 0.0 };
             let out = Ramp::triangle(steps as f64, 0.25, 0.0, steps as f64 * 64.0);
             // four times the distance in the time squared is the least; half as much again leaves a cruise
             let acceleration = 6.0 * steps as f64 / 0.0625;
@@ -42,7 +42,7 @@ impl Machine {
     pub fn steady(steps: u64) -> Self {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         let profile = Arc::new(Constant::new(steps as f64, 1.0));
-        let legs = vec![Leg { start_tick: 0, backward: false, steps, profile }];
+        let legs = vec![Leg { start_tick: 0, backward: false, steps, profile, fit_seconds: 0.0 }];
         let timelines = vec![Timeline { tick_seconds: timebase.tick_seconds(), legs }];
         Self { timebase, timelines, total_ticks: 1_000_000 }
     }
@@ -63,7 +63,8 @@ impl Machine {
                 .map(|leg| if leg.backward { -(leg.steps as i64) } else { leg.steps as i64 })
                 .sum(),
         });
-        Setup { timebase: self.timebase, phase: StartPhase::Half, axes: axes.collect(), origin, slack_ps: 0 }
+        let (timebase, phase, lines) = (self.timebase, StartPhase::Half, Vec::new());
+        Setup { timebase, phase, axes: axes.collect(), lines, origin, slack_ps: 0 }
     }
 
     /// The train of an ideal generator, rounding down to its grid: all axes, in time order.

@@ -1,0 +1,262 @@
+//! A smooth curve as few cubics: each segment as long as its edges stay within the tolerance.
+//!
+//! A segment knows exactly where it starts, since P carries on; V, A and J are its own. So the best of a given
+//! length is a linear programme in three unknowns, and its error grows with the fourth power of the length,
+//! which leads to the longest one in two or three tries. Whatever floats have found is rounded to integers, and
+//! only these are judged.
+
+use crate::bend::{Bend, Wanted, jerk_distance};
+use crate::bounds::bounds;
+use crate::check::{speeds, start_speed};
+use crate::corridor::{Corridor, JOINT, Samples, Stretch, basis, peak, steps};
+use crate::exchange::{Row, solve};
+use crate::limits::ExactLimits;
+use carrystep_profile::Real;
+use carrystep_spec::Segment;
+
+/// The part of the tolerance that a segment may use up.
+const FULL: f64 = 0.97;
+
+/// What a next try aims at.
+const AIM: f64 = 0.95;
+
+/// From here on a segment is long enough.
+const ENOUGH: f64 = 0.90;
+
+/// Tries for one segment, as long as one of them has been good.
+const TRIES: usize = 12;
+
+/// How much longer the next try is at least, after one with room to spare.
+const LEAP: f64 = 1.25;
+
+/// The first try for a segment after one that had to be short, ticks.
+const LEAST_GUESS: f64 = 64.0;
+
+/// A next segment shorter than this part of one is better off with half of both.
+const STUB: u64 = 4;
+
+/// One segment of a fit, in the direction of travel.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fitted {
+    pub ticks: u64,
+    pub bend: Bend,
+    /// Distance, 2^-64 step: a V for all ticks makes it, but for the last segment of a move.
+    pub distance: i128,
+}
+
+/// Fits one piece of a curve.
+#[derive(Debug)]
+pub(crate) struct Fitter<'a, F> {
+    pub corridor: Corridor<'a, F>,
+    pub limits: &'a ExactLimits,
+    pub rows: Vec<Row>,
+}
+
+impl<F: Real> Fitter<'_, F> {
+    /// The segments of the piece, for an axis that is at `done` when it begins; `risen` are those of the ramp up.
+    pub fn segments(&mut self, done: i128, risen: &[Fitted]) -> Vec<Fitted> {
+        self.mirrored(done, risen).unwrap_or_else(|| self.greedy(done))
+    }
+
+    /// One segment after the other, each as long as it can be.
+    fn greedy(&mut self, mut done: i128) -> Vec<Fitted> {
+        let ticks = self.corridor.piece.ticks;
+        let mut segments: Vec<Fitted> = Vec::new();
+        let mut guess = ticks as f64;
+        let mut first = 0;
+        while first < ticks {
+            let longest = self.longest(first, done, guess);
+            let fitted = self.without_stub(first, done, longest);
+            let length = fitted.ticks as f64;
+            let trend = segments.last().map_or(1.0, |before| (length / before.ticks as f64).clamp(0.5, 2.0));
+            guess = (length * trend).max(LEAST_GUESS);
+            first += fitted.ticks;
+            done += fitted.distance;
+            segments.push(fitted);
+        }
+        segments
+    }
+
+    /// The ramp up run backward, if that keeps the tolerance: a cubic backward in time is a cubic, tick for tick.
+    fn mirrored(&mut self, mut done: i128, risen: &[Fitted]) -> Option<Vec<Fitted>> {
+        let piece = self.corridor.piece;
+        if risen.iter().map(|fitted| fitted.ticks).sum::<u64>() != piece.ticks {
+            return None;
+        }
+        let end = piece.start + piece.units;
+        let mut first = 0;
+        let mut segments = Vec::with_capacity(risen.len());
+        for (left, &Fitted { ticks, bend: Bend { a, j }, distance }) in (0..risen.len()).rev().zip(risen.iter().rev()) {
+            let ends = left == 0 && piece.first + piece.ticks == self.corridor.clock.ticks;
+            if distance > end - done && !ends {
+                return None;
+            }
+            let bend = Bend { a: -a - (i128::from(ticks) - 2) * j, j };
+            let distance = if ends { end - done } else { distance };
+            let fitted = self.whole(Fitted { ticks, bend, distance }, end - done, ends)?;
+            self.rows.clear();
+            let samples = self.corridor.rows(Stretch { first, ticks, done }, &mut self.rows);
+            if self.judge(&fitted, (self.rows.len(), samples.standing), false)? > 1.0 {
+                return None;
+            }
+            first += ticks;
+            done += fitted.distance;
+            segments.push(fitted);
+        }
+        Some(segments)
+    }
+
+    /// The longest segment that keeps the tolerance, within a few percent.
+    fn longest(&mut self, first: u64, done: i128, guess: f64) -> Fitted {
+        let left = self.corridor.piece.ticks - first;
+        let most = left.min(u32::MAX.into());
+        let (mut good, mut bad): (Option<Fitted>, u64) = (None, most + 1);
+        let mut ticks = (guess as u64).clamp(1, most);
+        for attempt in 0.. {
+            if ticks <= 1 {
+                break;
+            }
+            let trial = self.best(Stretch { first, ticks, done });
+            let level = trial.map_or(f64::INFINITY, |(_, level)| level);
+            match trial.filter(|_| level <= FULL) {
+                Some((fitted, _)) => good = Some(fitted),
+                None => bad = ticks,
+            }
+            let known = good.map_or(0, |fitted| fitted.ticks);
+            let enough = known == most || (known == ticks && level >= ENOUGH);
+            if good.is_some() && (enough || attempt >= TRIES || bad - known <= known / 64 + 1) {
+                break;
+            }
+            // A small error says little: it may be what the segment starts with.
+            let factor = (AIM / level).powf(0.25).clamp(0.25, 4.0);
+            let factor = if level < JOINT { factor.max(LEAP) } else { factor };
+            let next = (ticks as f64 * factor) as u64;
+            ticks = match next {
+                _ if next > known && next < bad => next,
+                _ if next >= bad && bad > most => most,
+                _ => known.midpoint(bad),
+            };
+        }
+        good.unwrap_or_else(|| self.straight(first, done))
+    }
+
+    /// Where only a stub of the piece would be left, half of what is left: the stub alone could hardly make good what
+    /// the longest segment is off.
+    fn without_stub(&mut self, first: u64, done: i128, longest: Fitted) -> Fitted {
+        let left = self.corridor.piece.ticks - first;
+        let stub = left - longest.ticks;
+        if stub == 0 || stub >= longest.ticks / STUB {
+            return longest;
+        }
+        let half = self.best(Stretch { first, ticks: left / 2, done });
+        half.filter(|&(_, level)| level <= FULL).map_or(longest, |(fitted, _)| fitted)
+    }
+
+    /// The best cubic of a stretch, and the part of the tolerance that its integers use.
+    ///
+    /// At the end of its piece it makes good what the segments before it are off, unless that would pass a limit;
+    /// then the next piece does, as long as there is one.
+    fn best(&mut self, stretch: Stretch) -> Option<(Fitted, f64)> {
+        let piece = self.corridor.piece;
+        if stretch.first + stretch.ticks < piece.ticks {
+            return self.cubic(stretch, false);
+        }
+        let closed = self.cubic(stretch, true);
+        if closed.is_some_and(|(_, level)| level <= FULL) || piece.first + piece.ticks == self.corridor.clock.ticks {
+            return closed;
+        }
+        self.cubic(stretch, false)
+    }
+
+    /// The best cubic of a stretch, `closed` if it has to come out exactly where the piece ends.
+    fn cubic(&mut self, stretch: Stretch, closed: bool) -> Option<(Fitted, f64)> {
+        let Stretch { first, ticks, done } = stretch;
+        let piece = self.corridor.piece;
+        let n = ticks as f64;
+        self.rows.clear();
+        let Samples { start, standing } = self.corridor.rows(stretch, &mut self.rows);
+        let samples = self.rows.len();
+        let rest = piece.start + piece.units - done;
+        let scale = self.rows.iter().map(|row| row.at[0].abs()).fold(f64::MIN_POSITIVE, f64::max);
+        let whole = piece.first + piece.ticks == self.corridor.clock.ticks;
+        let (opens, ends) = (piece.first + first == 0, closed && whole);
+        if closed {
+            // Exactly to the end: the integers will see to it, so this need not be more than near.
+            let at = basis(n, n).map(|b| b * scale * 100.0);
+            let most = steps(rest) * scale * 100.0;
+            self.rows.push(Row { at, error: 1.0, most });
+            self.rows.push(Row { at: at.map(|b| -b), error: 1.0, most: -most });
+        } else {
+            // No further than the piece: nothing could come back.
+            self.rows.push(Row { at: basis(n, n).map(|b| b * scale), error: 0.0, most: steps(rest) * scale });
+        }
+        bounds(&mut self.rows, n, self.limits, [opens, ends], scale);
+        let [v, a, j] = solve(&self.rows, start)?.coefficients;
+        let [by_v, by_a, by_j] = basis(n, n);
+        let units = |x: f64| (x * 2_f64.powi(64)) as i128;
+        let distance = if closed { rest } else { units(by_v * v + by_a * a + by_j * j).min(rest) };
+        // Rounded, a cubic may dip below zero between its ends; one whose A keeps its sign cannot.
+        [false, true].into_iter().find_map(|one_way| {
+            let wanted = Wanted {
+                ticks: ticks.into(),
+                distance,
+                doubled_middle: units((a + a + j * (1.0 - 2.0 / n)) / (n * n)),
+                jerk: units(j / (n * n * n)),
+                one_way,
+                least: i128::from(opens && self.corridor.steps_at_once()),
+                first: opens,
+            };
+            let fitted = self.whole(Fitted { ticks, bend: wanted.within(self.limits), distance }, rest, ends)?;
+            let level = self.judge(&fitted, (samples, standing), opens)?;
+            Some((fitted, level))
+        })
+    }
+
+    /// The distance that a whole V makes; that of the last segment of a move stays, and is shared out in the end.
+    fn whole(&self, fitted: Fitted, rest: i128, ends: bool) -> Option<Fitted> {
+        let Fitted { ticks, bend: Bend { a, j }, distance } = fitted;
+        let n = i128::from(ticks);
+        let bent = n * (n - 1) / 2 * a + jerk_distance(n, j)?;
+        let level = distance - bent;
+        // P is never behind its ideal, whichever way it goes.
+        let (down, up) = (level.div_euclid(n), -(-level).div_euclid(n));
+        let v = if self.corridor.backward || n * up + bent > rest { down } else { up };
+        Some(if ends { fitted } else { Fitted { distance: n * v + bent, ..fitted } })
+    }
+
+    /// The level that the integers reach; `None` if they break a limit, the start speed where they open a move.
+    fn judge(&self, fitted: &Fitted, (samples, standing): (usize, usize), opens: bool) -> Option<f64> {
+        let &Fitted { ticks, bend: Bend { a, j }, distance } = fitted;
+        let n = i128::from(ticks);
+        let level = distance - n * (n - 1) / 2 * a - jerk_distance(n, j)?;
+        let register = |x: i128| i64::try_from(x).ok();
+        let (v, a64, j64) = (register(level.div_euclid(n))?, register(a)?, register(j)?);
+        let segment = Segment { ticks: u32::try_from(ticks).ok()?, v, a: a64, j: j64, last: false };
+        let fastest = self.limits.fastest();
+        if !speeds(&segment).all(|v| (0..=fastest).contains(&v)) {
+            return None;
+        }
+        if opens && self.corridor.steps_at_once() && v == 0 {
+            return None;
+        }
+        if opens && start_speed(&segment, false, self.limits) > self.limits.start_speed + self.limits.tolerance {
+            return None;
+        }
+        let length = ticks as f64;
+        let found = [steps(level), steps(a) * length * length, steps(j) * length * length * length];
+        let error = |row: &Row| row.at[0] * found[0] + row.at[1] * found[1] + row.at[2] * found[2] - row.most;
+        let side = |side| peak(self.rows[side..standing.max(side)].iter().step_by(2).map(error));
+        let rest = self.rows[standing..samples].iter().map(error).fold(0.0, f64::max);
+        Some(rest.max(side(0)).max(side(1)))
+    }
+
+    /// One tick, back to the profile as far as the speed limit allows.
+    fn straight(&self, first: u64, done: i128) -> Fitted {
+        let piece = self.corridor.piece;
+        let ends = first + 1 == piece.ticks && piece.first + piece.ticks == self.corridor.clock.ticks;
+        let rest = piece.start + piece.units - done;
+        let ideal = (self.corridor.ahead(done, (first + 1) as f64) * 2_f64.powi(64)) as i128;
+        let distance = if ends { rest } else { ideal.min(rest).clamp(0, self.limits.speed) };
+        Fitted { ticks: 1, bend: Bend::default(), distance }
+    }
+}

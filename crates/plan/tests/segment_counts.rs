@@ -1,0 +1,63 @@
+//! How few segments a fit takes, on the reference move: 20 000 steps from and to rest, at most 500 000 steps/s^2.
+
+#![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+use carrystep_plan::{PlannedAxis, plan};
+use carrystep_spec::{MoveFile, Source};
+
+/// The move at a tolerance; only the seven segments have a jerk limit, which the reference's sine would pass.
+fn reference(profile: &str, fit_ns: u32) -> PlannedAxis {
+    let jerk = if profile == "scurve" { "jerk_limit = 50_000_000\n" } else { "" };
+    let text = format!(
+        "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nspeed_limit = 150_000\n\
+         accel_limit = 500_000\n{jerk}step_ns = 100\ngap_ns = 100\nsetup_ns = 100\nhold_ns = 100\n\
+         [[move]]\nprofile = \"{profile}\"\nfit_ns = {fit_ns}\nto = {{ x = 20_000 }}\n"
+    );
+    let file = MoveFile::from_source(Source { path: "reference.toml".into(), text: text.into() }).expect("a move file");
+    plan::<f64>(&file).expect("a plan").moves.remove(0).axes.remove(0)
+}
+
+/// Segments of the ramp up, of the cruise, and of the ramp down with its landing.
+fn counts(axis: &PlannedAxis) -> [usize; 3] {
+    let ends: Vec<u64> = axis.profile.breakpoints().iter().map(|t| (t * 1e6).round() as u64).collect();
+    let mut counts = [0; 3];
+    let mut tick = 0;
+    for segment in &axis.segments {
+        counts[ends.iter().filter(|&&end| end <= tick).count()] += 1;
+        tick += u64::from(segment.ticks);
+    }
+    counts
+}
+
+fn assert_at_most(profile: &str, fit_ns: u32, most: usize) {
+    let [up, cruise, down] = counts(&reference(profile, fit_ns));
+    assert!(up <= most && down <= most && cruise == 1, "{profile} at {fit_ns} ns: {up} + {cruise} + {down}");
+}
+
+#[test]
+fn the_reference_ramps_are_those_of_the_literature() {
+    // Whole ticks, and a cruise of less than a millisecond: ramps are up to 0.2 % shorter.
+    for (profile, ramp, within) in [("logistic", 0.325_371, 1e-4), ("sine", 0.282_843, 5e-4)] {
+        let axis = reference(profile, 1000);
+        assert!((axis.profile.breakpoints()[0] - ramp).abs() < within, "{profile}: {:?}", axis.profile);
+    }
+}
+
+#[test]
+fn a_microsecond_takes_13_segments_a_ramp_for_logistic_and_11_for_sine() {
+    assert_at_most("logistic", 1000, 13);
+    assert_at_most("sine", 1000, 11);
+}
+
+#[test]
+fn fifty_nanoseconds_take_27_and_22() {
+    assert_at_most("logistic", 50, 27);
+    assert_at_most("sine", 50, 22);
+}
+
+#[test]
+fn exact_profiles_do_not_look_at_the_tolerance() {
+    for profile in ["trapezoid", "scurve"] {
+        assert_eq!(reference(profile, 1).segments, reference(profile, 100_000).segments);
+    }
+}
