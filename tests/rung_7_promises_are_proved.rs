@@ -40,7 +40,10 @@ fn ask_all(jobs: &[Job<'_>]) -> String {
         for _ in 0..workers {
             scope.spawn(|| {
                 while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    if let Err(error) = ask(&job.proof.promises, &job.case, job.question) {
+                    let t0 = std::time::Instant::now();
+                    let r = ask(&job.proof.promises, &job.case, job.question);
+                    eprintln!("{:6.1} {}", t0.elapsed().as_secs_f32(), job.name);
+                    if let Err(error) = r {
                         let mut failures = failures.lock().expect("no worker panics");
                         writeln!(failures, "{}: {error}", job.name).expect("a string takes it");
                     }
