@@ -13,7 +13,7 @@ const BUGS: &[Bug] = &[
     },
     Bug { breaks: "promise_6_taken_by_its_axis", text: "(push & selected[5])", becomes: "(push & selected[4])" },
     Bug { breaks: "promise_6_broken_is_told", text: "(taken & !push) | ", becomes: "" },
-    Bug { breaks: "promise_6_start_on_one_tick", text: "(!mask[2] | axis_2_startable)", becomes: "1'b1" },
+    Bug { breaks: "promise_6_start_ready", text: "!(frozen | armed)", becomes: "!frozen" },
     Bug { breaks: "promise_6_no_start_is_missed", text: "armed & tick_strobe & ", becomes: "armed & " },
     Bug { breaks: "promise_8_idle", text: "at_rest = !armed;", becomes: "at_rest = 1'b1;" },
     Bug { breaks: "promise_12_go_is_the_start", text: ".go(go & mask[1])", becomes: ".go(go)" },
