@@ -137,15 +137,15 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
 
 /// Every label of the file is in the transition system.
 fn nothing_lost(promises: &Promises, question: Question, system: &str) -> Result<(), ProofError> {
-    let there = |kind: &str, label: &str| {
-        system.lines().any(|line| line.starts_with(&format!("; yosys-smt2-{kind} ")) && line.ends_with(label))
+    let there = |label: &str| {
+        system.lines().any(|line| line.starts_with("; yosys-smt2-assert ") && line.ends_with(&format!(" {label}")))
     };
     let wanted = match question {
         Question::Covers(_) => return Ok(()),
         Question::Fails(label, _) => vec![label],
         _ => promises.labels(),
     };
-    match wanted.into_iter().find(|label| !there("assert", label)) {
+    match wanted.into_iter().find(|label| !there(label)) {
         Some(label) => Err(ProofError::Lost(label)),
         None => Ok(()),
     }
