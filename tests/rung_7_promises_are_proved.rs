@@ -1,6 +1,7 @@
 //! Rung 7: the promises of docs/promises.md hold in the exported Verilog, for any inputs, for ever; what
 //! they speak of happens; and each notices the bug that is planted for it.
 
+use carrystep_tests::moves;
 use carrystep_tests::proofs::{self, Proof, Question, ask};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -59,6 +60,21 @@ fn every_promise_is_proved_and_every_planted_bug_is_caught() {
     let failures = ask_all(&jobs);
     assert!(failures.is_empty(), "{failures}");
     println!("\n{}\nproved: {} questions to the solver, all answered as they must be", proofs::table(), jobs.len());
+}
+
+/// The page's column "proved in" is what is proved, no more and no less.
+#[test]
+fn the_page_says_what_is_proved() {
+    let page = std::fs::read_to_string(moves::root().join("docs/promises.md")).expect("the page");
+    let proofs = proofs::all();
+    for promise in 1..=14 {
+        let row = page.lines().find(|line| line.starts_with(&format!("| {promise} |"))).expect("a row a promise");
+        let told: BTreeSet<&str> =
+            row.split('|').nth(3).into_iter().flat_map(|cell| cell.split('`')).map(str::trim).collect();
+        let told: BTreeSet<&str> = told.into_iter().filter(|module| !module.is_empty()).collect();
+        let proved = proofs.iter().filter(|proof| proof.promises.numbers().contains(&promise));
+        assert_eq!(told, proved.map(|proof| proof.module).collect(), "promise {promise}");
+    }
 }
 
 /// A promise that no bug can break would be no promise.

@@ -1,7 +1,8 @@
 //! The axis' proof, sequencer and edge inside it.
 
-use super::builds::shipped;
+use super::builds::{shipped, small_from};
 use super::{Bug, Case, Promises, Proof};
+use carrystep_spec::{Build, StartPhase};
 
 const BUGS: &[Bug] = &[
     Bug { breaks: "promise_5_frozen_adds_nothing", text: "tick = strobe & !frozen;", becomes: "tick = strobe;" },
@@ -21,16 +22,17 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof() -> Proof {
-    let case = Case {
-        name: "half a step".into(),
+    let builds = [shipped(), small_from(16, StartPhase::Zero)];
+    let case = |(build, verilog): (Build, _)| Case {
+        name: format!("{:?}", build.phase),
         dut: "carrystep_axis".into(),
-        verilog: shipped().1,
-        numbers: vec![("START", "64'h8000000000000000".into())],
+        verilog,
+        numbers: vec![("START", format!("64'h{:x}", build.phase.start_value()))],
     };
     Proof {
         module: "axis",
         promises: Promises { text: include_str!("../../crates/hdl/src/axis/promises.sv") },
-        cases: vec![case],
+        cases: builds.into_iter().map(case).collect(),
         depth: 1,
         reach: 10,
         bugs: BUGS,

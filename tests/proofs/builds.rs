@@ -14,6 +14,11 @@ pub fn shipped() -> (Build, Arc<str>) {
 
 /// The fewest clocks in a tick, and pins in which every timer is at times the one that forbids.
 pub fn small(phases: u32) -> (Build, Arc<str>) {
+    small_from(phases, StartPhase::Half)
+}
+
+/// The same, with P that starts elsewhere.
+pub fn small_from(phases: u32, start: StartPhase) -> (Build, Arc<str>) {
     let pins = |width, gap, setup, hold| PinTiming { width, gap, setup, hold };
     let pins: [PinTiming; AXES] = [
         pins(2, 3, 4, 3),
@@ -23,7 +28,7 @@ pub fn small(phases: u32) -> (Build, Arc<str>) {
         pins(19, 1, 1, 2),
         pins(MAX_CLOCKS, MAX_CLOCKS, MAX_CLOCKS, MAX_CLOCKS),
     ];
-    let build = Build { pins, ..lockstep::quick_build(phases, StartPhase::Half) };
+    let build = Build { pins, ..lockstep::quick_build(phases, start) };
     let text = carrystep_export::six_axis_verilog(&build, "a proof").expect("the core").into();
     (build, text)
 }

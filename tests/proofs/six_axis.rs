@@ -4,7 +4,7 @@ use super::builds::{beat_name, shipped, small};
 use super::{Bug, Case, Promises, Proof};
 
 const BUGS: &[Bug] = &[
-    Bug { breaks: "promise_5_no_new_edge", text: "frozen = broken;", becomes: "frozen = 1'b0;" },
+    Bug { breaks: "promise_12_any_fault_stops_all", text: "frozen = broken;", becomes: "frozen = 1'b0;" },
     Bug { breaks: "promise_5_stays_frozen", text: "if (clear_now) begin", becomes: "if (frozen) begin" },
     Bug {
         breaks: "promise_6_ready",
@@ -13,11 +13,9 @@ const BUGS: &[Bug] = &[
     },
     Bug { breaks: "promise_6_taken_by_its_axis", text: "(push & selected[5])", becomes: "(push & selected[4])" },
     Bug { breaks: "promise_6_broken_is_told", text: "(taken & !push) | ", becomes: "" },
-    Bug { breaks: "promise_6_start_on_one_tick", text: "(!mask[2] | axis_2_startable)", becomes: "1'b1" },
+    Bug { breaks: "promise_6_start_ready", text: "!(frozen | armed)", becomes: "!frozen" },
     Bug { breaks: "promise_6_no_start_is_missed", text: "armed & tick_strobe & ", becomes: "armed & " },
-    Bug { breaks: "promise_8_idle", text: "!(shaper_1_owed | shaper_1_step)", becomes: "!shaper_1_owed" },
-    Bug { breaks: "promise_12_any_fault_stops_all", text: " | axis_5_overspeed", becomes: "" },
-    Bug { breaks: "promise_12_cleared_at_rest", text: "clear & frozen & !in_flight", becomes: "clear & frozen" },
+    Bug { breaks: "promise_8_idle", text: "at_rest = !armed;", becomes: "at_rest = 1'b1;" },
     Bug { breaks: "promise_12_go_is_the_start", text: ".go(go & mask[1])", becomes: ".go(go)" },
     Bug { breaks: "promise_13_inactive", text: "broken = 1'b0;", becomes: "broken = 1'b1;" },
 ];

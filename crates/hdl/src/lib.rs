@@ -3,6 +3,8 @@
 //! Read [`axis`] first: the accumulator whose every carry is a step. [`shaper`] keeps the pins' promises,
 //! [`tick`] gives the beat, [`six_axis`] puts them together, [`sim`] runs them.
 //!
+//! What a module promises, and why it holds, is `promises.sv` in its folder: `cargo xtask prove` asks a solver.
+//!
 //! A module's `Default` is its skeleton, all parameters zero: build modules with `new`.
 
 pub mod axis;

@@ -22,7 +22,9 @@ struct Arguments {
 enum Chore {
     /// Install what is missing, then pass every test: the whole ladder. This is what CI runs.
     Test,
-    /// Install the simulators and yosys that the tests need, by apt.
+    /// Prove the promises on the exported Verilog, and print what is proved and how.
+    Prove,
+    /// Install the simulators, yosys and z3 that the tests need, by apt.
     Tools,
     /// Check that the arrows between the crates go one way.
     Arrows,
@@ -52,6 +54,7 @@ fn bench(json: bool) -> shell::Done {
 fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
         Chore::Test => ladder::climb(),
+        Chore::Prove => ladder::prove(),
         Chore::Tools => tools::install(),
         Chore::Arrows => arrows::check(),
         Chore::Lint => ladder::lint(),

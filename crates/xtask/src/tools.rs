@@ -3,13 +3,15 @@
 use crate::shell::{self, Done};
 
 /// Program, and the Debian package that brings it.
-const NEEDED: [(&str, &str); 6] = [
+const NEEDED: [(&str, &str); 8] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
     ("g++", "g++"),
     ("make", "make"),
     ("yosys", "yosys"),
+    ("yosys-smtbmc", "yosys"),
+    ("z3", "z3"),
 ];
 
 /// Installs what is missing, or says exactly what to install.

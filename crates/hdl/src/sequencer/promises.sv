@@ -1,8 +1,8 @@
-// The sequencer: no segment is lost, doubled, shortened or late; its share of promises 5, 6 and 8. Without bound.
+// The sequencer: no segment is lost, doubled, shortened or late: promise 6 before the accumulator. Without bound.
 //
 //   from outside   `DUT, the exported sequencer
-//   assumed        what six_axis/promises.sv proves: a segment has ticks and is pushed only where none waits;
-//                  frozen: no strobe, no push; only who is frozen is cleared; go only at a strobe
+//   assumed        what six_axis/promises.sv proves: a segment has ticks and is pushed only where none waits, not
+//                  by a frozen core, and only who is frozen is cleared; and axis/promises.sv: frozen, no strobe
 //
 // A segment is followed from push to load by its own copy, and counted out tick by tick.
 

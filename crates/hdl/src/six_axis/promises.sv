@@ -99,7 +99,8 @@ module promises (
 
         promise_12_any_fault_stops_all: assert (fault == (protocol || {overrun, overspeed, underrun} != 0));
         promise_12_all_at_once: assert (axis_frozen == {6{fault}} && shaper_frozen == {6{fault}});
-        promise_12_one_beat: assert (strobes == {6{strobe}} && phase_starts == {6{phase_start}} && phases == {6{phase}});
+        promise_12_one_beat: assert (strobes == {6{strobe}} && phase_starts == {6{phase_start}}
+            && phases == {6{phase}});
         promise_12_one_clear: assert (axis_clear == shaper_clear && (axis_clear == 0 || axis_clear == 6'h3f));
         promise_12_cleared_at_rest: assert (axis_clear == 0 || clear && fault && in_flight == 0 && step == 0);
         promise_12_go_is_the_start: assert (go == (started ? mask : 0));
