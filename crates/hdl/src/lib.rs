@@ -8,6 +8,8 @@
 pub mod axis;
 pub mod constant;
 pub mod edge;
+pub mod engine;
+pub mod memory;
 pub mod register;
 pub mod sequencer;
 pub mod shaper;
@@ -17,10 +19,12 @@ pub mod tick;
 pub mod word;
 
 pub use axis::Axis;
-pub use sim::{AxisSim, SixAxisSim};
+pub use engine::Engine;
+pub use sim::{AxisSim, EngineSim, SixAxisSim};
 pub use six_axis::SixAxis;
 
 use carrystep_spec::build::MAX_CLOCKS;
+use carrystep_spec::engine::ScheduleError;
 use thiserror::Error;
 
 /// Why there is no gateware for a build.
@@ -37,6 +41,9 @@ pub enum HdlError {
     /// Q is not 1, 4 or 16.
     #[error("{0} phases: a tick has 1, 4 or 16 phases")]
     Phases(u32),
+    /// The engine has more to do in a tick than the tick has clocks.
+    #[error(transparent)]
+    Schedule(#[from] ScheduleError),
     /// Rust-HDL's own check of a module failed.
     #[error("Rust-HDL refuses the module: {0}")]
     Check(String),

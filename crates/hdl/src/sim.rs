@@ -8,8 +8,10 @@
 
 use crate::HdlError;
 use crate::axis::Axis;
+use crate::engine::Engine;
 use crate::six_axis::SixAxis;
 use crate::word::Word;
+use carrystep_spec::engine::{EngineInputs, EngineOutputs, Put};
 use carrystep_spec::ports::{Inputs, Outputs};
 use carrystep_spec::{AXES, Build, Faults, Segment, StartPhase};
 use rust_hdl::prelude::{Bit, Block, Out, Signal, check_all, simulate};
@@ -97,6 +99,77 @@ impl SixAxisSim {
                 overrun: mask(&core.overrun),
                 overspeed: mask(&core.overspeed),
                 underrun: mask(&core.underrun),
+                protocol: core.protocol.val(),
+            },
+            started: core.started.val(),
+        }
+    }
+}
+
+/// The engine under simulation.
+pub struct EngineSim {
+    core: Box<Engine>,
+}
+
+impl EngineSim {
+    /// The engine of this build in cycle 0.
+    ///
+    /// # Errors
+    /// [`HdlError`] where the build cannot be made.
+    pub fn new(build: &Build) -> Result<Self, HdlError> {
+        Ok(Self { core: connected(Engine::new(build)?)? })
+    }
+
+    /// The outputs of the present cycle with these inputs; what is not offered is driven as zero.
+    pub fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs {
+        let core = &mut self.core;
+        core.clock.next = false.into();
+        let put = inputs.put.unwrap_or(Put { axis: 0, word: 0, data: 0 });
+        core.put_valid.next = inputs.put.is_some();
+        core.put_axis.next = Word::from(u64::from(put.axis));
+        core.put_word.next = Word::from(u64::from(put.word));
+        core.put_data.next = Word::from(u64::from(put.data));
+        core.start_valid.next = inputs.start.is_some();
+        core.start_mask.next = Word::from(u64::from(inputs.start.unwrap_or(0)));
+        core.clear.next = inputs.clear;
+        settle(core.as_mut());
+        self.outputs()
+    }
+
+    /// Goes to the next cycle, with the inputs as last settled.
+    pub fn clock(&mut self) {
+        self.core.clock.next = true.into();
+        rising_edge(self.core.as_mut());
+    }
+
+    /// What the `get` port says of an axis in the present cycle, if it speaks; `item` as in [`Engine::get_item`].
+    pub fn get(&mut self, axis: usize, item: usize) -> Option<u32> {
+        self.core.get_axis.next = Word::from(axis as u64);
+        self.core.get_item.next = Word::from(item as u64);
+        self.core.get_valid.val().then(|| self.core.get_data.val().value() as u32)
+    }
+
+    /// What the memory keeps of an axis; `item` as in [`Engine::get_item`].
+    pub fn kept(&self, axis: usize, item: usize) -> u32 {
+        self.core.store.segments.word(axis << 6 | item << 3 | 7).value() as u32
+    }
+
+    fn outputs(&self) -> EngineOutputs {
+        let core = &self.core;
+        let halted = core.halted.val();
+        let told = |mask: Word<AXES>| if halted { mask.value() as u8 } else { 0 };
+        EngineOutputs {
+            put_ready: core.put_ready.val(),
+            start_ready: core.start_ready.val(),
+            step: mask(&core.step),
+            dir: mask(&core.dir),
+            idle: core.idle.val(),
+            fault: core.fault.val(),
+            halted,
+            faults: Faults {
+                overrun: mask(&core.overrun),
+                overspeed: told(core.overspeed.val()),
+                underrun: told(core.underrun.val()),
                 protocol: core.protocol.val(),
             },
             started: core.started.val(),

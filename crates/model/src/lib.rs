@@ -6,8 +6,10 @@
 //! whole idea.
 
 pub mod axis;
+pub mod engine;
 pub mod phase;
 pub mod shaper;
 pub mod six_axis;
 
+pub use engine::Engine;
 pub use six_axis::SixAxis;

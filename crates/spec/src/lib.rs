@@ -6,6 +6,7 @@
 pub mod build;
 pub mod decimal;
 pub mod driver;
+pub mod engine;
 pub mod error;
 pub mod fault;
 pub mod fixed;
