@@ -6,9 +6,9 @@
 //! read_data     ========<  a's  >===      the cycle after
 //! ```
 //!
-//! A word that is read in the cycle in which it is written has no defined value: real block RAMs differ
-//! there, and a design that needs neither the old nor the new one costs no bypass. In simulation it is the
-//! old value.
+//! Before the first clock nothing has been read, and a word that is read in the cycle in which it is written has no
+//! defined value: real block RAMs differ there, and a design that needs neither costs no bypass. In simulation
+//! they are zero and the old value.
 
 use crate::register::Input;
 use crate::word::Word;
@@ -73,7 +73,7 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         let range = if W == 1 { String::new() } else { format!("[{top}:0] ") };
         let words = self.words.len();
         let mut text = format!(
-            "(* no_rw_check *) reg {range}words [0:{}];\nreg {range}value = 0;\ninteger i;\n\n\
+            "(* no_rw_check, ram_style = \"block\" *) reg {range}words [0:{}];\nreg {range}value; // a block RAM gives no value before its first clock\ninteger i;\n\n\
              assign read_data = value;\n\ninitial begin\n    for (i = 0; i < {words}; i = i + 1) words[i] = 0;\n",
             words - 1
         );

@@ -33,7 +33,7 @@ pub struct Adder {
     pub put: Input<Word<32>>,
     /// The axis runs: beat 6 counts its ticks down.
     pub counts: Input<Bit>,
-    /// Otherwise it counts a discarded step, if this is set.
+    /// Otherwise it counts a discarded step, if this is set; never both.
     pub lost: Input<Bit>,
     /// Beat 7 counts a step forward.
     pub up: Input<Bit>,
@@ -159,7 +159,7 @@ impl Logic for Adder {
         }
 
         // The sum; a carry comes in as 1 + 1 below the lowest bit.
-        self.carry_in.next = (self.beat.val().get_bit(6) & self.lost.val() & !self.counts.val())
+        self.carry_in.next = (self.beat.val().get_bit(6) & self.lost.val())
             | (self.beat.val().get_bit(7) & !self.down.val())
             | ((self.beat.val().get_bit(9) | self.beat.val().get_bit(10) | self.beat.val().get_bit(11))
                 & self.carry_2.q.val())

@@ -34,7 +34,7 @@ pub struct Turn {
     number: Register<Word<3>>,
     lanes: Register<Word<AXES>>,
     begins: Signal<Local, Bit>,
-    number_next: Signal<Local, Word<3>>,
+    axis_to_come: Signal<Local, Word<3>>,
     shifted: Signal<Local, Word<17>>,
     by_one: Literal<1, 1>,
     first_beat: Literal<17, 1>,
@@ -55,13 +55,13 @@ impl Logic for Turn {
             self.beats.d.next = self.shifted.val() | self.first_beat.val();
         }
 
-        self.number_next.next = self.number.q.val();
+        self.axis_to_come.next = self.number.q.val();
         if self.strobe.val() {
-            self.number_next.next = self.first_axis.val();
+            self.axis_to_come.next = self.first_axis.val();
         } else if self.beats.q.val().get_bit(12) {
-            self.number_next.next = self.number.q.val() + self.one_axis.val();
+            self.axis_to_come.next = self.number.q.val() + self.one_axis.val();
         }
-        self.number.d.next = self.number_next.val();
+        self.number.d.next = self.axis_to_come.val();
         if self.strobe.val() {
             self.lanes.d.next = self.first_lane.val();
         } else if self.beats.q.val().get_bit(12) {
@@ -70,7 +70,7 @@ impl Logic for Turn {
 
         self.beat.next = self.beats.q.val();
         self.axis.next = self.number.q.val();
-        self.axis_next.next = self.number_next.val();
+        self.axis_next.next = self.axis_to_come.val();
         self.lane.next = self.lanes.q.val();
     }
 }
