@@ -7,8 +7,9 @@
 //!                    :<-W ->:<- S -->:
 //! ```
 //!
-//! What it does not have are counters of 32 bits: it counts pulses and discarded steps modulo eight, and
-//! the engine carries them on in memory, one a tick.
+//! Two counters run freely: `since` the last rise and `after` the last turn of DIR. Passing a bound only ends
+//! something (the pulse, the gap, the hold, the set-up), so they need not stop, and it is no matter that they wrap.
+//! Pulses and discarded steps are counted modulo eight; the engine carries them on in memory, one a tick.
 
 use crate::HdlError;
 use crate::constant::{Literal, Parameter, used_bits};
@@ -50,12 +51,14 @@ pub struct Pulser {
     step_pin: Register<Bit>,
     dir_pin: Register<Bit>,
     want: Register<Bit>,
-    due: Register<Bit>,      // `owed`
-    due_back: Register<Bit>, // its direction
-    busy: Register<Word<17>>,
-    hold: Register<Word<16>>,
-    setup: Register<Word<16>>,
-    count: Register<Word<3>>, // of `counts`
+    due: Register<Bit>,        // `owed`
+    due_back: Register<Bit>,   // its direction
+    since: Register<Word<17>>, // clocks since STEP rose
+    after: Register<Word<16>>, // clocks since DIR turned
+    busy: Register<Bit>,       // pulse or gap
+    held: Register<Bit>,       // DIR may not turn
+    settled: Register<Bit>,    // DIR stands long enough
+    count: Register<Word<3>>,  // of `counts`
     lost: Register<Word<3>>,
     late: Register<Bit>, // `overrun`
     pending: Signal<Local, Bit>,
@@ -64,19 +67,22 @@ pub struct Pulser {
     aim: Signal<Local, Bit>,
     turn: Signal<Local, Bit>,
     second: Signal<Local, Bit>,
-    lates: Signal<Local, Bit>,
-    gap: Parameter<17>,
-    busy_load: Parameter<17>,
-    busy_bits: Parameter<17>,
-    hold_load: Parameter<16>,
-    hold_bits: Parameter<16>,
-    setup_load: Parameter<16>,
-    setup_bits: Parameter<16>,
-    busy_one: Literal<17, 1>,
-    timer_one: Literal<16, 1>,
+    late_now: Signal<Local, Bit>,
+    change: Signal<Local, Word<3>>,
+    pulse_over: Parameter<17>,
+    gap_over: Parameter<17>,
+    hold_over: Parameter<17>,
+    since_bits: Parameter<17>,
+    setup_over: Parameter<16>,
+    after_bits: Parameter<16>,
+    holds: Parameter<1>,
+    instant: Parameter<1>, // no set-up to wait for
+    since_rise: Literal<17, 0>,
+    since_one: Literal<17, 1>,
+    after_turn: Literal<16, 0>,
+    after_one: Literal<16, 1>,
     at_3: Literal<4, 3>,
     one: Literal<3, 1>,
-    two: Literal<3, 2>,
     minus_one: Literal<3, 7>,
 }
 
@@ -93,16 +99,16 @@ impl Pulser {
             }
         }
         let [width, gap, setup, hold] = [width, gap, setup, hold].map(u64::from);
-        let (busy_load, setup_load, hold_load) = (width + gap - 1, setup - 1, hold - 1);
+        let (gap_over, hold_over, setup_over) = (width + gap - 2, hold.saturating_sub(2), setup.saturating_sub(2));
         Ok(Self {
-            setup: Register::new(Word::from(setup_load)),
-            gap: Parameter::new(gap),
-            busy_load: Parameter::new(busy_load),
-            busy_bits: Parameter::new(used_bits(busy_load)),
-            hold_load: Parameter::new(hold_load),
-            hold_bits: Parameter::new(used_bits(hold_load)),
-            setup_load: Parameter::new(setup_load),
-            setup_bits: Parameter::new(used_bits(setup_load)),
+            pulse_over: Parameter::new(width - 1),
+            gap_over: Parameter::new(gap_over),
+            hold_over: Parameter::new(hold_over),
+            since_bits: Parameter::new(used_bits((width - 1).max(gap_over).max(hold_over))),
+            setup_over: Parameter::new(setup_over),
+            after_bits: Parameter::new(used_bits(setup_over)),
+            holds: Parameter::new(u64::from(hold > 1)),
+            instant: Parameter::new(u64::from(setup == 1)),
             ..Self::default()
         })
     }
@@ -111,7 +117,8 @@ impl Pulser {
 impl Logic for Pulser {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, step_pin, dir_pin, want, due, due_back, busy, hold, setup, count, lost, late);
+        dff_setup!(self, clock, step_pin, dir_pin, want, due, due_back, since, after, busy, held, settled);
+        dff_setup!(self, clock, count, lost, late);
 
         // Which way DIR should point, and which step is due.
         if self.has_sign.val() {
@@ -126,69 +133,65 @@ impl Logic for Pulser {
         // May it rise; may DIR turn.
         self.rise.next = self.pending.val()
             & !self.frozen.val()
-            & !self.busy.q.val().any()
-            & !self.setup.q.val().any()
+            & !self.busy.q.val()
+            & (self.settled.q.val() | self.instant.val().any())
             & (self.dir_pin.q.val() == self.first_back.val());
         self.aim.next = self.want.q.val();
         if self.pending.val() {
             self.aim.next = self.first_back.val();
         }
-        self.turn.next = !self.frozen.val() & !self.hold.q.val().any() & (self.dir_pin.q.val() != self.aim.val());
+        self.turn.next = !self.frozen.val() & !self.held.q.val() & (self.dir_pin.q.val() != self.aim.val());
 
         // The pins.
-        self.step_pin.d.next = self.rise.val() | (self.step_pin.q.val() & (self.busy.q.val() != self.gap.val()));
+        self.step_pin.d.next =
+            self.rise.val() | (self.step_pin.q.val() & (self.since.q.val() != self.pulse_over.val()));
         self.dir_pin.d.next = self.dir_pin.q.val() ^ self.turn.val();
 
-        // The timers.
+        // Time since STEP rose: the pulse, the gap, the hold.
+        self.since.d.next = (self.since.q.val() + self.since_one.val()) & self.since_bits.val();
+        self.busy.d.next = self.busy.q.val() & (self.since.q.val() != self.gap_over.val());
+        self.held.d.next = self.held.q.val() & (self.since.q.val() != self.hold_over.val());
         if self.rise.val() {
-            self.busy.d.next = self.busy_load.val();
-        } else if self.busy.q.val().any() {
-            self.busy.d.next = (self.busy.q.val() - self.busy_one.val()) & self.busy_bits.val();
+            self.since.d.next = self.since_rise.val();
+            self.busy.d.next = true;
+            self.held.d.next = self.holds.val().any();
         }
-        if self.rise.val() {
-            self.hold.d.next = self.hold_load.val();
-        } else if self.hold.q.val().any() {
-            self.hold.d.next = (self.hold.q.val() - self.timer_one.val()) & self.hold_bits.val();
-        }
+
+        // Time since DIR turned: the set-up.
+        self.after.d.next = (self.after.q.val() + self.after_one.val()) & self.after_bits.val();
+        self.settled.d.next = self.settled.q.val() | (self.after.q.val() == self.setup_over.val());
         if self.turn.val() {
-            self.setup.d.next = self.setup_load.val();
-        } else if self.setup.q.val().any() {
-            self.setup.d.next = (self.setup.q.val() - self.timer_one.val()) & self.setup_bits.val();
+            self.after.d.next = self.after_turn.val();
+            self.settled.d.next = false;
         }
 
         // Where the axis is.
+        self.change.next = self.one.val();
+        if self.dir_pin.q.val() {
+            self.change.next = self.minus_one.val();
+        }
         if self.rise.val() {
-            if self.dir_pin.q.val() {
-                self.count.d.next = self.count.q.val() + self.minus_one.val();
-            } else {
-                self.count.d.next = self.count.q.val() + self.one.val();
-            }
+            self.count.d.next = self.count.q.val() + self.change.val();
         }
 
-        // What is owed, and what is lost: in silence nothing is.
+        // What is owed, and what is lost, one a clock: in silence nothing is.
         self.second.next = self.due.q.val() & self.request.val();
-        self.due.d.next = !self.frozen.val() & ((self.pending.val() & !self.rise.val()) | self.second.val());
+        self.late_now.next = self.second.val() & !self.rise.val() & !self.frozen.val();
+        self.due.d.next = (self.pending.val() & !self.rise.val() & !self.frozen.val()) | self.second.val();
         if !self.due.q.val() | self.rise.val() {
             self.due_back.d.next = self.request_back.val();
         }
-        self.lates.next = self.second.val() & !self.rise.val() & !self.frozen.val();
-        if self.frozen.val() & self.second.val() {
-            self.lost.d.next = self.lost.q.val() + self.two.val();
-        } else if (self.frozen.val() & self.pending.val()) | self.lates.val() {
+        if (self.frozen.val() & self.pending.val()) | self.late_now.val() {
             self.lost.d.next = self.lost.q.val() + self.one.val();
         }
-        if self.clear.val() {
-            self.late.d.next = false;
-        } else if self.lates.val() {
-            self.late.d.next = true;
-        }
+        self.late.d.next = (self.late.q.val() | self.late_now.val()) & !self.clear.val();
 
         self.step.next = self.step_pin.q.val();
         self.dir.next = self.dir_pin.q.val();
         self.owed.next = self.due.q.val();
         self.counts.next =
             bit_cast::<6, 3>(self.count.q.val()) | (bit_cast::<6, 3>(self.lost.q.val()) << self.at_3.val());
-        self.overruns.next = self.lates.val();
+        self.overruns.next = self.late_now.val();
         self.overrun.next = self.late.q.val();
     }
 }
