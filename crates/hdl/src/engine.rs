@@ -147,7 +147,6 @@ impl Engine {
             *pulser = Pulser::new(pins)?;
         }
         Ok(Self {
-            adder: Adder::new(build.phase),
             store: Store::new(build.phase),
             wheel: Wheel::new(&build.timebase),
             pulser,

@@ -14,10 +14,9 @@
 //! added. Its sum then stays in R as its complement (`top` says so), so that the adder only ever adds:
 //! X is R, or not R. What halving an odd number loses (`odd`) comes back as a carry.
 
-use crate::constant::{Literal, Parameter};
+use crate::constant::Literal;
 use crate::register::{Input, Register};
 use crate::word::{Word, bit_cast};
-use carrystep_spec::StartPhase;
 use rust_hdl::prelude::*;
 
 /// Operands, sum, and what the sums say.
@@ -39,13 +38,13 @@ pub struct Adder {
     pub up: Input<Bit>,
     /// Beat 7 counts a step back.
     pub down: Input<Bit>,
-    /// P becomes its start value.
+    /// P becomes zero.
     pub wipe: Input<Bit>,
     /// The sum of the beat before.
     pub sum: Signal<Out, Word<32>>,
     /// From beat 8: the segment is over after this tick.
     pub ended: Signal<Out, Bit>,
-    /// From beat 11: V + A does not fit.
+    /// From beat 12: V + A does not fit.
     pub overflow: Signal<Out, Bit>,
     /// In beat 12: the tick steps.
     pub crosses: Signal<Out, Bit>,
@@ -64,22 +63,25 @@ pub struct Adder {
     carry_0: Register<Bit>, // of the low halves, the last one first
     carry_1: Register<Bit>,
     carry_2: Register<Bit>,
-    over: Register<Bit>,  // `ended`
-    unfit: Register<Bit>, // `overflow`
+    over: Register<Bit>,      // `ended`
+    unfit: Register<Bit>,     // `overflow`
+    sign_of_a: Register<Bit>, // a beat ago
     low_zero: Register<Bit>,
-    minus: Register<Bit>,    // `back`
-    zero: Register<Bit>,     // `still`
-    bound: Register<Bit>,    // `least`
-    crossed: Register<Bit>,  // the bisection's last sum but one was beyond the step
-    odd: Register<Bit>,      // what halving B lost
-    bits: Register<Word<4>>, // `q`
+    minus: Register<Bit>,   // `back`
+    zero: Register<Bit>,    // `still`
+    bound: Register<Bit>,   // `least`
+    crossed: Register<Bit>, // the bisection's last sum but one was beyond the step
+    bisects: Register<Bit>,
+    carry_due: Register<Bit>, // known a beat ahead
+    odd: Register<Bit>,       // what halving B lost
+    bits: Register<Word<4>>,  // `q`
     x: Signal<Local, Word<32>>,
     half: Signal<Local, Word<32>>,
     ones_in: Signal<Local, Bit>,
     counting: Signal<Local, Bit>,
     load: Signal<Local, Bit>,
     halve: Signal<Local, Bit>,
-    bisects: Signal<Local, Bit>,
+    halves_on: Signal<Local, Bit>,
     crosses_now: Signal<Local, Bit>,
     carry_in: Signal<Local, Bit>,
     low: Signal<Local, Word<34>>,
@@ -93,21 +95,13 @@ pub struct Adder {
     carry: Literal<34, 1>,
     no_carry: Literal<34, 0>,
     q_bit: Literal<4, 1>,
-    start_high: Parameter<32>,
-}
-
-impl Adder {
-    /// An adder for axes that start in this phase of a step.
-    pub fn new(start: StartPhase) -> Self {
-        Self { start_high: Parameter::new(start.start_value() >> 32), ..Self::default() }
-    }
 }
 
 impl Logic for Adder {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, a, b, r, top, carry_0, carry_1, carry_2, over, unfit);
-        dff_setup!(self, clock, low_zero, minus, zero, bound, crossed, odd, bits);
+        dff_setup!(self, clock, low_zero, minus, zero, bound, crossed, odd, bits, bisects, carry_due, sign_of_a);
 
         // A: from memory, in beat 7 from the host.
         if self.beat.val().get_bit(1)
@@ -145,13 +139,15 @@ impl Logic for Adder {
         } else if self.halve.val() {
             self.b.d.next = self.half.val();
         }
-        self.odd.d.next = self.b.q.val().get_bit(0);
+        // The bisection goes on in the next beat.
+        self.halves_on.next = self.beat.val().get_bit(12) | self.beat.val().get_bit(13) | self.beat.val().get_bit(14);
+        self.bisects.d.next = self.halves_on.val();
+        self.odd.d.next = self.halves_on.val() & self.b.q.val().get_bit(0);
 
         // X: A; in the bisection R, straight or as its complement.
-        self.bisects.next = self.beat.val().get_bit(13) | self.beat.val().get_bit(14) | self.beat.val().get_bit(15);
         self.crosses_now.next = self.top.q.val() ^ self.crossed.q.val();
         self.x.next = self.a.q.val();
-        if self.bisects.val() {
+        if self.bisects.q.val() {
             self.x.next = self.r.q.val();
             if self.top.q.val() {
                 self.x.next = !self.r.q.val();
@@ -159,11 +155,11 @@ impl Logic for Adder {
         }
 
         // The sum; a carry comes in as 1 + 1 below the lowest bit.
-        self.carry_in.next = (self.beat.val().get_bit(6) & self.lost.val())
-            | (self.beat.val().get_bit(7) & !self.down.val())
-            | ((self.beat.val().get_bit(9) | self.beat.val().get_bit(10) | self.beat.val().get_bit(11))
-                & self.carry_2.q.val())
-            | (self.bisects.val() & self.crosses_now.val() & self.odd.q.val());
+        self.carry_due.d.next = (self.beat.val().get_bit(5) & self.lost.val())
+            | (self.beat.val().get_bit(6) & !self.down.val())
+            | (self.beat.val().get_bit(8) & self.carry_2.q.val())
+            | ((self.beat.val().get_bit(9) | self.beat.val().get_bit(10)) & self.carry_1.q.val());
+        self.carry_in.next = self.carry_due.q.val() | (self.odd.q.val() & self.crosses_now.val());
         self.low.next = self.no_carry.val();
         if self.carry_in.val() {
             self.low.next = self.carry.val();
@@ -177,9 +173,6 @@ impl Logic for Adder {
         }
         if self.wiping.val() {
             self.r.d.next = self.nothing.val();
-            if self.beat.val().get_bit(11) {
-                self.r.d.next = self.start_high.val();
-            }
         }
         self.top.d.next = self.wide.val().get_bit(33) ^ self.b.q.val().get_bit(31);
         if self.beat.val().get_bit(3)
@@ -197,9 +190,9 @@ impl Logic for Adder {
         if self.beat.val().get_bit(7) {
             self.over.d.next = self.top.q.val();
         }
-        if self.beat.val().get_bit(10) {
-            self.unfit.d.next = (self.a.q.val().get_bit(31) == self.b.q.val().get_bit(31))
-                & (self.a.q.val().get_bit(31) != self.wide.val().get_bit(32));
+        self.sign_of_a.d.next = self.a.q.val().get_bit(31);
+        if self.beat.val().get_bit(11) {
+            self.unfit.d.next = self.r.q.val().get_bit(31) ^ self.top.q.val() ^ self.sign_of_a.q.val();
         }
         self.empty.next = !(self.b.q.val() & !self.sign.val()).any();
         if self.beat.val().get_bit(5) {
@@ -215,10 +208,10 @@ impl Logic for Adder {
         if self.beat.val().get_bit(12) {
             self.crossed.d.next = false;
         }
-        if self.bisects.val() {
+        if self.bisects.q.val() {
             self.crossed.d.next = self.crosses_now.val();
         }
-        if self.bisects.val() | self.beat.val().get_bit(16) {
+        if self.bisects.q.val() | self.beat.val().get_bit(16) {
             self.bits.d.next = self.bits.q.val() << self.by_one.val();
             if !self.crosses_now.val() {
                 self.bits.d.next = (self.bits.q.val() << self.by_one.val()) | self.q_bit.val();
@@ -243,6 +236,6 @@ mod tests {
 
     #[test]
     fn adder_synthesizes() {
-        assert_synthesizes(Adder::new(StartPhase::Half), "carrystep_adder");
+        assert_synthesizes(Adder::default(), "carrystep_adder");
     }
 }

@@ -12,7 +12,7 @@
 //!
 //! A sum is written four beats after its word was read, the host's word in between.
 
-use crate::constant::Literal;
+use crate::constant::{Literal, Parameter};
 use crate::memory::Memory;
 use crate::register::Input;
 use crate::word::{Word, bit_cast};
@@ -73,6 +73,7 @@ pub struct Store {
     discarded: Literal<3, 3>,
     at_3: Literal<4, 3>,
     at_6: Literal<4, 6>,
+    start_high: Parameter<32>,
     no: Literal<32, 0>,
     all: Literal<32, 0xffff_ffff>,
 }
@@ -80,9 +81,10 @@ pub struct Store {
 impl Store {
     /// The memory of axes that start in this phase of a step.
     pub fn new(start: StartPhase) -> Self {
-        let p_high = Word::from(start.start_value() >> 32);
+        let start_high = start.start_value() >> 32;
+        let p_high = Word::from(start_high);
         let initial: Vec<_> = (0..AXES).map(|axis| (axis << 6 | 1 << 3 | 7, p_high)).collect();
-        Self { segments: Memory::of_words(&initial), ..Self::default() }
+        Self { segments: Memory::of_words(&initial), start_high: Parameter::new(start_high), ..Self::default() }
     }
 }
 
@@ -187,6 +189,9 @@ impl Logic for Store {
             | (bit_cast::<9, 3>(self.write_slot.val()) << self.at_3.val())
             | bit_cast::<9, 3>(self.write_word.val());
         self.segments.write_data.next = self.sum.val();
+        if self.wipe.val() & self.beat.val().get_bit(12) {
+            self.segments.write_data.next = self.sum.val() | self.start_high.val();
+        }
         self.segments.write_bits.next = self.no.val();
         if self.writes.val() {
             self.segments.write_bits.next = self.all.val();
