@@ -2,6 +2,7 @@
 
 pub mod axis_bench;
 pub mod closed_form;
+pub mod effort;
 pub mod engine_programs;
 pub mod golden;
 pub mod lockstep;

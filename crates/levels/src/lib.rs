@@ -9,6 +9,7 @@ mod external;
 pub mod host;
 mod icarus;
 pub mod pins;
+pub mod replay;
 mod tool;
 mod verilator;
 

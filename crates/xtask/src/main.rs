@@ -23,6 +23,8 @@ enum Chore {
     Test,
     /// Install the simulators and yosys that the tests need, by apt.
     Tools,
+    /// Ten million clocks of lock-step for each test of the engine, and its longest golden vectors.
+    Lockstep,
     /// Check that the arrows between the crates go one way.
     Arrows,
     /// Formatting and lints, without a warning.
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
         Chore::Test => ladder::climb(),
         Chore::Tools => tools::install(),
+        Chore::Lockstep => ladder::lockstep(),
         Chore::Arrows => arrows::check(),
         Chore::Lint => ladder::lint(),
         Chore::Generate => readme::generate(),

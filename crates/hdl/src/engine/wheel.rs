@@ -66,7 +66,6 @@ pub struct Wheel {
     bits: Signal<Local, Word<16>>,
     data: Signal<Local, Word<16>>,
     one_tick: Literal<2, 1>,
-    no_tick: Literal<2, 0>,
     no: Literal<16, 0>,
     all: Literal<16, 0xffff>,
     forward: Literal<16, 0x00ff>,
