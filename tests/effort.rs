@@ -1,5 +1,7 @@
 //! How much lock-step is enough: a little in every test run, a lot when `cargo xtask lockstep` asks for it.
 
+use std::io::Write as _;
+
 /// The clocks that a random run takes at least, where `usual` will do in every test run.
 ///
 /// # Panics
@@ -11,6 +13,12 @@ pub fn clocks(usual: u64) -> u64 {
 /// Everything that there is, not what is quick.
 pub fn is_long() -> bool {
     asked().is_some()
+}
+
+/// A line about what has been done.
+pub fn say(line: &str) {
+    // Nobody is left to tell if this fails.
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 fn asked() -> Option<u64> {

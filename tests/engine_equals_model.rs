@@ -83,7 +83,7 @@ fn run_programs(build: &Build, usual: u64, one: impl Fn(&Program) -> Result<u64,
         });
         held.unwrap_or_else(|error| panic!("{error}\n of {build:?}"));
     }
-    println!("{} clocks", clocks.get());
+    effort::say(&format!("{} clocks", clocks.get()));
 }
 
 fn in_rust_hdl(build: &Build, usual: u64) {
@@ -115,7 +115,7 @@ fn in_verilog(level: Level, build: &Build, usual: u64) -> Seen {
         seen.set(seen.get().with(&recording));
         Ok(recording.clocks)
     });
-    println!("{:?}", seen.get());
+    effort::say(&format!("{:?}", seen.get()));
     seen.get()
 }
 
@@ -197,7 +197,6 @@ fn golden_vectors_in_verilator() {
                 let [low, high, ..] = recording.kept[axis];
                 assert_eq!(u64::from(high) << 32 | u64::from(low), case.p_end(), "{}", case.name);
             }
-            println!("{} cases, {} clocks", cases.len(), recording.clocks);
         }
     }
 }

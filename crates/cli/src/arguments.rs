@@ -1,8 +1,13 @@
 //! The command line, once: it feeds the parser and the help.
 
+mod profile;
+mod table;
+
 use carrystep_levels::Level;
 use clap::{Args, Parser};
+pub use profile::Profile;
 use std::path::PathBuf;
+pub use table::{Table, TableKind};
 
 /// Every carry is a step: plan stepper moves for an FPGA that only adds, simulate its gateware
 /// cycle by cycle, and check every pulse.
@@ -23,6 +28,10 @@ pub struct Arguments {
 pub enum Subcommand {
     /// The main job on the shipped six-axis machine: plan, Verilog, simulation, check, waveform, plot.
     Demo(Demo),
+    /// Step times, delays and speeds of the curves of the literature: figures, CSV, JSON, plot.
+    Profile(Profile),
+    /// Make a C header with a timer compare table for a microcontroller, and the player for it.
+    Table(Table),
     /// Show the integer segments of a move file, the limits reached and the times.
     Plan(Plan),
     /// Run a move file through the gateware, cycle by cycle, and check every pulse.

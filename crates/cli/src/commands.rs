@@ -3,5 +3,7 @@
 pub mod check;
 pub mod demo;
 pub mod plan;
+pub mod profile;
 pub mod simulate;
+pub mod table;
 pub mod verilog;

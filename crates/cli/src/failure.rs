@@ -36,7 +36,7 @@ impl Failure {
             Self::ReaderGone => return ExitCode::SUCCESS,
             Self::Check => return ExitCode::from(1),
             Self::Run(message) => (1, format!("error: {}", harmless(&message))),
-            Self::Input(error) => (2, render(&error)),
+            Self::Input(error) => (2, render(&error, std::io::stderr().is_terminal())),
             Self::Tool(message) => (3, format!("error: {message}")),
         };
         // Nobody is left to tell if this fails.
@@ -46,7 +46,7 @@ impl Failure {
 }
 
 /// What is wrong, then file, line and column, and the line itself with what is wrong in it.
-fn render(error: &InputError) -> String {
+fn render(error: &InputError, terminal: bool) -> String {
     let Some((source, span)) = error.place.as_ref().filter(|(source, _)| !source.text.is_empty()) else {
         return format!("error: {}", harmless(&error.to_string()));
     };
@@ -54,13 +54,13 @@ fn render(error: &InputError) -> String {
     diagnostic.help = error.help.as_deref().map(harmless);
     let label = LabeledSpan::underline(shorten(&source.text, span.clone()));
     let code = NamedSource::new(source.path.display().to_string(), harmless(&source.text));
-    format!("error:\n{}", drawn(diagnostic.with_label(label), code))
+    format!("error:\n{}", drawn(diagnostic.with_label(label), code, terminal))
 }
 
 /// Colours and lines on a terminal; elsewhere plain ASCII, and no message broken into lines.
-fn drawn(diagnostic: MietteDiagnostic, code: NamedSource<String>) -> String {
+fn drawn(diagnostic: MietteDiagnostic, code: NamedSource<String>, terminal: bool) -> String {
     let report = Report::new(diagnostic).with_source_code(code);
-    if std::io::stderr().is_terminal() {
+    if terminal {
         return format!("{report:?}");
     }
     let mut text = String::new();
@@ -117,4 +117,32 @@ pub fn refused(file: &MoveFile, error: &PlanError) -> Failure {
         Some(index) => file.move_error(index, message),
         None => InputError::new(message),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carrystep_spec::Source;
+
+    #[test]
+    fn nothing_that_a_terminal_obeys_is_shown() {
+        assert_eq!(harmless("a\u{1b}[31m\tb\u{0}\u{9b}\r\n\u{e9}"), "a?[31m\tb???\r\n\u{e9}");
+    }
+
+    #[test]
+    fn an_error_shows_its_first_line_only() {
+        let source = Source { path: "m.toml".into(), text: "[[move]]\nto = {}\n".into() };
+        let shown = render(&InputError::at(&source, 0..17, "too far").help("go less far"), false);
+        let lines = [
+            "error:",
+            "  x too far",
+            "   ,-[m.toml:1:1]",
+            " 1 | [[move]]",
+            "   : ^^^^^^^^",
+            " 2 | to = {}",
+            "   `----",
+            "  help: go less far",
+        ];
+        assert_eq!(shown.lines().map(str::trim_end).collect::<Vec<_>>(), lines);
+    }
 }

@@ -3,6 +3,7 @@
 mod arguments;
 mod commands;
 mod failure;
+mod figures;
 mod job;
 mod output;
 mod progress;
@@ -17,6 +18,8 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = match &arguments.command {
         Subcommand::Demo(demo) => commands::demo::run(demo),
+        Subcommand::Profile(profile) => commands::profile::run(profile),
+        Subcommand::Table(table) => commands::table::run(table),
         Subcommand::Plan(plan) => commands::plan::run(plan),
         Subcommand::Simulate(simulate) => commands::simulate::run(simulate),
         Subcommand::Check(check) => commands::check::run(check),

@@ -73,6 +73,11 @@ impl OutputFile {
         self.writer.write_all(text.as_bytes()).map_err(|error| cannot_write(&self.path, &error))
     }
 
+    /// Nothing is left to be written.
+    pub fn whole(&mut self) -> Result<(), Failure> {
+        self.writer.flush().map_err(|error| cannot_write(&self.path, &error))
+    }
+
     /// Everything is written: let it appear.
     pub fn keep(self) -> Result<PathBuf, Failure> {
         let wrong = |error: std::io::Error| cannot_write(&self.path, &error);
@@ -92,6 +97,9 @@ fn place(path: &Path) -> std::io::Result<Place> {
         _ => {}
     }
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if folder.is_file() {
+        return Err(ErrorKind::NotADirectory.into());
+    }
     std::fs::create_dir_all(folder)?;
     NamedTempFile::new_in(folder).map(Place::Beside)
 }

@@ -40,9 +40,11 @@ impl Wanted {
 }
 
 impl Files {
-    /// Lets all files appear; their paths.
+    /// Lets all files appear, or none where one is not whole; their paths.
     pub fn keep(self) -> Result<Vec<PathBuf>, Failure> {
-        [self.vcd, self.save, self.csv, self.plot].into_iter().flatten().map(OutputFile::keep).collect()
+        let mut files: Vec<OutputFile> = [self.vcd, self.save, self.csv, self.plot].into_iter().flatten().collect();
+        files.iter_mut().try_for_each(OutputFile::whole)?;
+        files.into_iter().map(OutputFile::keep).collect()
     }
 }
 

@@ -7,7 +7,7 @@ use crate::netlist::{self, Module};
 use carrystep_hdl::{Engine, HdlError, SixAxis};
 use carrystep_spec::{Build, StartPhase};
 use rust_hdl::prelude::{Block, check_all};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Name of the parallel core's top module and of its files.
@@ -96,8 +96,8 @@ pub fn write_engine(dir: &Path, build: &Build, description: &str) -> Result<Vec<
 }
 
 fn write_files(dir: &Path, name: &str, verilog: &str, waivers: &str) -> Result<Vec<PathBuf>, ExportError> {
+    std::fs::create_dir_all(dir).map_err(|source| ExportError::Io { path: dir.to_owned(), source: folder(source) })?;
     let write = |path: &Path, text: &str| {
-        std::fs::create_dir_all(dir)?;
         let mut file = new_file(dir)?;
         file.write_all(text.as_bytes())?;
         file.persist(path)?;
@@ -111,6 +111,11 @@ fn write_files(dir: &Path, name: &str, verilog: &str, waivers: &str) -> Result<V
             Ok(path)
         })
         .collect()
+}
+
+/// A file in the folder's place is told as what it is; the system says only that something exists.
+fn folder(error: std::io::Error) -> std::io::Error {
+    if error.kind() == ErrorKind::AlreadyExists { ErrorKind::NotADirectory.into() } else { error }
 }
 
 /// A file without a name yet, with the permissions of any other new file (a temporary one is its owner's only).

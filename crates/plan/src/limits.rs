@@ -42,5 +42,6 @@ pub(crate) fn float_limits<F: Real>(axis: &Axis) -> Limits<F> {
         start_speed: float(&axis.start_speed),
         speed: float(&axis.speed_limit),
         acceleration: float(&axis.accel_limit),
+        jerk: axis.jerk_limit.as_ref().map_or_else(F::infinity, float),
     }
 }

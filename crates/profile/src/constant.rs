@@ -1,5 +1,6 @@
 //! One speed from start to end.
 
+use crate::curve::Curve;
 use crate::profile::{Profile, Real};
 use crate::refusal::{Limit, Limits, Refusal};
 
@@ -84,5 +85,23 @@ impl<F: Real> Profile<F> for Constant<F> {
 
     fn mean_speed(&self, from: F, _: F) -> F {
         self.speed(from)
+    }
+}
+
+impl<F: Real> Curve<F> for Constant<F> {
+    fn top_speed(&self) -> F {
+        self.distance / self.duration
+    }
+
+    fn peak_acceleration(&self) -> F {
+        F::zero()
+    }
+
+    fn peak_jerk(&self) -> F {
+        F::zero()
+    }
+
+    fn acceleration_jump(&self) -> F {
+        F::zero()
     }
 }

@@ -1,5 +1,6 @@
 //! Triangle and trapezoid: up at one acceleration, perhaps a cruise, down at the same.
 
+use crate::curve::{Curve, is_time};
 use crate::profile::{Profile, Real, real};
 
 /// A symmetric speed ramp: start speed, top speed, and a cruise between the two ramps.
@@ -135,5 +136,26 @@ impl<F: Real> Profile<F> for Ramp<F> {
 
     fn breakpoints(&self) -> &[F] {
         &self.breakpoints
+    }
+}
+
+impl<F: Real> Curve<F> for Ramp<F> {
+    fn top_speed(&self) -> F {
+        self.top
+    }
+
+    fn peak_acceleration(&self) -> F {
+        if self.ramp > F::zero() { self.acceleration } else { F::zero() }
+    }
+
+    fn peak_jerk(&self) -> F {
+        F::zero()
+    }
+
+    /// Without a cruise, that of rounding aside, the two jumps at the top are one.
+    fn acceleration_jump(&self) -> F {
+        let [up, down] = self.breakpoints;
+        let peak = Curve::peak_acceleration(self);
+        if is_time(down - up, self.duration) { peak } else { peak + peak }
     }
 }

@@ -5,6 +5,7 @@
 //! runs at one speed.
 
 use crate::constant::Constant;
+use crate::curve::Curve;
 use crate::profile::{Profile, Real, real};
 use crate::ramp::Ramp;
 use crate::refusal::{Limit, Limits, Refusal};
@@ -15,7 +16,15 @@ use std::sync::Arc;
 /// # Errors
 /// [`Refusal`] names the limit that fails and the least time.
 pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Profile<F>>, Refusal> {
-    let Limits { start_speed, speed, acceleration: limit } = *limits;
+    Ok(ranade_curve(distance, time, limits)?)
+}
+
+/// [`ranade`], with its figures.
+///
+/// # Errors
+/// [`Refusal`] names the limit that fails and the least time.
+pub fn ranade_curve<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Curve<F>>, Refusal> {
+    let Limits { start_speed, speed, acceleration: limit, .. } = *limits;
     let average = distance / time;
     if average <= start_speed {
         return Ok(Arc::new(Constant::new(distance, time)));
@@ -49,7 +58,7 @@ pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<d
 /// Least time from the start speed back to it: 2 (v_l - v_s)/a + (N - (v_l^2 - v_s^2)/a)/v_l, or,
 /// where the speed limit is not reached, 2 (sqrt(v_s^2 + a N) - v_s)/a. Seconds.
 pub fn ranade_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
-    let Limits { start_speed, speed, acceleration } = *limits;
+    let Limits { start_speed, speed, acceleration, .. } = *limits;
     let two = real::<F>(2.0);
     let rise = speed - start_speed;
     let ramps = rise * (speed + start_speed) / acceleration;

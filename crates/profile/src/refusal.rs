@@ -13,6 +13,8 @@ pub struct Limits<F> {
     pub speed: F,
     /// Greatest acceleration, steps/s^2; over 0.
     pub acceleration: F,
+    /// Greatest jerk, steps/s^3; over 0, infinite where there is no limit.
+    pub jerk: F,
 }
 
 impl<F: Real> Limits<F> {
@@ -34,6 +36,8 @@ pub enum Limit {
     Speed,
     /// `accel_limit`, steps/s^2.
     Acceleration,
+    /// `jerk_limit`, steps/s^3.
+    Jerk,
 }
 
 impl Limit {
@@ -42,6 +46,7 @@ impl Limit {
         match self {
             Self::StartSpeed | Self::Speed => "steps/s",
             Self::Acceleration => "steps/s^2",
+            Self::Jerk => "steps/s^3",
         }
     }
 }
@@ -52,6 +57,7 @@ impl fmt::Display for Limit {
             Self::StartSpeed => "start_speed",
             Self::Speed => "speed_limit",
             Self::Acceleration => "accel_limit",
+            Self::Jerk => "jerk_limit",
         })
     }
 }

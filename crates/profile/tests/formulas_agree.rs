@@ -24,7 +24,12 @@ fn the_articles_planning_cases() {
     let shapes = ["triangle", "refused", "constant"];
     for (case, shape) in golden()["planning_cases"].as_array().unwrap().iter().zip(shapes) {
         let get = |key: &str| number(&case[key]);
-        let limits = Limits { start_speed: get("start"), speed: get("limit"), acceleration: get("acc_limit") };
+        let limits = Limits {
+            start_speed: get("start"),
+            speed: get("limit"),
+            acceleration: get("acc_limit"),
+            jerk: f64::INFINITY,
+        };
         let (n, t) = (get("N"), get("T"));
         let least = rule::ranade_least_time(n, &limits);
         assert!(close(least, get("t_min")), "{least}");
@@ -62,7 +67,7 @@ fn exact_pulse_times_of_the_articles_ramp() {
 #[test]
 fn the_minus_root() {
     // 1000 steps in 0.5 s at 25000 steps/s^2: the plus root would be 9683 steps/s with a negative cruise.
-    let limits = Limits { start_speed: 0.0, speed: 5000.0, acceleration: 25000.0 };
+    let limits = Limits { start_speed: 0.0, speed: 5000.0, acceleration: 25000.0, jerk: f64::INFINITY };
     let ramp = rule::trapezoid(1000.0, 0.5, &limits).unwrap();
     let expected = (25000.0 * 0.5 - (12500.0_f64.powi(2) - 4.0 * 25000.0 * 1000.0).sqrt()) / 2.0;
     assert!(close(ramp.top_speed(), expected) && expected < 5000.0);
@@ -71,7 +76,7 @@ fn the_minus_root() {
 
 #[test]
 fn constant_needs_a_start_speed() {
-    let mut limits = Limits { start_speed: 0.0, speed: 5000.0, acceleration: 25000.0 };
+    let mut limits = Limits { start_speed: 0.0, speed: 5000.0, acceleration: 25000.0, jerk: f64::INFINITY };
     let refusal = rule::constant(10.0, 100.0, &limits).unwrap_err();
     assert_eq!((refusal.limit, refusal.least_time), (Limit::StartSpeed, None));
     limits.start_speed = 100.0;
@@ -89,6 +94,7 @@ fn limits() -> impl Strategy<Value = Limits<f64>> {
         start_speed: speed * start,
         speed,
         acceleration,
+        jerk: f64::INFINITY,
     })
 }
 

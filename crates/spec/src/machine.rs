@@ -191,6 +191,8 @@ impl RawAxis {
         };
         let speed_limit = in_steps(positive(source, &self.speed_limit, "speed_limit")?);
         let accel_limit = in_steps(positive(source, &self.accel_limit, "accel_limit")?);
+        not_too_slow(source, self.speed_limit.span(), "speed_limit", &speed_limit, "steps/s")?;
+        not_too_slow(source, self.accel_limit.span(), "accel_limit", &accel_limit, "steps/s^2")?;
         let jerk_limit = match &self.jerk_limit {
             None => None,
             Some(value) => Some(in_steps(positive(source, value, "jerk_limit")?)),
@@ -248,6 +250,23 @@ impl RawAxis {
         }
         Ok((ns, PinTiming { width: clocks[0], gap: clocks[1], setup: clocks[2], hold: clocks[3] }))
     }
+}
+
+/// Limits under a thousandth of a step ask for plans of months, and are too coarse in units of 2^-64 step per tick.
+fn not_too_slow(
+    source: &Source,
+    span: Range<usize>,
+    key: &str,
+    limit: &BigDecimal,
+    unit: &str,
+) -> Result<(), InputError> {
+    let least = BigDecimal::new(1.into(), 3);
+    if *limit >= least {
+        return Ok(());
+    }
+    let limit = decimal::to_f64(limit);
+    Err(InputError::at(source, span, format!("{key} is {limit} {unit}: under {least} {unit}"))
+        .help("check steps_per_unit and the unit of the limit; a moving axis makes a step in a quarter of an hour"))
 }
 
 impl Axis {

@@ -14,7 +14,7 @@ const MAX_DEPTH: usize = 256;
 
 /// A VCD whose header has been read and whose pins have been found.
 pub struct VcdReader<R> {
-    parser: Parser<Chain<R, &'static [u8]>>,
+    parser: Parser<Blanked<R>>,
     unit: Unit,
     own: Option<OwnCapture>,
     /// The pins that a signal carries, each with its bit from the least significant.
@@ -66,15 +66,26 @@ impl<R> fmt::Debug for VcdReader<R> {
     }
 }
 
-/// The parser's errors, sorted.
-fn sorted(error: io::Error, line: u64, missing: &'static str) -> ReadError {
-    if error.kind() == io::ErrorKind::UnexpectedEof {
+/// A capture and the blank behind its end: not every program ends its last line, and a token that the end
+/// of the file ends is whole.
+type Blanked<R> = Chain<R, &'static [u8]>;
+
+/// The parser's errors, sorted. A broken token right at the end of the file is one that was cut off.
+fn sorted<R: BufRead>(error: io::Error, parser: &mut Parser<Blanked<R>>, missing: &'static str) -> ReadError {
+    let line = parser.line();
+    let Some(parse) = error.get_ref().and_then(|inner| inner.downcast_ref::<ParseError>()) else {
+        let cut = error.kind() == io::ErrorKind::UnexpectedEof;
+        return if cut { ReadError::Truncated { line, missing } } else { ReadError::Io(error) };
+    };
+    if at_end(parser) {
         return ReadError::Truncated { line, missing };
     }
-    match error.get_ref().and_then(|inner| inner.downcast_ref::<ParseError>()) {
-        Some(parse) => ReadError::Syntax { line: parse.line(), message: parse.kind().to_string() },
-        None => ReadError::Io(error),
-    }
+    ReadError::Syntax { line: parse.line(), message: parse.kind().to_string() }
+}
+
+/// Whether the last token reached to the very end of the file.
+fn at_end<R: BufRead>(parser: &mut Parser<Blanked<R>>) -> bool {
+    parser.reader().fill_buf().is_ok_and(<[u8]>::is_empty)
 }
 
 impl<R: BufRead> VcdReader<R> {
@@ -84,7 +95,6 @@ impl<R: BufRead> VcdReader<R> {
     /// The file is no VCD, ends in its header, has no unit of time, or lacks a signal.
     pub fn new(reader: R, axes: &[&str], map: &SignalMap) -> Result<Self, ReadError> {
         const MISSING: &str = "the header has no end";
-        // Not every program ends its last line: a token that the end of the file ends is whole.
         let mut parser = Parser::new(reader.chain(&b" "[..]));
         let mut scopes: Vec<String> = Vec::new();
         let mut signals = Vec::new();
@@ -96,7 +106,7 @@ impl<R: BufRead> VcdReader<R> {
             let Some(command) = command else {
                 return Err(ReadError::Truncated { line, missing: MISSING });
             };
-            match command.map_err(|error| sorted(error, line, MISSING))? {
+            match command.map_err(|error| sorted(error, &mut parser, MISSING))? {
                 Command::Enddefinitions => break,
                 Command::Comment(text) => own = own.or_else(|| OwnCapture::from_comment(&text)),
                 Command::Timescale(quantity, scale) => unit = Some(Unit::new(quantity, scale)),
@@ -140,6 +150,7 @@ impl<R: BufRead> VcdReader<R> {
     /// # Errors
     /// The file is broken, cut off or runs back in time; or the sink cannot write.
     pub fn play(mut self, sink: &mut dyn PinSink) -> Result<Played, TraceError> {
+        const MISSING: &str = "a value or a time is incomplete";
         let mut player = Player::new(sink, self.count);
         let mut time = None;
         let mut whole = self.own.is_none();
@@ -153,9 +164,12 @@ impl<R: BufRead> VcdReader<R> {
                 }
                 return player.finish();
             };
-            match command.map_err(|error| sorted(error, line, "a value or a time is incomplete"))? {
+            match command.map_err(|error| sorted(error, &mut self.parser, MISSING))? {
                 Command::Timestamp(now) => {
                     if let Some(from) = time.filter(|&from| now < from) {
+                        if at_end(&mut self.parser) {
+                            return Err(ReadError::Truncated { line, missing: MISSING }.into());
+                        }
                         return Err(ReadError::TimeBackwards { line, from, to: now }.into());
                     }
                     time = Some(now);

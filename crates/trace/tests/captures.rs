@@ -103,12 +103,21 @@ fn broken_time_and_broken_ends_are_errors() {
     let head = "$timescale 1 ns $end $var wire 1 ! x.step $end $var wire 1 # x.dir $end $enddefinitions $end\n";
     let fail = |body: &str| read_error(&format!("{head}{body}"), &["x"], &SignalMap::default());
     assert_eq!(fail("#5 1!\n#4 0!\n"), "line 3 of the capture: time goes back from 5 to 4");
-    assert_eq!(fail("#5 1!\n#12"), "the capture is cut off at line 3: a value or a time is incomplete");
+    assert_eq!(fail("#5 1!\n#12 b"), "the capture is cut off at line 3: a value or a time is incomplete");
     assert_eq!(fail("#5 1"), "the capture is cut off at line 2: a value or a time is incomplete");
     assert!(fail("#99999999999999999\n").contains("more than half a year"));
     assert!(fail("#999999999999999999999\n").starts_with("line 2 of the capture: "));
     let deep = "$scope module a $end\n".repeat(100_000);
     assert!(read_error(&deep, &["x"], &SignalMap::default()).contains("nested deeper than 256"));
+}
+
+#[test]
+fn a_foreign_capture_need_not_end_its_last_line() {
+    let head = "$timescale 1 ns $end $var wire 1 ! x.step $end $var wire 1 # x.dir $end $enddefinitions $end\n";
+    for (body, end_ps, changes) in [("#0 0!\n#5 1!", 5000, 1), ("#0 0!\n#5 1!\n#12", 12_000, 1)] {
+        let (_, played) = read(format!("{head}{body}").as_bytes(), &["x"], &SignalMap::default()).unwrap();
+        assert_eq!((played.end_ps, played.changes), (end_ps, changes), "{body}");
+    }
 }
 
 #[test]

@@ -1,0 +1,118 @@
+//! `carrystep profile`: the curves of the literature, listed, drawn and summed up.
+
+use crate::arguments::Profile;
+use crate::failure::Failure;
+use crate::figures::{self, FiguresJson};
+use crate::output::{self, OutputFile};
+use carrystep_reference::{
+    CsvError, Drive, Kind, Length, PictureError, Reference, ReferenceError, Row, Scale, picture, write_csv,
+};
+use serde::Serialize;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Profiles<'a> {
+    passed: bool,
+    drive: &'a Drive,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    timer_hz: Option<f64>,
+    profiles: Vec<ProfileJson>,
+    files: Vec<PathBuf>,
+}
+
+#[derive(Serialize)]
+struct ProfileJson {
+    kind: Kind,
+    ramp: bool,
+    figures: FiguresJson,
+    steps: Vec<Row>,
+}
+
+/// Shows, lists and draws what is asked for.
+pub fn run(arguments: &Profile) -> Result<(), Failure> {
+    only_once(arguments)?;
+    let request = arguments.request();
+    let references = request.references(&arguments.kinds)?;
+    let clock = arguments.timer_hz;
+    let files = files(arguments, &references, &request.drive)?;
+    if arguments.json {
+        let profiles = references.iter().map(|reference| json(reference, clock)).collect::<Result<_, _>>()?;
+        return output::print_json(&Profiles { passed: true, drive: &request.drive, timer_hz: clock, profiles, files });
+    }
+    if to_stdout(arguments) {
+        return Ok(write_csv(io::stdout().lock(), &references, clock)?);
+    }
+    let wrote: Vec<String> = files.iter().map(|file| format!("wrote {}\n", file.display())).collect();
+    output::print(&format!("{}{}", figures::table(&references, &request.drive), wrote.concat()))
+}
+
+fn only_once(arguments: &Profile) -> Result<(), Failure> {
+    let Profile { kinds, csv, plot, .. } = arguments;
+    if let Some((_, twice)) = kinds.iter().enumerate().find(|(place, kind)| kinds[..*place].contains(kind)) {
+        return Err(Failure::input(format!("{twice} is named twice")));
+    }
+    let same = |a: &Path, b: &Path| std::path::absolute(a).ok() == std::path::absolute(b).ok();
+    if csv.as_deref().zip(plot.as_deref()).is_some_and(|(csv, plot)| same(csv, plot)) {
+        return Err(Failure::input("--plot would write over --csv: give them two names"));
+    }
+    if arguments.json && to_stdout(arguments) {
+        return Err(Failure::input("--csv - and --json would both go to standard output: give --csv a file"));
+    }
+    Ok(())
+}
+
+fn to_stdout(arguments: &Profile) -> bool {
+    arguments.csv.as_deref() == Some(Path::new("-"))
+}
+
+/// All files begun, then all written, then all there.
+fn files(arguments: &Profile, references: &[Reference], drive: &Drive) -> Result<Vec<PathBuf>, Failure> {
+    let begin = |path: Option<&PathBuf>| path.map(|path| OutputFile::create(path)).transpose();
+    let mut csv = begin(arguments.csv.as_ref().filter(|_| !to_stdout(arguments)))?;
+    let mut plot = begin(arguments.plot.as_ref())?;
+    if let Some(file) = &mut csv {
+        write_csv(file, references, arguments.timer_hz)?;
+    }
+    if let Some(file) = &mut plot {
+        file.text(&picture(references, scale(drive)?)?)?;
+    }
+    [csv, plot].into_iter().flatten().map(OutputFile::keep).collect()
+}
+
+/// In millimetres where the motor moves something.
+fn scale(drive: &Drive) -> Result<Scale, ReferenceError> {
+    let unit = drive.travel_per_rev_mm.map_or(Length::Step, |_| Length::Millimetre);
+    Ok(Scale { unit, steps: drive.steps_in(unit)? })
+}
+
+fn json(reference: &Reference, clock: Option<f64>) -> Result<ProfileJson, ReferenceError> {
+    Ok(ProfileJson {
+        kind: reference.kind(),
+        ramp: reference.is_ramp(),
+        figures: FiguresJson::new(reference),
+        steps: reference.rows(clock)?.collect(),
+    })
+}
+
+impl From<ReferenceError> for Failure {
+    fn from(error: ReferenceError) -> Self {
+        Self::input(error.to_string())
+    }
+}
+
+impl From<PictureError> for Failure {
+    fn from(error: PictureError) -> Self {
+        Self::Run(error.to_string())
+    }
+}
+
+impl From<CsvError> for Failure {
+    fn from(error: CsvError) -> Self {
+        match error {
+            CsvError::Write(error) if error.kind() == io::ErrorKind::BrokenPipe => Self::ReaderGone,
+            _ => Self::input(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,277 @@
+//! The logistic S-curve: w(t) = w / (1 + e^(k (T_i - t))), k = 4 a / w.
+//!
+//! M. Sorn (2019), Eqs. 1-5. Right here, wrong there: `docs/profiles.md`.
+
+use crate::bad_ramp::{BadRamp, in_range, positive, wide};
+use crate::curve::Curve;
+use crate::numeric::{ln_exp_m1, softplus};
+use crate::profile::{Profile, Real, real};
+use crate::ramped::RampedMove;
+use crate::refusal::{Limits, Refusal};
+use crate::timed;
+
+/// The part of the asymptote that is missing at the end of a ramp, and present at its start: the source stops at 99.5 %.
+pub const SHORTFALL: f64 = 1.0 / 200.0;
+
+/// One acceleration ramp along a logistic curve, cut off on both sides: it never is at rest, nor at its asymptote.
+///
+/// It starts with a jump to w / (1 + e^(k T_i)) and ends at (1 - shortfall) w.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LogisticRamp<F> {
+    asymptote: F,
+    steepness: F,
+    centre: F,
+    /// Speed at the start over the asymptote: 1 / (1 + A), A = e^(k T_i).
+    start: F,
+    /// ln(1 + A): finite where A is not.
+    ln_start: F,
+    end: F,
+    duration: F,
+    distance: F,
+}
+
+impl<F: Real> LogisticRamp<F> {
+    /// The ramp of the source.
+    ///
+    /// - `asymptote` w, steps/s;
+    /// - `acceleration` a, its peak, steps/s^2;
+    /// - `centre` T_i, when half the asymptote and the peak acceleration are reached, seconds;
+    /// - `shortfall`, the part of w still missing where the ramp ends, under 1 ([`SHORTFALL`]).
+    ///
+    /// # Errors
+    /// A parameter out of its range; a centre so early that the ramp is over before it starts.
+    pub fn new(asymptote: F, acceleration: F, centre: F, shortfall: F) -> Result<Self, BadRamp> {
+        let asymptote = positive("the top speed", asymptote)?;
+        let acceleration = positive("the acceleration", acceleration)?;
+        let centre = in_range("the centre", centre, "finite", centre.is_finite())?;
+        let inside = shortfall > F::zero() && shortfall < F::one();
+        let shortfall = in_range("the shortfall at the end", shortfall, "over 0 and under 1", inside)?;
+        let steepness = real::<F>(4.0) * acceleration / asymptote;
+        let ramp = Self::cut(asymptote, steepness, softplus(steepness * centre), shortfall);
+        let rest = tail(shortfall) / steepness;
+        let duration = centre + rest;
+        if duration > F::zero() {
+            Ok(Self { centre, duration, ..ramp })
+        } else {
+            Err(BadRamp::NoRampTime { centre: wide(centre), least: wide(-rest) })
+        }
+    }
+
+    /// The symmetric ramp: as far from rest at the start as from the asymptote at the end, T_i = ln(199) / k.
+    ///
+    /// # Errors
+    /// A parameter out of its range.
+    pub fn symmetric(asymptote: F, acceleration: F) -> Result<Self, BadRamp> {
+        let steepness = real::<F>(4.0) * positive("the acceleration", acceleration)? / asymptote;
+        Self::new(asymptote, acceleration, tail(real::<F>(SHORTFALL)) / steepness, real(SHORTFALL))
+    }
+
+    /// `ln_start` = ln(1 + A).
+    fn cut(asymptote: F, steepness: F, ln_start: F, shortfall: F) -> Self {
+        let start = (-ln_start).exp();
+        let centre = ln_exp_m1(ln_start) / steepness;
+        let duration = centre + tail(shortfall) / steepness;
+        // s(T) = (w / k) ln((1 - start) / shortfall)
+        let distance = asymptote / steepness * ((-start).ln_1p() - shortfall.ln());
+        let end = asymptote * (F::one() - shortfall);
+        Self { asymptote, steepness, centre, start, ln_start, end, duration, distance }
+    }
+
+    /// The steepest ramp within `limits` that ends at `top`; its jump at the start is at most the start
+    /// speed, where there is one.
+    fn within(limits: &Limits<F>, top: F) -> Self {
+        let shortfall = real::<F>(SHORTFALL);
+        let asymptote = top / (F::one() - shortfall);
+        if asymptote <= F::zero() {
+            let (zero, one) = (F::zero(), F::one());
+            return Self { duration: zero, distance: zero, ..Self::cut(zero, one, one, shortfall) };
+        }
+        Self::between(asymptote, steepest(limits, asymptote), start_fraction(limits, asymptote))
+    }
+
+    /// From `start` of the asymptote to [`SHORTFALL`] under it.
+    pub(crate) fn between(asymptote: F, steepness: F, start: F) -> Self {
+        Self::cut(asymptote, steepness, -start.ln(), real(SHORTFALL))
+    }
+
+    /// w, approached but never reached, steps/s.
+    pub fn asymptote(&self) -> F {
+        self.asymptote
+    }
+
+    /// k = 4 a / w, 1/s.
+    pub fn steepness(&self) -> F {
+        self.steepness
+    }
+
+    /// T_i, when half the asymptote is passed, seconds.
+    pub fn centre(&self) -> F {
+        self.centre
+    }
+
+    /// Speed over the asymptote at t, in 0..1.
+    fn fraction(&self, t: F) -> F {
+        (F::one() + (self.steepness * (self.centre - self.clamped(t))).exp()).recip()
+    }
+
+    fn clamped(&self, t: F) -> F {
+        t.max(F::zero()).min(self.duration)
+    }
+
+    /// Fractions at the start and the end.
+    fn reach(&self) -> (F, F) {
+        (self.start, self.end / self.asymptote)
+    }
+}
+
+/// max |d^2 f/dz^2| of f = 1 / (1 + e^-z): 1 / (6 sqrt 3), where f is (1 -+ 1/sqrt 3) / 2.
+const PEAK_JERK: f64 = 0.096_225_044_864_937_63;
+
+/// The greatest k within acceleration and jerk limit.
+pub(crate) fn steepest<F: Real>(limits: &Limits<F>, asymptote: F) -> F {
+    let by_acceleration = real::<F>(4.0) * limits.acceleration / asymptote;
+    let by_jerk = (limits.jerk / (asymptote * real(PEAK_JERK))).sqrt();
+    by_acceleration.min(by_jerk)
+}
+
+/// The jump at the start over the asymptote: as much as is missing at the end, or the start speed where
+/// that is stated and less.
+pub(crate) fn start_fraction<F: Real>(limits: &Limits<F>, asymptote: F) -> F {
+    let (jump, shortfall) = (limits.start_speed / asymptote, real(SHORTFALL));
+    if jump > F::zero() { jump.min(shortfall) } else { shortfall }
+}
+
+/// k times the time from the centre to where `shortfall` of the asymptote is missing.
+fn tail<F: Real>(shortfall: F) -> F {
+    (-shortfall).ln_1p() - shortfall.ln()
+}
+
+/// df/dz = f (1 - f).
+fn slope<F: Real>(f: F) -> F {
+    f * (F::one() - f)
+}
+
+/// d^2 f/dz^2 = f (1 - f) (1 - 2 f).
+fn bend<F: Real>(f: F) -> F {
+    slope(f) * (F::one() - f - f)
+}
+
+/// ln(1 + f (e^y - 1)), given ln f: the distance, in w/k, from speed f w in the time y/k. Neither f nor e^y
+/// need fit into a float.
+fn gain<F: Real>(ln_f: F, y: F) -> F {
+    let f = ln_f.exp();
+    let grown = f * y.exp_m1();
+    if f.is_normal() && grown.is_finite() { grown.ln_1p() } else { softplus(ln_f + ln_exp_m1(y)) }
+}
+
+impl<F: Real> Profile<F> for LogisticRamp<F> {
+    fn shape(&self) -> &'static str {
+        "logistic"
+    }
+
+    fn duration(&self) -> F {
+        self.duration
+    }
+
+    fn distance(&self) -> F {
+        self.distance
+    }
+
+    fn position(&self, t: F) -> F {
+        let y = self.steepness * self.clamped(t);
+        let grown = gain(-self.ln_start, y);
+        (self.asymptote / self.steepness * grown).min(self.distance)
+    }
+
+    fn speed(&self, t: F) -> F {
+        (self.asymptote * self.fraction(t)).min(self.end)
+    }
+
+    fn acceleration(&self, t: F) -> F {
+        self.steepness * self.asymptote * slope(self.fraction(t))
+    }
+
+    fn jerk(&self, t: F) -> F {
+        self.steepness * self.steepness * self.asymptote * bend(self.fraction(t))
+    }
+
+    /// t = ln(1 + (A + 1) (e^(k x / w) - 1)) / k.
+    fn crossing(&self, x: F) -> F {
+        if x <= F::zero() {
+            return F::zero();
+        } else if x >= self.distance {
+            return self.duration;
+        }
+        let y = self.steepness * x / self.asymptote;
+        let grown = self.ln_start.exp() * y.exp_m1();
+        let t = if grown.is_finite() { grown.ln_1p() } else { softplus(self.ln_start + ln_exp_m1(y)) };
+        (t / self.steepness).min(self.duration)
+    }
+
+    fn breakpoints(&self) -> &[F] {
+        &[]
+    }
+
+    fn mean_speed(&self, from: F, to: F) -> F {
+        let y = self.steepness * (to - from);
+        let ln_from = -softplus(self.steepness * (self.centre - from));
+        if y > F::zero() { self.asymptote * (gain(ln_from, y) / y) } else { self.speed(from) }
+    }
+}
+
+impl<F: Real> Curve<F> for LogisticRamp<F> {
+    fn top_speed(&self) -> F {
+        self.end
+    }
+
+    fn peak_acceleration(&self) -> F {
+        if self.duration.is_zero() {
+            return F::zero();
+        }
+        let (start, end) = self.reach();
+        let middle = real::<F>(0.5).max(start).min(end);
+        self.steepness * self.asymptote * slope(middle)
+    }
+
+    fn peak_jerk(&self) -> F {
+        if self.duration.is_zero() {
+            return F::zero();
+        }
+        let (start, end) = self.reach();
+        let inside = real::<F>(3.0_f64.sqrt().recip());
+        let early = (F::one() - inside) / real(2.0);
+        let bends = [early, F::one() - early].map(|f| bend(f.max(start).min(end)).abs());
+        self.steepness * self.steepness * self.asymptote * bends[0].max(bends[1])
+    }
+
+    fn acceleration_jump(&self) -> F {
+        if self.duration.is_zero() {
+            return F::zero();
+        }
+        let (start, end) = self.reach();
+        self.steepness * self.asymptote * slope(start).max(slope(end))
+    }
+}
+
+/// The logistic move of `distance` steps (over 0) in `time` seconds.
+///
+/// Up along the curve to 99.5 % of its asymptote, a cruise at that speed, down along the mirrored curve. The jump
+/// at both ends is 0.5 % of the asymptote, or the start speed where that is less; a logistic curve
+/// has no rest, so with a start speed of 0, which says nothing of the jump that the motor takes, it is
+/// 0.5 % too. [`Curve::figures`] states it.
+///
+/// # Errors
+/// [`Refusal`] names the limit that fails and the least time.
+pub fn logistic<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<RampedMove<F, LogisticRamp<F>>, Refusal> {
+    timed::in_time(distance, time, limits, &ramps)
+}
+
+/// Least time of [`logistic`], seconds.
+pub fn logistic_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
+    timed::least_time(distance, limits, &ramps)
+}
+
+fn ramps<F: Real>(limits: &Limits<F>, top: F) -> (LogisticRamp<F>, LogisticRamp<F>) {
+    let ramp = LogisticRamp::within(limits, top);
+    (ramp, ramp)
+}

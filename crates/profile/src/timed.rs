@@ -1,0 +1,80 @@
+//! How fast, and in a given time: one rule for every curve.
+//!
+//! A curve is a family of ramps, one for each top speed, as steep as the limits allow. The time of a
+//! move falls as its top speed rises, down to where the two ramps meet or the speed limit is reached:
+//! that is the least time. A longer time keeps the ramps as steep and lowers the top speed.
+
+use crate::curve::Curve;
+use crate::profile::Real;
+use crate::ramped::{RampedMove, time_with_cruise};
+use crate::refusal::{Limit, Limits, Refusal};
+use crate::solve::{largest, smallest};
+
+/// The ramps of one curve: up and down, given the limits and the speed that both reach.
+pub(crate) trait Ramps<F: Real, R: Curve<F>>: Fn(&Limits<F>, F) -> (R, R) {}
+
+impl<F: Real, R: Curve<F>, S: Fn(&Limits<F>, F) -> (R, R)> Ramps<F, R> for S {}
+
+/// The top speed of the fastest move: the speed limit, or where the two ramps meet.
+fn fastest_top<F: Real, R: Curve<F>>(distance: F, limits: &Limits<F>, ramps: &impl Ramps<F, R>) -> F {
+    largest(F::zero(), limits.speed, |top| {
+        let (up, down) = ramps(limits, top);
+        up.distance() + down.distance() <= distance
+    })
+}
+
+fn time_at<F: Real, R: Curve<F>>(distance: F, top: F, limits: &Limits<F>, ramps: &impl Ramps<F, R>) -> F {
+    let (up, down) = ramps(limits, top);
+    time_with_cruise(distance, top, &up, &down)
+}
+
+/// Least time, seconds.
+pub(crate) fn least_time<F: Real, R: Curve<F>>(distance: F, limits: &Limits<F>, ramps: &impl Ramps<F, R>) -> F {
+    if distance <= F::zero() {
+        return F::zero();
+    }
+    time_at(distance, fastest_top(distance, limits, ramps), limits, ramps)
+}
+
+/// The move in exactly `time`: the largest top speed at which it takes that long.
+pub(crate) fn in_time<F: Real, R: Curve<F>>(
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+    ramps: &impl Ramps<F, R>,
+) -> Result<RampedMove<F, R>, Refusal> {
+    let distance = distance.max(F::zero());
+    let least = least_time(distance, limits, ramps);
+    if time.is_nan() || limits.too_short(time, least) {
+        return Err(refusal(distance, time, least, limits, ramps));
+    }
+    let (mean, fastest) = (distance / time, fastest_top(distance, limits, ramps));
+    // `mean` is within rounding of `fastest` or under it: a move at one speed.
+    let top = largest(mean.min(fastest), fastest, |top| time_at(distance, top, limits, ramps) >= time);
+    let (up, down) = ramps(limits, top);
+    Ok(RampedMove::new(distance, time, top, up, down))
+}
+
+/// Names the first limit that `time` breaks, the others taken away one by one, and what it would have to be.
+fn refusal<F: Real, R: Curve<F>>(
+    distance: F,
+    time: F,
+    least: F,
+    limits: &Limits<F>,
+    ramps: &impl Ramps<F, R>,
+) -> Refusal {
+    let does = |limits: &Limits<F>| least_time(distance, limits, ramps) <= time;
+    let infinity = F::infinity();
+    let free = Limits { speed: infinity, jerk: infinity, ..*limits };
+    if !does(&free) {
+        let wanted = smallest(limits.acceleration, |acceleration| does(&Limits { acceleration, ..free }));
+        return Refusal::new(Limit::Acceleration, wanted, limits.acceleration, least);
+    }
+    let free = Limits { jerk: limits.jerk, ..free };
+    if !does(&free) {
+        let wanted = smallest(limits.jerk, |jerk| does(&Limits { jerk, ..free }));
+        return Refusal::new(Limit::Jerk, wanted, limits.jerk, least);
+    }
+    let wanted = smallest(limits.speed, |speed| does(&Limits { speed, ..free }));
+    Refusal::new(Limit::Speed, wanted, limits.speed, least)
+}

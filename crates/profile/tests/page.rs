@@ -1,0 +1,126 @@
+//! `docs/profiles.md` is true: its table and its figures, computed again.
+
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
+
+use carrystep_profile::rule::{logistic, logistic_least_time, scurve, scurve_least_time, sine, sine_least_time};
+use carrystep_profile::{Curve, Limits, LogisticRamp, Profile, RampedMove, SHORTFALL, SineRamp};
+use std::f64::consts::PI;
+
+fn page() -> String {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/profiles.md");
+    std::fs::read_to_string(path).unwrap().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The page has each of these texts, line breaks aside.
+#[track_caller]
+fn says(texts: &[String]) {
+    let page = page();
+    for text in texts {
+        assert!(page.contains(text.as_str()), "docs/profiles.md does not say: {text}");
+    }
+}
+
+/// 61468.3 -> "61 468".
+fn grouped(x: f64) -> String {
+    let digits = format!("{x:.0}");
+    let group = |(i, c): (usize, char)| {
+        let first_of_three = i > 0 && (digits.len() - i).is_multiple_of(3);
+        first_of_three.then_some(' ').into_iter().chain([c])
+    };
+    digits.chars().enumerate().flat_map(group).collect()
+}
+
+const STEPS: f64 = 20_000.0;
+const LIMITS: Limits<f64> =
+    Limits { start_speed: 0.0, speed: f64::INFINITY, acceleration: 500_000.0, jerk: f64::INFINITY };
+
+fn row<R: Curve<f64>>(name: &str, ramped: &RampedMove<f64, R>) -> String {
+    let (ramp, figures) = (ramped.up().figures(), ramped.figures());
+    assert!((figures.peak_acceleration / LIMITS.acceleration - 1.0).abs() < 1e-12);
+    assert!(ramped.cruise_time() < 1e-9);
+    format!(
+        "| {name} | {} | {} | {} | {:.6} | {:.6} |",
+        grouped(figures.start_speed),
+        grouped(ramp.acceleration_jump),
+        if ramp.peak_jerk > 0.0 { grouped(ramp.peak_jerk) } else { "impulses".into() },
+        ramp.seconds,
+        figures.seconds,
+    )
+}
+
+#[test]
+fn the_reference_move() {
+    let plan_scurve = |limits: &Limits<f64>| scurve(STEPS, scurve_least_time(STEPS, limits), limits).unwrap();
+    let smooth = sine(STEPS, sine_least_time(STEPS, &LIMITS), &LIMITS).unwrap();
+    let curve = logistic(STEPS, logistic_least_time(STEPS, &LIMITS), &LIMITS).unwrap();
+    let as_sharp = plan_scurve(&Limits { jerk: smooth.peak_jerk(), ..LIMITS });
+    let ramp = curve.up();
+    assert_eq!(grouped(ramp.asymptote()), "61 468");
+    assert_eq!(format!("{:.6}", ramp.duration()), "0.325371");
+    assert!((ramp.centre() - 199.0_f64.ln() / ramp.steepness()).abs() < 1e-12);
+    assert_eq!(grouped(smooth.top_speed()), "70 711");
+    assert_eq!(format!("{:.6}", smooth.up().duration()), "0.282843");
+    let top = |name: &str, x: f64| format!("{name} {}", grouped(x));
+    says(&[
+        row("trapezoid", &plan_scurve(&LIMITS)),
+        row("scurve, jerk as of the sine", &as_sharp),
+        row("sine", &smooth),
+        row("logistic", &curve),
+        top("trapezoid", plan_scurve(&LIMITS).top_speed()),
+        top("scurve", as_sharp.top_speed()),
+        top("sine", smooth.top_speed()),
+        top("logistic", curve.top_speed()),
+        format!("(asymptote {})", grouped(ramp.asymptote())),
+        format!("{:.0} % more time than an scurve", 100.0 * (smooth.duration() / as_sharp.duration() - 1.0)),
+    ]);
+}
+
+/// The example of the logistic source: 1.8 degrees, half steps, 5 mm a turn, 80 mm/s^2, T_i = 0.4 s.
+fn sorn(mm_per_minute: f64) -> LogisticRamp<f64> {
+    LogisticRamp::new(mm_per_minute / 60.0 * 80.0, 80.0 * 80.0, 0.4, SHORTFALL).unwrap()
+}
+
+#[test]
+fn errors_of_the_logistic_source() {
+    let (slow, fast) = (sorn(1000.0), sorn(3000.0));
+    let jump = |ramp: &LogisticRamp<f64>| 100.0 * ramp.speed(0.0) / ramp.asymptote();
+    let least = 4.0 * 80.0 * 80.0 * 0.4 / f64::MAX.ln() / 80.0 * 60.0;
+    let omega = 1000.0 / 60.0 / 5.0 * 2.0 * PI;
+    let printed = LogisticRamp::new(slow.asymptote(), 6400.0, 0.4, 1.0 - 1.0 / (1.005 * omega)).unwrap();
+    let symmetric = LogisticRamp::symmetric(slow.asymptote(), 6400.0).unwrap();
+    says(&[
+        format!("jumps to {:.2} % of its speed at 1000 mm/min and to {:.1} % at 3000", jump(&slow), jump(&fast)),
+        format!("stops after {:.0} steps at {:.1} % of the speed", printed.distance().round(), 100.0 / (1.005 * omega)),
+        format!("instead of {:.0} steps at 99.5 %", slow.distance().round()),
+        format!("under {least:.2} mm/min"),
+        format!("{:.3} s instead of {:.3} s", symmetric.duration(), slow.duration()),
+    ]);
+}
+
+#[test]
+fn errors_of_the_sinusoidal_source() {
+    let ramp = SineRamp::new(10_000.0, 0.2).unwrap();
+    let end = ramp.crossing(ramp.distance() / PI);
+    let first = ramp.crossing(1.0);
+    let leading = ramp.duration() * (3.0 / (PI * PI * ramp.distance())).powf(0.25);
+    // The linear table of 256 entries at the first step: between 0 and its second entry.
+    let entry = ramp.crossing(ramp.distance() / 256.0);
+    says(&[
+        format!("{:.1} % of the speed after all its steps", 100.0 * ramp.speed(end) / ramp.top_speed()),
+        format!("The first step comes at {:.2} ms", 1e3 * first),
+        format!("({:.2} ms by the leading term)", 1e3 * leading),
+        format!("{:.1} ms early at the first step", 1e3 * (first - entry * 256.0 / ramp.distance())),
+        format!("{} steps/s^4", grouped((2.0 * PI).powi(2) * ramp.top_speed() / ramp.duration().powi(3))),
+    ]);
+}
+
+#[test]
+fn how_long_a_ramp_takes() {
+    let ratio = |seconds: f64| format!("{:.2}", seconds / (2.0 * (STEPS / LIMITS.acceleration).sqrt()));
+    let as_sharp = Limits { jerk: PI * 500_000.0 / 0.282_842_712_474_619, ..LIMITS };
+    says(&[
+        format!("sine {} times", ratio(sine_least_time(STEPS, &LIMITS))),
+        format!("scurve {} times", ratio(scurve_least_time(STEPS, &as_sharp))),
+        format!("logistic {} times", ratio(logistic_least_time(STEPS, &LIMITS))),
+    ]);
+}

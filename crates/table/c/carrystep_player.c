@@ -1,0 +1,90 @@
+/* See carrystep_player.h. */
+#include "carrystep_player.h"
+
+#ifdef CARRYSTEP_PROGMEM
+#include <avr/pgmspace.h>
+#define READ(word) pgm_read_word(&(word))
+#else
+#define READ(word) (word)
+#endif
+
+/* The delay of the place where the move is. */
+static uint16_t delay(const carrystep_player *player)
+{
+    const carrystep_table *table = player->table;
+    return player->at == table->ramp ? table->cruise : READ(table->compare[player->entry]);
+}
+
+/* One pulse up the ramp. */
+static void up(carrystep_player *player)
+{
+    const carrystep_group *group = &player->table->groups[player->group];
+    player->at++;
+    player->pulse++;
+    if (player->pulse == READ(group->pulses)) {
+        player->pulse = 0;
+        player->entry++;
+        if (player->entry == READ(group->end)) {
+            player->group++;
+        }
+    }
+}
+
+/* One pulse down the ramp: exactly what up() did, undone. */
+static void down(carrystep_player *player)
+{
+    const carrystep_group *groups = player->table->groups;
+    player->at--;
+    if (player->pulse == 0) {
+        if (player->group > 0 && player->entry == READ(groups[player->group - 1].end)) {
+            player->group--;
+        }
+        player->entry--;
+        player->pulse = READ(groups[player->group].pulses);
+    }
+    player->pulse--;
+}
+
+bool carrystep_start(carrystep_player *player, const carrystep_table *table, uint32_t steps, uint16_t *compare)
+{
+    player->table = table;
+    player->left = steps;
+    player->at = 0;
+    player->entry = 0;
+    player->pulse = 0;
+    player->group = 0;
+    if (steps == 0) {
+        return false;
+    }
+    *compare = delay(player);
+    return true;
+}
+
+bool carrystep_next(carrystep_player *player, uint16_t *compare)
+{
+    if (player->left <= 1) {
+        player->left = 0; /* and stays 0, should the interrupt come once more */
+        return false;
+    }
+    player->left--;
+    /* Never higher than the pulses behind the next one: they are the way down. */
+    if (player->left <= player->at) {
+        down(player);
+    } else if (player->left - 1 > player->at && player->at < player->table->ramp) {
+        up(player);
+    }
+    *compare = delay(player);
+    return true;
+}
+
+void carrystep_stop(carrystep_player *player)
+{
+    if (player->left > player->at + 1) {
+        player->left = player->at + 1;
+    }
+}
+
+uint32_t carrystep_left(const carrystep_player *player)
+{
+    return player->left;
+}

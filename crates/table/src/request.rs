@@ -1,0 +1,194 @@
+//! What a table is made from, and whether it can be.
+
+use crate::error::{TableError, positive};
+use crate::timer::Timer;
+use serde::Serialize;
+
+/// Most steps in a ramp; a table with one pulse per entry is limited to 65 535 entries besides.
+pub(crate) const MAX_RAMP: u32 = 1_000_000;
+
+/// Most entries in a table: the player counts them in 16 bits.
+pub(crate) const MAX_ENTRIES: u32 = u16::MAX as u32;
+
+/// Speeds that make sense for a table, steps/s.
+const SPEEDS: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
+
+/// Everything that a table is made from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TableRequest {
+    /// The timer that will play it.
+    pub timer: Timer,
+    /// The motor, for speeds in rpm.
+    pub motor: Motor,
+    /// Speed that the ramp rises from, steps/s; 0 or more.
+    pub start_frequency: f64,
+    /// Speed of the cruise; over the start frequency.
+    pub top_speed: Speed,
+    /// The curve between the two.
+    #[serde(flatten)]
+    pub kind: Kind,
+    /// Pulses that each entry lasts.
+    pub pulses: Pulses,
+}
+
+/// Step angle and microsteps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Motor {
+    /// Angle of a full step, degrees; over 0, at most 180.
+    pub step_angle_deg: f64,
+    /// Microsteps in a full step; 1 or more. A step of the table is one microstep.
+    pub microsteps: u32,
+}
+
+/// A speed, in the terms of the source.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Speed {
+    /// Revolutions per minute of the motor shaft.
+    Rpm(f64),
+    /// Steps (microsteps) per second.
+    StepsPerSecond(f64),
+}
+
+/// The curve of a ramp, over the index of its entries or steps.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum Kind {
+    /// [`crate::logistic`]: frequency logistic in the entry index.
+    Logistic {
+        /// Entries, 1 to 65 535; with one pulse each, the steps of the ramp.
+        entries: u32,
+        /// Fle, the source's "curve": over 0. At 6 the ends are 0.25 % of the rise away from the limits.
+        steepness: f64,
+        /// Entry at which half the rise is done, over 0 and at most `entries`; absent: `entries / 2`.
+        centre: Option<f64>,
+    },
+    /// [`crate::austin`]: constant acceleration by the recurrence of Austin and AVR446.
+    Avr446 {
+        /// Steps of the ramp, 1 to 1 000 000; they and the speeds fix the acceleration.
+        ramp_steps: u32,
+        /// Float, or integer with the remainder kept.
+        arithmetic: Arithmetic,
+    },
+    /// [`crate::sine`]: the S-curve whose acceleration is 1 - cos.
+    Sine {
+        /// Steps of the ramp, 1 to 1 000 000; they and the speeds fix its time.
+        ramp_steps: u32,
+        /// Intervals of the inverse table that goes into the header too, 2 to 4096; from rest only.
+        inverse: Option<u32>,
+    },
+}
+
+/// How the recurrence is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Arithmetic {
+    /// In f64; rounded to counts at the end.
+    Float,
+    /// In integers, as AVR446 does on the controller, the remainder of each division kept.
+    Integer,
+}
+
+/// How many pulses an entry lasts.
+///
+/// Logistic entries are stretched: their number stays and the ramp has more pulses. In the other kinds the steps of the
+/// ramp stay, and an entry takes the mean delay of the steps that it covers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pulses {
+    /// One pulse per entry.
+    One,
+    /// As many groups as there are numbers, all with the same number of entries; the number is the
+    /// pulses of each entry in the group, 1 to 65 535.
+    ByGroup(Vec<u32>),
+    /// As many pulses as it takes to last at least this long, seconds.
+    ByTime(f64),
+}
+
+impl Motor {
+    /// Steps/s at `rpm`: 6 rpm microsteps / angle, the angle in degrees.
+    pub fn steps_per_second(&self, rpm: f64) -> f64 {
+        6.0 * rpm * f64::from(self.microsteps) / self.step_angle_deg
+    }
+
+    /// The inverse of [`Self::steps_per_second`].
+    pub fn rpm(&self, steps_per_second: f64) -> f64 {
+        steps_per_second * self.step_angle_deg / (6.0 * f64::from(self.microsteps))
+    }
+}
+
+impl Kind {
+    /// Its name on the command line.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Logistic { .. } => "logistic",
+            Self::Avr446 { .. } => "avr446",
+            Self::Sine { .. } => "sine",
+        }
+    }
+}
+
+impl TableRequest {
+    /// The top speed, steps/s.
+    pub fn top_frequency(&self) -> f64 {
+        match self.top_speed {
+            Speed::Rpm(rpm) => self.motor.steps_per_second(rpm),
+            Speed::StepsPerSecond(steps) => steps,
+        }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), TableError> {
+        self.timer.check()?;
+        let Motor { step_angle_deg, microsteps } = self.motor;
+        positive("step_angle_deg", step_angle_deg, 180.0)?;
+        count("microsteps", microsteps, 1, 1 << 16)?;
+        self.check_speeds()?;
+        self.check_kind()?;
+        match &self.pulses {
+            Pulses::One => Ok(()),
+            Pulses::ByTime(seconds) => positive("pulses by time", *seconds, 1e3),
+            Pulses::ByGroup(pulses) => {
+                count("groups", u32::try_from(pulses.len()).unwrap_or(u32::MAX), 1, MAX_ENTRIES)?;
+                pulses.iter().try_for_each(|&p| count("pulses per entry", p, 1, u32::from(u16::MAX)))
+            }
+        }
+    }
+
+    fn check_speeds(&self) -> Result<(), TableError> {
+        let (start, top) = (self.start_frequency, self.top_frequency());
+        if !SPEEDS.contains(&top) {
+            return Err(TableError::Unusable { parameter: "top speed, steps/s,", value: top, needed: "0.001 to 1e9" });
+        }
+        if !(start >= 0.0 && start.is_finite()) {
+            return Err(TableError::Unusable { parameter: "start_frequency", value: start, needed: "0 or more" });
+        }
+        if start >= top {
+            return Err(TableError::TopUnderStart { start, top, start_rpm: self.motor.rpm(start) });
+        }
+        Ok(())
+    }
+
+    fn check_kind(&self) -> Result<(), TableError> {
+        match self.kind {
+            Kind::Logistic { entries, steepness, centre } => {
+                count("entries", entries, 1, MAX_ENTRIES)?;
+                positive("steepness", steepness, 1e3)?;
+                centre.map_or(Ok(()), |m| positive("centre", m, f64::from(entries)))
+            }
+            Kind::Avr446 { ramp_steps, .. } => count("ramp_steps", ramp_steps, 1, MAX_RAMP),
+            Kind::Sine { ramp_steps, inverse } => {
+                count("ramp_steps", ramp_steps, 1, MAX_RAMP)?;
+                let Some(intervals) = inverse else { return Ok(()) };
+                count("intervals of the inverse table", intervals, 2, 4096)?;
+                if self.start_frequency > 0.0 {
+                    return Err(TableError::InverseFromRest { start: self.start_frequency });
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+fn count(parameter: &'static str, value: u32, least: u32, most: u32) -> Result<(), TableError> {
+    if (least..=most).contains(&value) { Ok(()) } else { Err(TableError::Count { parameter, value, least, most }) }
+}

@@ -1,0 +1,88 @@
+//! Captures that cannot be read, lack a signal, or come from other gateware than the machine's.
+
+use crate::command::{Folder, GOOD};
+
+/// A folder with `move.toml` and the capture `own.vcd` of it.
+fn captured() -> (Folder, Vec<u8>) {
+    let folder = Folder::with_move(GOOD);
+    assert_eq!(folder.run("simulate move.toml --vcd own.vcd").status, 0);
+    let bytes = std::fs::read(folder.path("own.vcd")).unwrap();
+    (folder, bytes)
+}
+
+/// What a logic analyser writes, its last line without an end.
+const FOREIGN: &str = "$timescale 1 us $end\n$scope module la $end\n$var wire 1 ! D0 $end\n$var wire 1 \" D1 $end\n\
+    $upscope $end\n$enddefinitions $end\n#0 0! 0\"\n#9 1!\n#11 0!\n#20";
+
+#[test]
+fn captures_that_are_none() {
+    let (folder, _) = captured();
+    let check = |says: &str| folder.run("check c.vcd move.toml").refuses(says);
+    check("c.vcd: No such file");
+    folder.write("c.vcd", "");
+    check("c.vcd: the capture is cut off at line 1: the header has no end");
+    folder.write("c.vcd", b"\x89PNG\r\n\x1a\n\x00\x00");
+    check("c.vcd: line 1 of the capture: ");
+    folder.write("c.vcd", FOREIGN.replace("$timescale 1 us $end\n", ""));
+    check("c.vcd: the capture has no $timescale");
+    folder.write("c.vcd", FOREIGN.replace("#11", "#8"));
+    folder
+        .run("check c.vcd move.toml --map x.step=la.D0 --map x.dir=la.D1")
+        .refuses("c.vcd: line 9 of the capture: time goes back from 9 to 8");
+    folder.run("check . move.toml").refuses(".: cannot read the capture: Is a directory");
+}
+
+#[test]
+fn captures_that_are_cut_off() {
+    let (folder, bytes) = captured();
+    let header = String::from_utf8_lossy(&bytes).find("$enddefinitions").unwrap();
+    let end = bytes.len() - 1; // the last line may lack its end
+    for cut in [1, header / 2, header, header + 14, header + 20, end / 2, end * 3 / 4, end - 30, end - 2, end - 1] {
+        folder.write("c.vcd", &bytes[..cut]);
+        folder.run("check c.vcd move.toml").refuses("c.vcd: the capture is cut off at line ");
+    }
+    folder.write("c.vcd", &bytes[..end]);
+    assert_eq!(folder.run("check c.vcd move.toml").status, 0);
+}
+
+#[test]
+fn captures_without_the_signals_list_what_they_have() {
+    let (folder, _) = captured();
+    folder.write("c.vcd", FOREIGN);
+    let check = |map: &str, says: &str| folder.run(&format!("check c.vcd move.toml{map}")).refuses(says);
+    check("", "the capture has no signal x.step (nor a vector step with a bit 0); it has la.D0, la.D1");
+    check(
+        " --map x.step=la.D0",
+        "the capture has no signal x.dir (nor a vector dir with a bit 0); it has la.D0, la.D1",
+    );
+    check(" --map x.step=la.D7", "the capture has no signal la.D7 for x.step; it has la.D0, la.D1");
+    check(" --map x.step", "signal map 'x.step': write <axis>.step=<signal> or <axis>.dir=<signal>");
+    check(" --map x.clock=la.D0", "signal map 'x.clock=la.D0': write <axis>.step=<signal>");
+    check(" --map q.step=la.D0", "there is no axis 'q'; the axes are x");
+    check(" --map x.step=la.D0 --map x.step=la.D1", "this pin is already mapped");
+    check(" --slack-ns -1", "unexpected argument '-1'");
+    check(" --origin-ps soon", "invalid value 'soon' for '--origin-ps <PS>'");
+}
+
+#[test]
+fn a_foreign_capture_need_not_end_its_last_line() {
+    let (folder, _) = captured();
+    folder.write("c.vcd", FOREIGN);
+    let ran = folder.run("check c.vcd move.toml --map x.step=la.D0 --map x.dir=la.D1");
+    assert_eq!(ran.status, 1, "{}", ran.stderr); // it is read, but it is not this move
+    assert!(ran.stdout.contains("FAILED"), "{}", ran.stdout);
+}
+
+#[test]
+fn our_own_capture_of_other_gateware_is_refused() {
+    let (folder, _) = captured();
+    let built = "recorded from gateware with clock_hz = 48000000, tick_ns = 1000, phases = 16";
+    for (old, new) in [("phases = 16", "phases = 4"), ("tick_ns = 1000", "tick_ns = 2000")] {
+        let other = GOOD.replace(old, new);
+        folder.write("other.toml", &other);
+        let ran = folder.run("check own.vcd other.toml");
+        ran.refuses(built);
+        ran.refuses("but the machine of other.toml has clock_hz = 48000000, ");
+        ran.refuses(new);
+    }
+}

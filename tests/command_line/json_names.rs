@@ -1,0 +1,107 @@
+//! `--json` is one document whose names do not change: scripts depend on them.
+
+use crate::command::{Folder, GOOD};
+use serde_json::Value;
+
+const LIMITS: &str = "limits limits.total_ticks limits.total_s limits.axes
+    limits.axes[].axis limits.axes[].segments limits.axes[].steps limits.axes[].residue
+    limits.axes[].speed_steps_per_s limits.axes[].speed_limit_steps_per_s
+    limits.axes[].acceleration_steps_per_s2 limits.axes[].acceleration_limit_steps_per_s2
+    limits.axes[].start_speed_steps_per_s limits.axes[].start_speed_limit_steps_per_s";
+
+const CHECK: &str = "check check.passed check.origin check.origin_ps check.slack_ns check.phase_ns check.axes
+    check.axes[].axis check.axes[].passed check.axes[].failures check.axes[].failures_omitted
+    check.axes[].pulses_expected check.axes[].pulses_found check.axes[].pulses_wrong_direction
+    check.axes[].position_expected check.axes[].position_found
+    check.axes[].error_min_ns check.axes[].error_max_ns check.axes[].error_rms_ns check.axes[].error_bound_ns
+    check.axes[].error_std_ns check.axes[].error_std_theory_ns
+    check.axes[].high_min_ns check.axes[].high_required_ns check.axes[].low_min_ns check.axes[].low_required_ns
+    check.axes[].setup_min_ns check.axes[].setup_required_ns check.axes[].hold_min_ns check.axes[].hold_required_ns
+    check.axes[].period_jitter_max_ns check.axes[].period_jitter_theory_ns
+    check.axes[].speed_ripple_max_percent check.axes[].speed_ripple_theory_percent";
+
+const PLAN: &str = "passed tick_ns moves
+    moves[].start_tick moves[].rest_ticks moves[].ticks moves[].seconds moves[].axes
+    moves[].axes[].axis moves[].axes[].shape moves[].axes[].steps moves[].axes[].rounding_steps
+    moves[].axes[].segments moves[].axes[].segments[].ticks moves[].axes[].segments[].v
+    moves[].axes[].segments[].a moves[].axes[].segments[].j moves[].axes[].segments[].last";
+
+const RUN: &str = "passed level clocks run_s faults positions files";
+
+/// Every name in a document, `a.b` for b in a and `a[]` for what the list a holds.
+fn names(value: &Value, path: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Object(fields) => {
+            for (name, field) in fields {
+                let name = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                names(field, &name, found);
+                found.push(name);
+            }
+        }
+        Value::Array(entries) => entries.iter().for_each(|entry| names(entry, &format!("{path}[]"), found)),
+        _ => {}
+    }
+}
+
+/// Runs the command; its document has exactly these names.
+#[track_caller]
+fn document(folder: &Folder, arguments: &str, status: i32, expected: &[&str]) -> Value {
+    let ran = folder.run(&format!("{arguments} --json"));
+    assert_eq!((ran.status, ran.stderr.as_str()), (status, ""), "{arguments}");
+    let document: Value = serde_json::from_str(&ran.stdout).expect("one JSON document");
+    assert_eq!(document["passed"], status == 0, "{arguments}");
+    let mut found = Vec::new();
+    names(&document, "", &mut found);
+    found.sort();
+    found.dedup();
+    let mut expected: Vec<&str> = expected.iter().flat_map(|names| names.split_whitespace()).collect();
+    expected.sort_unstable();
+    assert_eq!(found, expected, "{arguments}");
+    document
+}
+
+#[test]
+fn every_report_keeps_its_names() {
+    let folder = Folder::with_move(GOOD);
+    document(&folder, "plan move.toml", 0, &[PLAN, LIMITS]);
+    let run = document(&folder, "simulate move.toml --vcd a.vcd --csv a.csv", 0, &[RUN, LIMITS, CHECK]);
+    assert_eq!(run["files"], serde_json::json!(["a.vcd", "a.csv"]));
+    assert_eq!(run["positions"], serde_json::json!([4]));
+    document(&folder, "check a.vcd move.toml", 0, &["passed capture", CHECK]);
+    document(&folder, "verilog --out out", 0, &["passed top files"]);
+
+    let run = document(&folder, "demo --out demo", 0, &[RUN, LIMITS, CHECK]);
+    for file in run["files"].as_array().expect("a list of files") {
+        assert!(folder.path(file.as_str().expect("a path")).is_file(), "{file}");
+    }
+    document(&folder, "plan demo/demo.toml", 0, &[PLAN, LIMITS]);
+    document(&folder, "check demo/demo.vcd demo/demo.toml", 0, &["passed capture", CHECK]);
+}
+
+#[test]
+fn a_failed_check_is_a_document_too() {
+    let folder = Folder::with_move(GOOD);
+    document(&folder, "simulate move.toml --vcd a.vcd", 0, &[RUN, LIMITS, CHECK]);
+    folder.write("longer.toml", GOOD.replace("x = 2", "x = 3"));
+    let checked = document(&folder, "check a.vcd longer.toml", 1, &["passed capture", CHECK]);
+    let axis = &checked["check"]["axes"][0];
+    assert_eq!((&axis["pulses_expected"], &axis["pulses_found"]), (&21.into(), &16.into()));
+    assert!(axis["failures"][0].as_str().is_some_and(|sentence| sentence.contains("axis x")), "{axis}");
+}
+
+#[test]
+fn bad_input_prints_no_document() {
+    for arguments in ["plan move.toml --json", "simulate move.toml --json", "check a.vcd move.toml --json"] {
+        Folder::with_move("").run(arguments).refuses("no machine");
+    }
+}
+
+#[test]
+fn numbers_of_64_bits_are_strings() {
+    let folder = Folder::with_move(GOOD);
+    let plan = document(&folder, "plan move.toml", 0, &[PLAN, LIMITS]);
+    let segment = &plan["moves"][0]["axes"][0]["segments"][0];
+    for name in ["v", "a", "j"] {
+        assert!(segment[name].as_str().is_some_and(|text| text.parse::<i64>().is_ok()), "{segment}");
+    }
+}
