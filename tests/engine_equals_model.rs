@@ -3,11 +3,11 @@
 
 use carrystep_hdl::EngineSim;
 use carrystep_levels::Level;
-use carrystep_levels::engine::{EngineCore, EngineHost};
+use carrystep_levels::engine::{EngineCore, EngineHost, Events};
 use carrystep_levels::replay::{self, Recording};
 use carrystep_model::Engine;
-use carrystep_spec::engine::{EngineInputs, QUEUE};
-use carrystep_spec::{AXES, Build, Command, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_spec::engine::{CAUSES, Cause, EngineInputs, Guard, Limits, QUEUE};
+use carrystep_spec::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
 use carrystep_tests::golden::{self, Case, Edge};
 use carrystep_tests::{effort, engine_programs, lockstep};
 use proptest::prelude::*;
@@ -15,27 +15,40 @@ use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 
 /// The fewest clocks that hold the turns; pins as different as in the other rungs, two of them too slow for
-/// a step in every other tick.
-fn build(clock_hz: u64, phases: u32, phase: StartPhase) -> Build {
+/// a step in every other tick; ramps of ten ticks to some hundreds; rounds so short that all of a guard happens.
+fn build(clock_hz: u64, phases: u32, phase: StartPhase, limits: Limits) -> EngineBuild {
     let timebase = Timebase::new(clock_hz, 1000, phases).expect("a fine timebase");
     let mut build = Build { timebase, ..lockstep::tight_build(phases, phase) };
     build.pins[3].gap = 237;
     build.pins[5].hold = 221;
+    let mut build = EngineBuild::minimal(&build, 1);
+    let low = limits == Limits::Pair;
+    build.guard = Guard {
+        round: 2,
+        debounce: 3,
+        watchdog: 40,
+        enable: 2,
+        limits,
+        limit_freezes: limits == Limits::Each,
+        estop_low: low,
+        limits_low: low,
+        stop: (0..AXES).map(|axis| 1 << (52 + 2 * axis)).collect(),
+    };
     build
 }
 
 /// Runs both until the program is over and both are quiet; the clocks it took.
-fn assert_equal(build: &Build, program: &Program) -> Result<u64, TestCaseError> {
+fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Result<u64, TestCaseError> {
     let mut model = Engine::new(build);
     let mut engine = EngineSim::new(build).expect("a fine build");
-    let mut host = EngineHost::new(program);
+    let mut host = EngineHost::new(&build.guard, program, events);
     let mut fault = false;
     let mut quiet = 0;
     for cycle in 0..200_000_u64 {
         let mut inputs = host.inputs(fault);
         let mut expected = EngineCore::outputs(&mut model, &inputs);
-        if expected.fault != fault {
-            fault = expected.fault;
+        if expected.fault.is_some() != fault {
+            fault = expected.fault.is_some();
             inputs = host.inputs(fault);
             expected = EngineCore::outputs(&mut model, &inputs);
         }
@@ -48,7 +61,7 @@ fn assert_equal(build: &Build, program: &Program) -> Result<u64, TestCaseError> 
             cycle / u64::from(build.timebase.clocks_per_tick())
         );
         host.advance(&expected);
-        quiet = if host.is_done() && (expected.idle || expected.fault) { quiet + 1 } else { 0 };
+        quiet = if host.is_done() && (expected.idle || expected.halted) { quiet + 1 } else { 0 };
         if quiet > 12 * build.timebase.clocks_per_tick() {
             assert_kept(&model, &engine)?;
             return Ok(cycle);
@@ -72,13 +85,12 @@ fn assert_kept(model: &Engine, engine: &EngineSim) -> Result<(), TestCaseError> 
 }
 
 /// Runs random programs until they have taken so many clocks.
-fn run_programs(build: &Build, usual: u64, one: impl Fn(&Program) -> Result<u64, TestCaseError>) {
+fn run_programs(build: &EngineBuild, usual: u64, one: impl Fn(&Program, &Events) -> Result<u64, TestCaseError>) {
     let (clocks, enough) = (Cell::new(0), effort::clocks(usual));
-    let config = Config { cases: 10, max_shrink_iters: 400, failure_persistence: None, ..Config::default() };
-    let mut runner = TestRunner::new(config);
+    let config = Config { cases: 10, max_shrink_time: 20_000, failure_persistence: None, ..Config::default() };
     while clocks.get() < enough {
-        let held = runner.run(&engine_programs::program(), |program| {
-            clocks.set(clocks.get() + one(&program)?);
+        let held = TestRunner::new(config.clone()).run(&engine_programs::program(), |(program, events)| {
+            clocks.set(clocks.get() + one(&program, &events)?);
             Ok(())
         });
         held.unwrap_or_else(|error| panic!("{error}\n of {build:?}"));
@@ -86,30 +98,30 @@ fn run_programs(build: &Build, usual: u64, one: impl Fn(&Program) -> Result<u64,
     effort::say(&format!("{} clocks", clocks.get()));
 }
 
-fn in_rust_hdl(build: &Build, usual: u64) {
-    run_programs(build, usual, |program| assert_equal(build, program));
+fn in_rust_hdl(build: &EngineBuild, usual: u64) {
+    run_programs(build, usual, |program, events| assert_equal(build, program, events));
 }
 
 #[test]
 fn random_programs_at_16_phases() {
-    in_rust_hdl(&build(80_000_000, 16, StartPhase::Half), 500_000);
+    in_rust_hdl(&build(80_000_000, 16, StartPhase::Half, Limits::Pair), 500_000);
 }
 
 #[test]
 fn random_programs_at_4_phases_with_clocks_to_spare() {
-    in_rust_hdl(&build(96_000_000, 4, StartPhase::Zero), 300_000);
+    in_rust_hdl(&build(96_000_000, 4, StartPhase::Zero, Limits::Each), 300_000);
 }
 
 #[test]
 fn random_programs_at_1_phase_in_the_shortest_tick() {
-    in_rust_hdl(&build(79_000_000, 1, StartPhase::Half), 300_000);
+    in_rust_hdl(&build(79_000_000, 1, StartPhase::Half, Limits::One), 300_000);
 }
 
-fn in_verilog(level: Level, build: &Build, usual: u64) -> Seen {
+fn in_verilog(level: Level, build: &EngineBuild, usual: u64) -> Seen {
     let verilog = carrystep_export::engine_verilog(build, "a test").expect("a fine build");
     let seen = Cell::new(Seen::default());
-    run_programs(build, usual, |program| {
-        let recording = Recording::new(build, program, 200_000);
+    run_programs(build, usual, |program, events| {
+        let recording = Recording::new(build, program, events, 200_000);
         let difference = replay::difference(level, &verilog, &recording).expect("the tools");
         prop_assert!(difference.is_none(), "{}", difference.unwrap_or_default());
         seen.set(seen.get().with(&recording));
@@ -126,12 +138,10 @@ struct Seen {
     edges: u64,
     /// Edges of several axes in one clock.
     together: u64,
-    overspeed: u64,
-    underrun: u64,
-    overrun: u64,
-    protocol: u64,
-    /// Faults of several axes at one strobe.
-    faults_together: u64,
+    /// Stops by each cause.
+    causes: [u64; CAUSES.len()],
+    /// Edges after a stop was called: of ramps.
+    ramped: u64,
     cleared: u64,
 }
 
@@ -143,38 +153,36 @@ impl Seen {
             let rising = (now.step & !before.step).count_ones();
             self.edges += u64::from(rising);
             self.together += u64::from(rising > 1);
-            let (was, is) = (before.faults, now.faults);
-            let both = (is.overspeed | is.underrun).count_ones() > 1;
-            self.overspeed += u64::from(was.overspeed == 0 && is.overspeed != 0);
-            self.underrun += u64::from(was.underrun == 0 && is.underrun != 0);
-            self.overrun += u64::from(was.overrun == 0 && is.overrun != 0);
-            self.protocol += u64::from(!was.protocol && is.protocol);
-            self.faults_together += u64::from(!was.any() && both);
-            self.cleared += u64::from(before.fault && !now.fault);
+            match (before.fault, now.fault) {
+                (None, Some((cause, _))) => self.causes[cause as usize] += 1,
+                (Some((cause, _)), Some(_)) if cause == Cause::Stop => self.ramped += u64::from(rising),
+                (Some(_), None) => self.cleared += 1,
+                _ => {}
+            }
         }
         self
     }
 
     fn assert_everything(&self) {
-        let Self { clocks, edges, together, overspeed, underrun, overrun, protocol, faults_together, cleared } = *self;
-        let all = [clocks, edges, together, overspeed, underrun, overrun, protocol, faults_together, cleared];
+        let Self { clocks, edges, together, causes, ramped, cleared } = *self;
+        let all = [[clocks, edges, together, ramped, cleared].as_slice(), &causes].concat();
         assert!(all.iter().all(|count| *count > 0), "random programs miss something: {self:?}");
     }
 }
 
 #[test]
 fn random_programs_in_verilator() {
-    in_verilog(Level::Verilator, &build(80_000_000, 16, StartPhase::Half), 5_000_000).assert_everything();
+    in_verilog(Level::Verilator, &build(80_000_000, 16, StartPhase::Half, Limits::Pair), 8_000_000).assert_everything();
 }
 
 #[test]
 fn random_programs_in_verilator_at_4_phases() {
-    in_verilog(Level::Verilator, &build(96_000_000, 4, StartPhase::Zero), 3_000_000);
+    in_verilog(Level::Verilator, &build(96_000_000, 4, StartPhase::Zero, Limits::Each), 2_000_000);
 }
 
 #[test]
 fn random_programs_in_icarus() {
-    in_verilog(Level::Icarus, &build(80_000_000, 16, StartPhase::Zero), 300_000);
+    in_verilog(Level::Icarus, &build(80_000_000, 16, StartPhase::Zero, Limits::One), 300_000);
 }
 
 /// All golden cases of a phase, one an axis; started together, each to its last edge. The short ones in every run.
@@ -187,8 +195,10 @@ fn golden_vectors_in_verilator() {
             .filter(|case| case.phase() == phase && (effort::is_long() || case.total_ticks <= 400_000))
             .collect();
         for cases in cases.chunks(AXES) {
-            let build = Build { pins: [PinTiming::SHORTEST; AXES], ..build(80_000_000, 16, phase) };
-            let recording = Recording::new(&build, &golden_program(cases), u64::MAX);
+            let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
+            let build = Build { timebase, phase, pins: [PinTiming::SHORTEST; AXES] };
+            let build = EngineBuild::minimal(&build, 1 << 40);
+            let recording = Recording::new(&build, &golden_program(cases), &Events::new(), u64::MAX);
             let verilog = carrystep_export::engine_verilog(&build, "a test").expect("a fine build");
             let difference = replay::difference(Level::Verilator, &verilog, &recording).expect("the tools");
             assert_eq!(difference, None);
@@ -218,7 +228,7 @@ fn golden_program(cases: &[&Case]) -> Program {
 }
 
 /// The edges of an axis: tick, phase and direction.
-fn edges(build: &Build, recording: &Recording, axis: usize) -> Vec<Edge> {
+fn edges(build: &EngineBuild, recording: &Recording, axis: usize) -> Vec<Edge> {
     let time = &build.timebase;
     let started = recording.outputs.iter().find(|(_, outputs)| outputs.started).expect("a start").0;
     let zero = started + 1 + time.latency_clocks();
@@ -239,11 +249,11 @@ fn edges(build: &Build, recording: &Recording, axis: usize) -> Vec<Edge> {
 
 #[test]
 fn nothing_happens_to_an_engine_without_a_host() {
-    let build = build(80_000_000, 16, StartPhase::Half);
+    let build = build(80_000_000, 16, StartPhase::Half, Limits::None);
     let mut engine = EngineSim::new(&build).expect("a fine build");
     for _ in 0..1000 {
         let outputs = engine.settle(&EngineInputs::default());
-        assert!(outputs.idle && !outputs.fault && outputs.step == 0 && outputs.dir == 0);
+        assert!(outputs.idle && outputs.fault.is_none() && outputs.step == 0 && outputs.dir == 0 && !outputs.enabled);
         engine.clock();
     }
 }

@@ -83,6 +83,7 @@ module carrystep_adder (
     output wire  [31:0] sum,
     output wire         ended,
     output wire         overflow,
+    output wire         turned,
     output wire         crosses,
     output wire         back,
     output wire         still,
@@ -107,6 +108,7 @@ module carrystep_adder (
     reg over = 1'b0;
     reg unfit = 1'b0;
     reg sign_of_a = 1'b0;
+    reg other = 1'b0;
     reg low_zero = 1'b0;
     reg minus = 1'b0;
     reg zero = 1'b0;
@@ -134,6 +136,7 @@ module carrystep_adder (
     assign sum = r;
     assign ended = over;
     assign overflow = unfit;
+    assign turned = other;
     assign crosses = top;
     assign back = minus;
     assign still = zero;
@@ -195,6 +198,7 @@ module carrystep_adder (
         sign_of_a <= a[31];
         if (beat[11]) begin
             unfit <= r[31] ^ top ^ sign_of_a;
+            other <= r[31] ^ b[31];
         end
         if (beat[5]) begin
             low_zero <= empty & !b[31];
@@ -277,6 +281,7 @@ module carrystep_queue (
     input  wire   [2:0] axis_next,
     input  wire         starts,
     input  wire         halted,
+    input  wire         ramp,
     input  wire         clear,
     input  wire         take,
     input  wire         commit,
@@ -284,6 +289,8 @@ module carrystep_queue (
     input  wire         ended,
     input  wire         overflow,
     input  wire         least,
+    input  wire         turned,
+    input  wire         back,
     input  wire   [2:0] pulses,
     input  wire   [2:0] losses,
     output wire   [2:0] live,
@@ -292,6 +299,9 @@ module carrystep_queue (
     output wire         empty,
     output wire         running,
     output wire         sound,
+    output wire         slows,
+    output wire         upward,
+    output wire         steady,
     output wire         moves,
     output wire         goes_on,
     output wire         too_fast,
@@ -306,6 +316,8 @@ module carrystep_queue (
     localparam [15:0] NO = 16'd0;
     localparam [15:0] RUNNING_BIT = 16'd64;
     localparam [15:0] UNFIT_BIT = 16'd128;
+    localparam [15:0] BACK_BIT = 16'd16384;
+    localparam [15:0] KNOWN_BIT = 16'd32768;
     localparam [15:0] ALL = 16'd65535;
     localparam SET = 1'b1;
     localparam UNSET = 1'b0;
@@ -318,12 +330,15 @@ module carrystep_queue (
     reg backward = 1'b0;
     reg gone = 1'b0;
     reg [2:0] live_now;
+    reg over;
     reg lasts_write_data;
     reg lasts_write_bits;
     reg [2:0] next_live;
     reg [2:0] next_newest;
     reg [15:0] next_running;
     reg [15:0] next_unfit;
+    reg [15:0] next_known;
+    reg [15:0] next_back;
     reg [2:0] next_seen;
     reg [2:0] next_lost;
     reg [15:0] control_write_bits;
@@ -339,8 +354,9 @@ module carrystep_queue (
     wire fits = runs & !word[7];
     wire none = newest == live_now;
     wire last_one = lasts_read_data != 1'b0;
-    wire follows = ended & !last_one & !none;
-    wire stays = moves & (!ended | follows);
+    wire ramps = ramp & word[15];
+    wire follows = ended & !last_one & !none & !ramp;
+    wire stays = moves & !over;
     wire [2:0] missing = pulses - word[10:8];
     wire [2:0] unseen = losses ^ word[13:11];
 
@@ -350,10 +366,13 @@ module carrystep_queue (
     assign empty = none;
     assign running = runs;
     assign sound = fits;
+    assign slows = ramps;
+    assign upward = word[14];
+    assign steady = ramp & !word[15];
     assign moves = fits & !least;
     assign goes_on = stays;
     assign too_fast = runs & (word[7] | least);
-    assign dry = moves & ended & !last_one & none;
+    assign dry = moves & ended & !last_one & none & !ramp;
     assign up = forward;
     assign down = backward;
     assign lost = gone;
@@ -362,6 +381,13 @@ module carrystep_queue (
         live_now = old_live;
         if (starts) begin
             live_now = old_live + ONE;
+        end
+    end
+
+    always @(*) begin
+        over = ended & last_one;
+        if (ramp) begin
+            over = ramps & turned;
         end
     end
 
@@ -403,8 +429,22 @@ module carrystep_queue (
 
     always @(*) begin
         next_unfit = NO;
-        if (stays & !ended & overflow) begin
+        if (stays & !follows & !ramp & overflow) begin
             next_unfit = UNFIT_BIT;
+        end
+    end
+
+    always @(*) begin
+        next_known = NO;
+        if (stays & ramp) begin
+            next_known = KNOWN_BIT;
+        end
+    end
+
+    always @(*) begin
+        next_back = NO;
+        if ((ramps & word[14]) | (!ramps & back)) begin
+            next_back = BACK_BIT;
         end
     end
 
@@ -437,7 +477,7 @@ module carrystep_queue (
         .read_data(control_read_data),
         .write_address(axis),
         .write_bits(control_write_bits),
-        .write_data({13'b0, next_live} | ({13'b0, next_newest} << AT_3) | next_running | next_unfit | ({13'b0, next_seen} << AT_8) | ({13'b0, next_lost} << AT_11))
+        .write_data({13'b0, next_live} | ({13'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({13'b0, next_seen} << AT_8) | ({13'b0, next_lost} << AT_11))
     );
 
     carrystep_lasts lasts (
@@ -482,11 +522,35 @@ module carrystep_segments (
     initial begin
         for (i = 0; i < 512; i = i + 1) words[i] = 0;
         words[15] = 32'h80000000;
+        words[39] = 32'h1aca86a2;
+        words[47] = 32'hffffca50;
+        words[55] = 32'he535795e;
+        words[63] = 32'h35af;
         words[79] = 32'h80000000;
+        words[103] = 32'he23b9ee8;
+        words[111] = 32'hffffd50c;
+        words[119] = 32'h1dc46118;
+        words[127] = 32'h2af3;
         words[143] = 32'h80000000;
+        words[167] = 32'h1417e4fa;
+        words[175] = 32'hffffd7bc;
+        words[183] = 32'hebe81b06;
+        words[191] = 32'h2843;
         words[207] = 32'h80000000;
+        words[231] = 32'h9a211f65;
+        words[239] = 32'hffffe823;
+        words[247] = 32'h65dee09b;
+        words[255] = 32'h17dc;
         words[271] = 32'h80000000;
+        words[295] = 32'h152ce7b;
+        words[303] = 32'hffffc459;
+        words[311] = 32'hfead3185;
+        words[319] = 32'h3ba6;
         words[335] = 32'h80000000;
+        words[359] = 32'h505f93f;
+        words[367] = 32'hfffff5ef;
+        words[375] = 32'hfafa06c1;
+        words[383] = 32'ha10;
     end
 
     always @(posedge clock) begin
@@ -505,6 +569,9 @@ module carrystep_store (
     input  wire         running,
     input  wire         sound,
     input  wire         moves,
+    input  wire         slows,
+    input  wire         upward,
+    input  wire         steady,
     input  wire         wipe,
     input  wire         put,
     input  wire   [2:0] put_word,
@@ -525,6 +592,10 @@ module carrystep_store (
     localparam [2:0] P_HIGH = 3'd1;
     localparam [2:0] POSITION = 3'd2;
     localparam [2:0] DISCARDED = 3'd3;
+    localparam [2:0] DOWN_LOW = 3'd4;
+    localparam [2:0] DOWN_HIGH = 3'd5;
+    localparam [2:0] UP_LOW = 3'd6;
+    localparam [2:0] UP_HIGH = 3'd7;
     localparam [3:0] AT_3 = 4'd3;
     localparam [3:0] AT_6 = 4'd6;
     localparam [31:0] START_HIGH = 32'h80000000;
@@ -549,7 +620,14 @@ module carrystep_store (
         read_slot = live;
         read_word = KEPT;
         if (beat[0]) begin
-            read_word = A_LOW;
+            if (slows) begin
+                read_slot = DOWN_LOW;
+                if (upward) begin
+                    read_slot = UP_LOW;
+                end
+            end else begin
+                read_word = A_LOW;
+            end
         end
         if (beat[1]) begin
             read_word = J_LOW;
@@ -574,7 +652,14 @@ module carrystep_store (
             read_word = J_HIGH;
         end
         if (beat[7]) begin
-            read_word = A_HIGH;
+            if (slows) begin
+                read_slot = DOWN_HIGH;
+                if (upward) begin
+                    read_slot = UP_HIGH;
+                end
+            end else begin
+                read_word = A_HIGH;
+            end
         end
         if (beat[8]) begin
             read_word = V_HIGH;
@@ -598,7 +683,7 @@ module carrystep_store (
         end
         if (beat[5]) begin
             write_word = V_LOW;
-            writes = sound;
+            writes = sound & !steady;
         end
         if (beat[6]) begin
             write_slot = P_LOW;
@@ -627,7 +712,7 @@ module carrystep_store (
         end
         if (beat[11]) begin
             write_word = V_HIGH;
-            writes = sound;
+            writes = sound & !steady;
         end
         if (beat[12]) begin
             write_slot = P_HIGH;
@@ -861,11 +946,343 @@ module carrystep_wheel (
     end
 endmodule
 
+// What is believed of each limit switch.
+module carrystep_switches (
+    input  wire         clock,
+    input  wire   [3:0] read_address,
+    output wire   [7:0] read_data,
+    input  wire   [3:0] write_address,
+    input  wire   [7:0] write_bits,
+    input  wire   [7:0] write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:15];
+    reg [7:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 16; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        if (write_bits[0]) words[write_address] <= write_data;
+    end
+endmodule
+
+// The limit switches, one look in a turn.
+module carrystep_limits (
+    input  wire         clock,
+    input  wire         turn_ends,
+    input  wire   [2:0] axis,
+    input  wire   [2:0] axis_next,
+    input  wire   [5:0] lane,
+    input  wire         tick_0,
+    input  wire         tick_1,
+    input  wire   [5:0] limit_min,
+    input  wire   [5:0] limit_max,
+    input  wire         goes,
+    input  wire         back,
+    output wire         hit
+);
+    localparam EXIST = 1'b1;
+    localparam PAIR = 1'b1;
+    localparam ONE_FOR_ALL = 1'b0;
+    localparam LOW = 1'b0;
+    localparam [6:0] LAST_LOOK = 7'd7;
+    localparam [5:0] FIRST_LANE = 6'd1;
+    localparam [6:0] ONE = 7'd1;
+    localparam [6:0] NONE = 7'd0;
+    localparam [7:0] ACTIVE = 8'd128;
+    localparam [7:0] NO = 8'd0;
+    localparam [7:0] ALL = 8'd255;
+    localparam [3:0] SIDE = 4'd1;
+    localparam [3:0] NO_SIDE = 4'd0;
+    localparam BY_ONE = 1'b1;
+
+    reg sync = 1'b0;
+    reg now = 1'b0;
+    reg [5:0] pins;
+    reg [5:0] chosen;
+    reg [3:0] max_bit;
+    reg [6:0] count;
+    reg [7:0] next_word;
+    reg [7:0] switches_write_bits;
+
+    wire [7:0] switches_read_data;
+
+    wire max = tick_1 & (PAIR != 1'b0);
+    wire looks = turn_ends & (tick_0 | max);
+    wire [7:0] word = switches_read_data;
+    wire differs = now ^ word[7];
+    wire flips = differs & (word[6:0] == LAST_LOOK);
+    wire state = word[7] ^ flips;
+
+    assign hit = looks & (EXIST != 1'b0) & goes & state & (((PAIR != 1'b0) & (back ^ max)) | ((PAIR == 1'b0) & flips));
+
+    always @(*) begin
+        pins = limit_min;
+        if (max) begin
+            pins = limit_max;
+        end
+    end
+
+    always @(*) begin
+        chosen = pins & lane;
+        if (ONE_FOR_ALL != 1'b0) begin
+            chosen = pins & FIRST_LANE;
+        end
+    end
+
+    always @(*) begin
+        max_bit = NO_SIDE;
+        if (max) begin
+            max_bit = SIDE;
+        end
+    end
+
+    always @(*) begin
+        count = NONE;
+        if (differs & !flips) begin
+            count = word[6:0] + ONE;
+        end
+    end
+
+    always @(*) begin
+        next_word = {1'b0, count};
+        if (state) begin
+            next_word = {1'b0, count} | ACTIVE;
+        end
+    end
+
+    always @(*) begin
+        switches_write_bits = NO;
+        if (looks & (EXIST != 1'b0)) begin
+            switches_write_bits = ALL;
+        end
+    end
+
+    carrystep_switches switches (
+        .clock(clock),
+        .read_address(({1'b0, axis_next} << BY_ONE) | max_bit),
+        .read_data(switches_read_data),
+        .write_address(({1'b0, axis} << BY_ONE) | max_bit),
+        .write_bits(switches_write_bits),
+        .write_data(next_word)
+    );
+
+    always @(posedge clock) begin
+        sync <= (chosen != 6'd0) ^ (LOW != 1'b0);
+        now <= sync;
+    end
+endmodule
+
+// Who stops the axes, and how far the stop has come.
+module carrystep_stops (
+    input  wire         clock,
+    input  wire         strobe,
+    input  wire         turn_ends,
+    input  wire   [5:0] lane,
+    input  wire         runs,
+    input  wire         too_fast,
+    input  wire         limit,
+    input  wire         dry,
+    input  wire   [5:0] late,
+    input  wire         pressed,
+    input  wire         breaks,
+    input  wire         missed,
+    input  wire         asked,
+    input  wire         clear,
+    input  wire         pins_busy,
+    output wire         fault,
+    output wire         finds,
+    output wire         frozen,
+    output wire         ramp,
+    output wire         halted,
+    output wire         clearing,
+    output wire   [2:0] cause,
+    output wire   [5:0] culprits
+);
+    localparam LIMIT_FREEZES = 1'b0;
+    localparam [2:0] E_STOP = 3'd0;
+    localparam [2:0] OVERRUN = 3'd1;
+    localparam [2:0] PROTOCOL = 3'd2;
+    localparam [2:0] WATCHDOG = 3'd3;
+    localparam [2:0] OVERSPEED = 3'd4;
+    localparam [2:0] LIMITED = 3'd5;
+    localparam [2:0] UNDERRUN = 3'd6;
+    localparam [2:0] HOST = 3'd7;
+
+    reg called = 1'b0;
+    reg freeze = 1'b0;
+    reg slow = 1'b0;
+    reg still = 1'b0;
+    reg settled = 1'b0;
+    reg wiping = 1'b0;
+    reg [2:0] first = 3'd0;
+    reg [5:0] axes = 6'd0;
+    reg found = 1'b0;
+    reg [2:0] kind = 3'd0;
+    reg found_freezing = 1'b0;
+    reg ran = 1'b0;
+
+    wire finds_now = turn_ends & (too_fast | limit | dry);
+    wire urgent = (late != 6'd0) | (strobe & pressed) | breaks;
+    wire ripe = strobe & found;
+    wire by_host = (strobe & missed) | asked;
+    wire calls = urgent | ripe | by_host;
+
+    assign fault = called;
+    assign finds = found;
+    assign frozen = freeze;
+    assign ramp = slow;
+    assign halted = still;
+    assign clearing = wiping;
+    assign cause = first;
+    assign culprits = axes;
+
+    always @(posedge clock) begin
+        if (finds_now) begin
+            found <= 1'b1;
+        end
+        if (finds_now & !found) begin
+            kind <= UNDERRUN;
+            if (limit) begin
+                kind <= LIMITED;
+            end
+            if (too_fast) begin
+                kind <= OVERSPEED;
+            end
+        end
+        if (turn_ends & (too_fast | (limit & (LIMIT_FREEZES != 1'b0)))) begin
+            found_freezing <= 1'b1;
+        end
+        if (turn_ends & runs) begin
+            ran <= 1'b1;
+        end
+        if (!called) begin
+            if (urgent | (by_host & !ripe)) begin
+                axes <= late;
+            end else if (finds_now & !found) begin
+                axes <= lane;
+            end
+        end
+        if (calls & !called) begin
+            first <= HOST;
+            if (strobe & missed) begin
+                first <= WATCHDOG;
+            end
+            if (ripe) begin
+                first <= kind;
+            end
+            if (breaks) begin
+                first <= PROTOCOL;
+            end
+            if (strobe & pressed) begin
+                first <= E_STOP;
+            end
+            if (late != 6'd0) begin
+                first <= OVERRUN;
+            end
+        end
+        if (calls) begin
+            called <= 1'b1;
+        end
+        if (urgent | (strobe & found_freezing)) begin
+            freeze <= 1'b1;
+        end
+        if (strobe) begin
+            found <= 1'b0;
+            found_freezing <= 1'b0;
+            ran <= 1'b0;
+            slow <= called | found;
+            still <= freeze | found_freezing | (slow & !ran);
+            settled <= still;
+            wiping <= clear & settled & !wiping & !pins_busy & !pressed;
+            if (wiping) begin
+                called <= 1'b0;
+                freeze <= 1'b0;
+                slow <= 1'b0;
+                still <= 1'b0;
+                settled <= 1'b0;
+            end
+        end
+    end
+endmodule
+
+// The e-stop, the host's signs of life, the drivers' power.
+module carrystep_watch (
+    input  wire         clock,
+    input  wire         strobe,
+    input  wire         estop,
+    input  wire         kick,
+    input  wire         enable,
+    input  wire         idle,
+    output wire         pressed,
+    output wire         missed,
+    output wire         enabled,
+    output wire         warm,
+    output wire         tick_0,
+    output wire         tick_1
+);
+    localparam ESTOP_LOW = 1'b0;
+    localparam [9:0] ROUND_BITS = 10'd63;
+    localparam [11:0] WATCHDOG = 12'd783;
+    localparam [11:0] SILENCE_BITS = 12'd1023;
+    localparam [11:0] WARM_AT = 12'd9;
+    localparam [11:0] WARM_BITS = 12'd15;
+    localparam [9:0] FIRST_TICK = 10'd0;
+    localparam [9:0] ONE_TICK = 10'd1;
+    localparam [11:0] NO_ROUND = 12'd0;
+    localparam [11:0] ONE_ROUND = 12'd1;
+
+    reg sync = 1'b0;
+    reg now = 1'b0;
+    reg held = 1'b0;
+    reg [9:0] round = 10'd0;
+    reg [11:0] silence = 12'd0;
+    reg power = 1'b0;
+    reg [11:0] warmth = 12'd0;
+
+    wire round_over = strobe & (round == ROUND_BITS);
+    wire silent = silence == WATCHDOG;
+    wire is_warm = warmth == WARM_AT;
+
+    assign pressed = held & now;
+    assign missed = silent & (WATCHDOG != 12'd0);
+    assign enabled = power;
+    assign warm = is_warm;
+    assign tick_0 = round == FIRST_TICK;
+    assign tick_1 = round == ONE_TICK;
+
+    always @(posedge clock) begin
+        sync <= estop ^ (ESTOP_LOW != 1'b0);
+        now <= sync;
+        held <= now & (held | strobe);
+        if (strobe) begin
+            round <= (round + ONE_TICK) & ROUND_BITS;
+        end
+        if (round_over & !silent) begin
+            silence <= (silence + ONE_ROUND) & SILENCE_BITS;
+        end
+        if (kick) begin
+            silence <= NO_ROUND;
+        end
+        power <= enable | (power & !idle);
+        if (round_over & !is_warm) begin
+            warmth <= (warmth + ONE_ROUND) & WARM_BITS;
+        end
+        if (!power) begin
+            warmth <= NO_ROUND;
+        end
+    end
+endmodule
+
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
 module carrystep_pulser_w5_s5_d1_h1 (
     input  wire         clock,
     input  wire         frozen,
-    input  wire         clear,
     input  wire         request,
     input  wire         request_back,
     input  wire         has_sign,
@@ -874,8 +1291,7 @@ module carrystep_pulser_w5_s5_d1_h1 (
     output wire         dir,
     output wire         owed,
     output wire   [5:0] counts,
-    output wire         overruns,
-    output wire         overrun
+    output wire         overruns
 );
     localparam [16:0] PULSE_OVER = 17'd4;
     localparam [16:0] GAP_OVER = 17'd8;
@@ -905,7 +1321,6 @@ module carrystep_pulser_w5_s5_d1_h1 (
     reg settled = 1'b0;
     reg [2:0] count = 3'd0;
     reg [2:0] lost = 3'd0;
-    reg late = 1'b0;
     reg first_back;
     reg aim;
     reg [2:0] change;
@@ -921,7 +1336,6 @@ module carrystep_pulser_w5_s5_d1_h1 (
     assign owed = due;
     assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
     assign overruns = late_now;
-    assign overrun = late;
 
     always @(*) begin
         first_back = request_back;
@@ -974,7 +1388,6 @@ module carrystep_pulser_w5_s5_d1_h1 (
         if ((frozen & pending) | late_now) begin
             lost <= lost + ONE;
         end
-        late <= (late | late_now) & !clear;
     end
 endmodule
 
@@ -982,7 +1395,6 @@ endmodule
 module carrystep_pulser_w48_s48_d10_h10 (
     input  wire         clock,
     input  wire         frozen,
-    input  wire         clear,
     input  wire         request,
     input  wire         request_back,
     input  wire         has_sign,
@@ -991,8 +1403,7 @@ module carrystep_pulser_w48_s48_d10_h10 (
     output wire         dir,
     output wire         owed,
     output wire   [5:0] counts,
-    output wire         overruns,
-    output wire         overrun
+    output wire         overruns
 );
     localparam [16:0] PULSE_OVER = 17'd47;
     localparam [16:0] GAP_OVER = 17'd94;
@@ -1022,7 +1433,6 @@ module carrystep_pulser_w48_s48_d10_h10 (
     reg settled = 1'b0;
     reg [2:0] count = 3'd0;
     reg [2:0] lost = 3'd0;
-    reg late = 1'b0;
     reg first_back;
     reg aim;
     reg [2:0] change;
@@ -1038,7 +1448,6 @@ module carrystep_pulser_w48_s48_d10_h10 (
     assign owed = due;
     assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
     assign overruns = late_now;
-    assign overrun = late;
 
     always @(*) begin
         first_back = request_back;
@@ -1091,7 +1500,6 @@ module carrystep_pulser_w48_s48_d10_h10 (
         if ((frozen & pending) | late_now) begin
             lost <= lost + ONE;
         end
-        late <= (late | late_now) & !clear;
     end
 endmodule
 
@@ -1099,7 +1507,6 @@ endmodule
 module carrystep_pulser_w92_s92_d32_h32 (
     input  wire         clock,
     input  wire         frozen,
-    input  wire         clear,
     input  wire         request,
     input  wire         request_back,
     input  wire         has_sign,
@@ -1108,8 +1515,7 @@ module carrystep_pulser_w92_s92_d32_h32 (
     output wire         dir,
     output wire         owed,
     output wire   [5:0] counts,
-    output wire         overruns,
-    output wire         overrun
+    output wire         overruns
 );
     localparam [16:0] PULSE_OVER = 17'd91;
     localparam [16:0] GAP_OVER = 17'd182;
@@ -1139,7 +1545,6 @@ module carrystep_pulser_w92_s92_d32_h32 (
     reg settled = 1'b0;
     reg [2:0] count = 3'd0;
     reg [2:0] lost = 3'd0;
-    reg late = 1'b0;
     reg first_back;
     reg aim;
     reg [2:0] change;
@@ -1155,7 +1560,6 @@ module carrystep_pulser_w92_s92_d32_h32 (
     assign owed = due;
     assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
     assign overruns = late_now;
-    assign overrun = late;
 
     always @(*) begin
         first_back = request_back;
@@ -1208,7 +1612,6 @@ module carrystep_pulser_w92_s92_d32_h32 (
         if ((frozen & pending) | late_now) begin
             lost <= lost + ONE;
         end
-        late <= (late | late_now) & !clear;
     end
 endmodule
 
@@ -1216,7 +1619,6 @@ endmodule
 module carrystep_pulser_w120_s120_d240_h240 (
     input  wire         clock,
     input  wire         frozen,
-    input  wire         clear,
     input  wire         request,
     input  wire         request_back,
     input  wire         has_sign,
@@ -1225,8 +1627,7 @@ module carrystep_pulser_w120_s120_d240_h240 (
     output wire         dir,
     output wire         owed,
     output wire   [5:0] counts,
-    output wire         overruns,
-    output wire         overrun
+    output wire         overruns
 );
     localparam [16:0] PULSE_OVER = 17'd119;
     localparam [16:0] GAP_OVER = 17'd238;
@@ -1256,7 +1657,6 @@ module carrystep_pulser_w120_s120_d240_h240 (
     reg settled = 1'b0;
     reg [2:0] count = 3'd0;
     reg [2:0] lost = 3'd0;
-    reg late = 1'b0;
     reg first_back;
     reg aim;
     reg [2:0] change;
@@ -1272,7 +1672,6 @@ module carrystep_pulser_w120_s120_d240_h240 (
     assign owed = due;
     assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
     assign overruns = late_now;
-    assign overrun = late;
 
     always @(*) begin
         first_back = request_back;
@@ -1325,7 +1724,6 @@ module carrystep_pulser_w120_s120_d240_h240 (
         if ((frozen & pending) | late_now) begin
             lost <= lost + ONE;
         end
-        late <= (late | late_now) & !clear;
     end
 endmodule
 
@@ -1333,7 +1731,6 @@ endmodule
 module carrystep_pulser_w144_s144_d72_h72 (
     input  wire         clock,
     input  wire         frozen,
-    input  wire         clear,
     input  wire         request,
     input  wire         request_back,
     input  wire         has_sign,
@@ -1342,8 +1739,7 @@ module carrystep_pulser_w144_s144_d72_h72 (
     output wire         dir,
     output wire         owed,
     output wire   [5:0] counts,
-    output wire         overruns,
-    output wire         overrun
+    output wire         overruns
 );
     localparam [16:0] PULSE_OVER = 17'd143;
     localparam [16:0] GAP_OVER = 17'd286;
@@ -1373,7 +1769,6 @@ module carrystep_pulser_w144_s144_d72_h72 (
     reg settled = 1'b0;
     reg [2:0] count = 3'd0;
     reg [2:0] lost = 3'd0;
-    reg late = 1'b0;
     reg first_back;
     reg aim;
     reg [2:0] change;
@@ -1389,7 +1784,6 @@ module carrystep_pulser_w144_s144_d72_h72 (
     assign owed = due;
     assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
     assign overruns = late_now;
-    assign overrun = late;
 
     always @(*) begin
         first_back = request_back;
@@ -1442,11 +1836,10 @@ module carrystep_pulser_w144_s144_d72_h72 (
         if ((frozen & pending) | late_now) begin
             lost <= lost + ONE;
         end
-        late <= (late | late_now) & !clear;
     end
 endmodule
 
-// Six axes on one adder, their queues, starts, and the freeze.
+// Axes on one adder, their queues, starts, and the guard.
 module carrystep_engine (
     input  wire         clock,
     input  wire         put_valid,
@@ -1458,23 +1851,34 @@ module carrystep_engine (
     input  wire   [5:0] start_mask,
     output wire         start_ready,
     input  wire         clear,
+    input  wire         stop,
+    input  wire         kick,
+    input  wire         enable,
+    input  wire         estop,
+    input  wire   [5:0] limit_min,
+    input  wire   [5:0] limit_max,
     input  wire   [2:0] get_axis,
     input  wire   [1:0] get_item,
     output wire  [31:0] get_data,
     output wire         get_valid,
     output wire   [5:0] step,
     output wire   [5:0] dir,
+    output wire         enabled,
     output wire         idle,
     output wire         fault,
     output wire         halted,
-    output wire   [5:0] overrun,
-    output wire   [5:0] overspeed,
-    output wire   [5:0] underrun,
-    output wire         protocol,
+    output wire   [2:0] cause,
+    output wire   [5:0] culprits,
     output wire         started
 );
     localparam [5:0] NONE = 6'd0;
     localparam [5:0] NO_AXES = 6'd0;
+    localparam [5:0] ONE_AXIS_0 = 6'd1;
+    localparam [5:0] ONE_AXIS_1 = 6'd2;
+    localparam [5:0] ONE_AXIS_2 = 6'd4;
+    localparam [5:0] ONE_AXIS_3 = 6'd8;
+    localparam [5:0] ONE_AXIS_4 = 6'd16;
+    localparam [5:0] ONE_AXIS_5 = 6'd32;
     localparam [2:0] COMMIT = 3'd7;
     localparam [2:0] SIX = 3'd6;
 
@@ -1483,29 +1887,26 @@ module carrystep_engine (
     reg going = 1'b0;
     reg taken = 1'b0;
     reg [2:0] taken_word = 3'd0;
-    reg frozen = 1'b0;
-    reg halt = 1'b0;
-    reg settled = 1'b0;
-    reg clearing = 1'b0;
-    reg broken = 1'b0;
-    reg [5:0] fast = 6'd0;
-    reg [5:0] dry = 6'd0;
-    reg found = 1'b0;
     reg unfed = 1'b0;
     reg held = 1'b0;
     reg active = 1'b0;
     reg rest_1 = 1'b1;
     reg rest_2 = 1'b1;
-    reg pins_busy;
-    reg steps_high;
-    reg overruns;
     reg [5:0] counts;
+    reg pins_busy;
+    reg [5:0] late;
     reg [5:0] counted_0;
+    reg [5:0] late_bit_0;
     reg [5:0] counted_1;
+    reg [5:0] late_bit_1;
     reg [5:0] counted_2;
+    reg [5:0] late_bit_2;
     reg [5:0] counted_3;
+    reg [5:0] late_bit_3;
     reg [5:0] counted_4;
+    reg [5:0] late_bit_4;
     reg [5:0] counted_5;
+    reg [5:0] late_bit_5;
 
     wire [16:0] turn_beat;
     wire [2:0] turn_axis;
@@ -1514,6 +1915,7 @@ module carrystep_engine (
     wire [31:0] adder_sum;
     wire adder_ended;
     wire adder_overflow;
+    wire adder_turned;
     wire adder_crosses;
     wire adder_back;
     wire adder_still;
@@ -1525,6 +1927,9 @@ module carrystep_engine (
     wire queue_empty;
     wire queue_running;
     wire queue_sound;
+    wire queue_slows;
+    wire queue_upward;
+    wire queue_steady;
     wire queue_moves;
     wire queue_goes_on;
     wire queue_too_fast;
@@ -1537,56 +1942,63 @@ module carrystep_engine (
     wire wheel_phase_start;
     wire [5:0] wheel_events;
     wire [5:0] wheel_backward;
+    wire limits_hit;
+    wire stops_fault;
+    wire stops_finds;
+    wire stops_frozen;
+    wire stops_ramp;
+    wire stops_halted;
+    wire stops_clearing;
+    wire [2:0] stops_cause;
+    wire [5:0] stops_culprits;
+    wire watch_pressed;
+    wire watch_missed;
+    wire watch_enabled;
+    wire watch_warm;
+    wire watch_tick_0;
+    wire watch_tick_1;
     wire pulser_0_step;
     wire pulser_0_dir;
     wire pulser_0_owed;
     wire [5:0] pulser_0_counts;
     wire pulser_0_overruns;
-    wire pulser_0_overrun;
     wire pulser_1_step;
     wire pulser_1_dir;
     wire pulser_1_owed;
     wire [5:0] pulser_1_counts;
     wire pulser_1_overruns;
-    wire pulser_1_overrun;
     wire pulser_2_step;
     wire pulser_2_dir;
     wire pulser_2_owed;
     wire [5:0] pulser_2_counts;
     wire pulser_2_overruns;
-    wire pulser_2_overrun;
     wire pulser_3_step;
     wire pulser_3_dir;
     wire pulser_3_owed;
     wire [5:0] pulser_3_counts;
     wire pulser_3_overruns;
-    wire pulser_3_overrun;
     wire pulser_4_step;
     wire pulser_4_dir;
     wire pulser_4_owed;
     wire [5:0] pulser_4_counts;
     wire pulser_4_overruns;
-    wire pulser_4_overrun;
     wire pulser_5_step;
     wire pulser_5_dir;
     wire pulser_5_owed;
     wire [5:0] pulser_5_counts;
     wire pulser_5_overruns;
-    wire pulser_5_overrun;
 
     wire strobe = wheel_strobe;
     wire masked = (turn_lane & mask) != 6'd0;
     wire nobody = put_axis >= SIX;
     wire take = put_valid & put_ready & !nobody;
-    wire stop = frozen | found;
-    wire starves = strobe & armed & !stop & unfed;
-    wire go = strobe & armed & !stop & !unfed & !held;
-    wire breaks = (put_valid & nobody & !frozen) | starves;
-    wire over = overruns | breaks | (strobe & found);
-    wire cleared = strobe & clearing;
+    wire free = !stops_fault & !stops_finds;
+    wire decides = strobe & armed & free;
+    wire go = decides & !unfed & !held;
+    wire rests = rest_2 & !armed & !pins_busy;
 
-    assign put_ready = !frozen & (nobody | (turn_beat[7] & (turn_axis == put_axis) & !queue_full));
-    assign start_ready = strobe & !armed & !frozen;
+    assign put_ready = !stops_fault & (nobody | (turn_beat[7] & (turn_axis == put_axis) & !queue_full));
+    assign start_ready = strobe & !armed & !stops_fault & enable & watch_warm;
     assign get_data = store_word;
     assign get_valid = turn_beat[11];
     assign step[0] = pulser_0_step;
@@ -1601,49 +2013,13 @@ module carrystep_engine (
     assign dir[3] = pulser_3_dir;
     assign dir[4] = pulser_4_dir;
     assign dir[5] = pulser_5_dir;
-    assign idle = rest_2 & !armed & !pins_busy;
-    assign fault = frozen;
-    assign halted = halt;
-    assign overrun[0] = pulser_0_overrun;
-    assign overrun[1] = pulser_1_overrun;
-    assign overrun[2] = pulser_2_overrun;
-    assign overrun[3] = pulser_3_overrun;
-    assign overrun[4] = pulser_4_overrun;
-    assign overrun[5] = pulser_5_overrun;
-    assign overspeed = fast;
-    assign underrun = dry;
-    assign protocol = broken;
+    assign enabled = watch_enabled;
+    assign idle = rests;
+    assign fault = stops_fault;
+    assign halted = stops_halted;
+    assign cause = stops_cause;
+    assign culprits = stops_culprits;
     assign started = go;
-
-    always @(*) begin
-        pins_busy = 1'b0;
-        pins_busy = pins_busy | pulser_0_owed | pulser_0_step;
-        pins_busy = pins_busy | pulser_1_owed | pulser_1_step;
-        pins_busy = pins_busy | pulser_2_owed | pulser_2_step;
-        pins_busy = pins_busy | pulser_3_owed | pulser_3_step;
-        pins_busy = pins_busy | pulser_4_owed | pulser_4_step;
-        pins_busy = pins_busy | pulser_5_owed | pulser_5_step;
-    end
-
-    always @(*) begin
-        steps_high = 1'b0;
-        steps_high = steps_high | pulser_0_step;
-        steps_high = steps_high | pulser_1_step;
-        steps_high = steps_high | pulser_2_step;
-        steps_high = steps_high | pulser_3_step;
-        steps_high = steps_high | pulser_4_step;
-        steps_high = steps_high | pulser_5_step;
-    end
-
-    always @(*) begin
-        overruns = 1'b0;
-        overruns = overruns | pulser_0_overruns;
-        overruns = overruns | pulser_1_overruns;
-        overruns = overruns | pulser_2_overruns;
-        overruns = overruns | pulser_3_overruns;
-        overruns = overruns | pulser_4_overruns;
-        overruns = overruns | pulser_5_overruns;
-    end
 
     always @(*) begin
         counts = NONE;
@@ -1656,9 +2032,36 @@ module carrystep_engine (
     end
 
     always @(*) begin
+        pins_busy = 1'b0;
+        pins_busy = pins_busy | pulser_0_owed | pulser_0_step;
+        pins_busy = pins_busy | pulser_1_owed | pulser_1_step;
+        pins_busy = pins_busy | pulser_2_owed | pulser_2_step;
+        pins_busy = pins_busy | pulser_3_owed | pulser_3_step;
+        pins_busy = pins_busy | pulser_4_owed | pulser_4_step;
+        pins_busy = pins_busy | pulser_5_owed | pulser_5_step;
+    end
+
+    always @(*) begin
+        late = NO_AXES;
+        late = late | late_bit_0;
+        late = late | late_bit_1;
+        late = late | late_bit_2;
+        late = late | late_bit_3;
+        late = late | late_bit_4;
+        late = late | late_bit_5;
+    end
+
+    always @(*) begin
         counted_0 = NONE;
         if (turn_lane[0]) begin
             counted_0 = pulser_0_counts;
+        end
+    end
+
+    always @(*) begin
+        late_bit_0 = NO_AXES;
+        if (pulser_0_overruns) begin
+            late_bit_0 = ONE_AXIS_0;
         end
     end
 
@@ -1670,9 +2073,23 @@ module carrystep_engine (
     end
 
     always @(*) begin
+        late_bit_1 = NO_AXES;
+        if (pulser_1_overruns) begin
+            late_bit_1 = ONE_AXIS_1;
+        end
+    end
+
+    always @(*) begin
         counted_2 = NONE;
         if (turn_lane[2]) begin
             counted_2 = pulser_2_counts;
+        end
+    end
+
+    always @(*) begin
+        late_bit_2 = NO_AXES;
+        if (pulser_2_overruns) begin
+            late_bit_2 = ONE_AXIS_2;
         end
     end
 
@@ -1684,6 +2101,13 @@ module carrystep_engine (
     end
 
     always @(*) begin
+        late_bit_3 = NO_AXES;
+        if (pulser_3_overruns) begin
+            late_bit_3 = ONE_AXIS_3;
+        end
+    end
+
+    always @(*) begin
         counted_4 = NONE;
         if (turn_lane[4]) begin
             counted_4 = pulser_4_counts;
@@ -1691,9 +2115,23 @@ module carrystep_engine (
     end
 
     always @(*) begin
+        late_bit_4 = NO_AXES;
+        if (pulser_4_overruns) begin
+            late_bit_4 = ONE_AXIS_4;
+        end
+    end
+
+    always @(*) begin
         counted_5 = NONE;
         if (turn_lane[5]) begin
             counted_5 = pulser_5_counts;
+        end
+    end
+
+    always @(*) begin
+        late_bit_5 = NO_AXES;
+        if (pulser_5_overruns) begin
+            late_bit_5 = ONE_AXIS_5;
         end
     end
 
@@ -1715,10 +2153,11 @@ module carrystep_engine (
         .lost(queue_lost),
         .up(queue_up),
         .down(queue_down),
-        .wipe(clearing),
+        .wipe(stops_clearing),
         .sum(adder_sum),
         .ended(adder_ended),
         .overflow(adder_overflow),
+        .turned(adder_turned),
         .crosses(adder_crosses),
         .back(adder_back),
         .still(adder_still),
@@ -1732,14 +2171,17 @@ module carrystep_engine (
         .axis(turn_axis),
         .axis_next(turn_axis_next),
         .starts(going & masked),
-        .halted(halt),
-        .clear(clearing),
+        .halted(stops_halted),
+        .ramp(stops_ramp),
+        .clear(stops_clearing),
         .take(take),
         .commit(put_word == COMMIT),
         .last(put_data[0]),
         .ended(adder_ended),
         .overflow(adder_overflow),
         .least(adder_least),
+        .turned(adder_turned),
+        .back(adder_back),
         .pulses(counts[2:0]),
         .losses(counts[5:3]),
         .live(queue_live),
@@ -1748,6 +2190,9 @@ module carrystep_engine (
         .empty(queue_empty),
         .running(queue_running),
         .sound(queue_sound),
+        .slows(queue_slows),
+        .upward(queue_upward),
+        .steady(queue_steady),
         .moves(queue_moves),
         .goes_on(queue_goes_on),
         .too_fast(queue_too_fast),
@@ -1766,7 +2211,10 @@ module carrystep_engine (
         .running(queue_running),
         .sound(queue_sound),
         .moves(queue_moves),
-        .wipe(clearing),
+        .slows(queue_slows),
+        .upward(queue_upward),
+        .steady(queue_steady),
+        .wipe(stops_clearing),
         .put(taken),
         .put_word(taken_word),
         .get_axis(get_axis),
@@ -1790,10 +2238,65 @@ module carrystep_engine (
         .backward(wheel_backward)
     );
 
+    carrystep_limits limits (
+        .clock(clock),
+        .turn_ends(turn_beat[12]),
+        .axis(turn_axis),
+        .axis_next(turn_axis_next),
+        .lane(turn_lane),
+        .tick_0(watch_tick_0),
+        .tick_1(watch_tick_1),
+        .limit_min(limit_min),
+        .limit_max(limit_max),
+        .goes(queue_moves & !adder_still),
+        .back(adder_back),
+        .hit(limits_hit)
+    );
+
+    carrystep_stops stops (
+        .clock(clock),
+        .strobe(strobe),
+        .turn_ends(turn_beat[12]),
+        .lane(turn_lane),
+        .runs(queue_running),
+        .too_fast(queue_too_fast),
+        .limit(limits_hit),
+        .dry(queue_dry),
+        .late(late),
+        .pressed(watch_pressed),
+        .breaks((put_valid & nobody & !stops_fault) | (decides & unfed)),
+        .missed(watch_missed & !rest_2),
+        .asked(stop),
+        .clear(clear),
+        .pins_busy(pins_busy),
+        .fault(stops_fault),
+        .finds(stops_finds),
+        .frozen(stops_frozen),
+        .ramp(stops_ramp),
+        .halted(stops_halted),
+        .clearing(stops_clearing),
+        .cause(stops_cause),
+        .culprits(stops_culprits)
+    );
+
+    carrystep_watch watch (
+        .clock(clock),
+        .strobe(strobe),
+        .estop(estop),
+        .kick(kick),
+        .enable(enable),
+        .idle(rests),
+        .pressed(watch_pressed),
+        .missed(watch_missed),
+        .enabled(watch_enabled),
+        .warm(watch_warm),
+        .tick_0(watch_tick_0),
+        .tick_1(watch_tick_1)
+    );
+
     carrystep_pulser_w5_s5_d1_h1 pulser_0 (
         .clock(clock),
-        .frozen(frozen),
-        .clear(cleared),
+        .frozen(stops_frozen),
         .request(wheel_events[0] & wheel_phase_start),
         .request_back(wheel_backward[0]),
         .has_sign(wheel_events[0] & strobe),
@@ -1802,14 +2305,12 @@ module carrystep_engine (
         .dir(pulser_0_dir),
         .owed(pulser_0_owed),
         .counts(pulser_0_counts),
-        .overruns(pulser_0_overruns),
-        .overrun(pulser_0_overrun)
+        .overruns(pulser_0_overruns)
     );
 
     carrystep_pulser_w48_s48_d10_h10 pulser_1 (
         .clock(clock),
-        .frozen(frozen),
-        .clear(cleared),
+        .frozen(stops_frozen),
         .request(wheel_events[1] & wheel_phase_start),
         .request_back(wheel_backward[1]),
         .has_sign(wheel_events[1] & strobe),
@@ -1818,14 +2319,12 @@ module carrystep_engine (
         .dir(pulser_1_dir),
         .owed(pulser_1_owed),
         .counts(pulser_1_counts),
-        .overruns(pulser_1_overruns),
-        .overrun(pulser_1_overrun)
+        .overruns(pulser_1_overruns)
     );
 
     carrystep_pulser_w92_s92_d32_h32 pulser_2 (
         .clock(clock),
-        .frozen(frozen),
-        .clear(cleared),
+        .frozen(stops_frozen),
         .request(wheel_events[2] & wheel_phase_start),
         .request_back(wheel_backward[2]),
         .has_sign(wheel_events[2] & strobe),
@@ -1834,14 +2333,12 @@ module carrystep_engine (
         .dir(pulser_2_dir),
         .owed(pulser_2_owed),
         .counts(pulser_2_counts),
-        .overruns(pulser_2_overruns),
-        .overrun(pulser_2_overrun)
+        .overruns(pulser_2_overruns)
     );
 
     carrystep_pulser_w120_s120_d240_h240 pulser_3 (
         .clock(clock),
-        .frozen(frozen),
-        .clear(cleared),
+        .frozen(stops_frozen),
         .request(wheel_events[3] & wheel_phase_start),
         .request_back(wheel_backward[3]),
         .has_sign(wheel_events[3] & strobe),
@@ -1850,14 +2347,12 @@ module carrystep_engine (
         .dir(pulser_3_dir),
         .owed(pulser_3_owed),
         .counts(pulser_3_counts),
-        .overruns(pulser_3_overruns),
-        .overrun(pulser_3_overrun)
+        .overruns(pulser_3_overruns)
     );
 
     carrystep_pulser_w5_s5_d1_h1 pulser_4 (
         .clock(clock),
-        .frozen(frozen),
-        .clear(cleared),
+        .frozen(stops_frozen),
         .request(wheel_events[4] & wheel_phase_start),
         .request_back(wheel_backward[4]),
         .has_sign(wheel_events[4] & strobe),
@@ -1866,14 +2361,12 @@ module carrystep_engine (
         .dir(pulser_4_dir),
         .owed(pulser_4_owed),
         .counts(pulser_4_counts),
-        .overruns(pulser_4_overruns),
-        .overrun(pulser_4_overrun)
+        .overruns(pulser_4_overruns)
     );
 
     carrystep_pulser_w144_s144_d72_h72 pulser_5 (
         .clock(clock),
-        .frozen(frozen),
-        .clear(cleared),
+        .frozen(stops_frozen),
         .request(wheel_events[5] & wheel_phase_start),
         .request_back(wheel_backward[5]),
         .has_sign(wheel_events[5] & strobe),
@@ -1882,8 +2375,7 @@ module carrystep_engine (
         .dir(pulser_5_dir),
         .owed(pulser_5_owed),
         .counts(pulser_5_counts),
-        .overruns(pulser_5_overruns),
-        .overrun(pulser_5_overrun)
+        .overruns(pulser_5_overruns)
     );
 
     always @(posedge clock) begin
@@ -1901,20 +2393,13 @@ module carrystep_engine (
             armed <= 1'b1;
             mask <= start_mask;
         end
-        if (go | frozen) begin
+        if (go | stops_fault) begin
             armed <= 1'b0;
         end
         if (turn_beat[12]) begin
             unfed <= unfed | (masked & queue_empty);
             held <= held | (masked & queue_goes_on);
             active <= active | queue_running | !queue_empty;
-            found <= found | queue_too_fast | queue_dry;
-            if (queue_too_fast) begin
-                fast <= fast | turn_lane;
-            end
-            if (queue_dry) begin
-                dry <= dry | turn_lane;
-            end
         end
         if (strobe) begin
             unfed <= 1'b0;
@@ -1926,26 +2411,6 @@ module carrystep_engine (
         if (take) begin
             rest_1 <= 1'b0;
             rest_2 <= 1'b0;
-        end
-        if (over) begin
-            frozen <= 1'b1;
-        end
-        if (breaks) begin
-            broken <= 1'b1;
-        end
-        if (strobe) begin
-            halt <= stop;
-            settled <= halt;
-            clearing <= clear & settled & !steps_high & !clearing;
-        end
-        if (cleared) begin
-            frozen <= 1'b0;
-            halt <= 1'b0;
-            settled <= 1'b0;
-            broken <= 1'b0;
-            found <= 1'b0;
-            fast <= NO_AXES;
-            dry <= NO_AXES;
         end
     end
 endmodule

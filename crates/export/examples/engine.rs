@@ -11,6 +11,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("a machine file and a folder are needed".into());
     };
     let machine = Machine::load(Path::new(&file))?;
-    write_engine(Path::new(&folder), &machine.build(), &file)?;
+    write_engine(Path::new(&folder), &machine.engine(), &file)?;
     Ok(())
 }

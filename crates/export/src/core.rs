@@ -5,7 +5,7 @@ use crate::module::module_text;
 use crate::names::split_index;
 use crate::netlist::{self, Module};
 use carrystep_hdl::{Engine, HdlError, SixAxis};
-use carrystep_spec::{Build, StartPhase};
+use carrystep_spec::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use rust_hdl::prelude::{Block, check_all};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
 const RUST_HDL: &str = "0.46.0";
 
 /// What each module is for, in a line.
-const PURPOSES: [(&str, &str); 17] = [
+const PURPOSES: [(&str, &str); 21] = [
     ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
     ("carrystep_sequencer", "The running and the waiting segment of an axis."),
     ("carrystep_step_edge", "When in its tick a step is due: bisection, then the request to the shaper."),
@@ -43,7 +43,11 @@ const PURPOSES: [(&str, &str); 17] = [
     ("carrystep_rim", "What the pins do in each phase of four ticks."),
     ("carrystep_wheel", "Events on their way to the pins."),
     ("carrystep_pulser", "STEP and DIR with the width, gap, set-up and hold that the driver asks for."),
-    (ENGINE_NAME, "Six axes on one adder, their queues, starts, and the freeze."),
+    ("carrystep_switches", "What is believed of each limit switch."),
+    ("carrystep_limits", "The limit switches, one look in a turn."),
+    ("carrystep_stops", "Who stops the axes, and how far the stop has come."),
+    ("carrystep_watch", "The e-stop, the host's signs of life, the drivers' power."),
+    (ENGINE_NAME, "Axes on one adder, their queues, starts, and the guard."),
 ];
 
 /// The parallel core of this build as Verilog-2005, top module [`CORE_NAME`]; `description` names what the build
@@ -52,18 +56,27 @@ const PURPOSES: [(&str, &str); 17] = [
 /// # Errors
 /// [`ExportError`] where the build cannot be made.
 pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
-    file_text(SixAxis::new(build)?, CORE_NAME, build, description)
+    let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins };
+    file_text(SixAxis::new(build)?, CORE_NAME, &facts, description)
 }
 
 /// The engine of this build as Verilog-2005, top module [`ENGINE_NAME`]; otherwise as [`six_axis_verilog`].
 ///
 /// # Errors
 /// [`ExportError`] where the build cannot be made.
-pub fn engine_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
-    file_text(Engine::new(build)?, ENGINE_NAME, build, description)
+pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, ExportError> {
+    let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins };
+    file_text(Engine::new(build)?, ENGINE_NAME, &facts, description)
 }
 
-fn file_text(mut core: impl Block, name: &str, build: &Build, description: &str) -> Result<String, ExportError> {
+/// What the header tells of a build.
+struct Facts<'a> {
+    timebase: Timebase,
+    phase: StartPhase,
+    pins: &'a [PinTiming],
+}
+
+fn file_text(mut core: impl Block, name: &str, build: &Facts<'_>, description: &str) -> Result<String, ExportError> {
     core.connect_all();
     check_all(&core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
     let mut top = netlist::read(&core)?;
@@ -91,7 +104,7 @@ pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<Pa
 ///
 /// # Errors
 /// [`ExportError`] where the build cannot be made or a file cannot be written.
-pub fn write_engine(dir: &Path, build: &Build, description: &str) -> Result<Vec<PathBuf>, ExportError> {
+pub fn write_engine(dir: &Path, build: &EngineBuild, description: &str) -> Result<Vec<PathBuf>, ExportError> {
     write_files(dir, ENGINE_NAME, &engine_verilog(build, description)?, ENGINE_WAIVERS)
 }
 
@@ -128,7 +141,7 @@ fn new_file(dir: &Path) -> std::io::Result<tempfile::NamedTempFile> {
 
 /// The modules so far, children first.
 struct Library<'a> {
-    build: &'a Build,
+    build: &'a Facts<'a>,
     modules: Vec<(String, String)>,
 }
 
@@ -158,7 +171,7 @@ impl Library<'_> {
     }
 }
 
-fn header(name: &str, build: &Build, description: &str) -> String {
+fn header(name: &str, build: &Facts<'_>, description: &str) -> String {
     let time = &build.timebase;
     let start = match build.phase {
         StartPhase::Half => "half a step",
@@ -169,7 +182,7 @@ fn header(name: &str, build: &Build, description: &str) -> String {
         "\
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// {name}: step and direction for six axes. Generated: change the generator, not this file.
+// {name}: step and direction for {axes} axes. Generated: change the generator, not this file.
 //
 // Made from    {description}
 // Made by      carrystep-export {version}, with Rust-HDL {RUST_HDL}
@@ -180,6 +193,9 @@ fn header(name: &str, build: &Build, description: &str) -> String {
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
 ",
         version = env!("CARGO_PKG_VERSION"),
+        axes = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"]
+            .get(build.pins.len())
+            .unwrap_or(&"many"),
         clock = time.clock_hz(),
         tick = time.tick_ns(),
         clocks = time.clocks_per_tick(),

@@ -5,8 +5,9 @@ use carrystep_export::{
     CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, engine_verilog, six_axis_verilog, write_core,
     write_engine,
 };
+use carrystep_spec::engine::{Guard, Limits};
 use carrystep_spec::ports::{Direction, SIX_AXIS_PORTS};
-use carrystep_spec::{AXES, Build, Machine, PinTiming, StartPhase, Timebase};
+use carrystep_spec::{AXES, Build, EngineBuild, Machine, PinTiming, StartPhase, Timebase};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -15,7 +16,7 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 /// A core that is generated, and the machine file that the committed one is made from.
 struct Core {
     name: &'static str,
-    verilog: fn(&Build, &str) -> Result<String, ExportError>,
+    of_machine: fn(&Machine, &str) -> Result<String, ExportError>,
     write: fn(&Path, &Build, &str) -> Result<Vec<PathBuf>, ExportError>,
     waivers: &'static str,
     machine: &'static str,
@@ -26,7 +27,7 @@ struct Core {
 const CORES: [Core; 2] = [
     Core {
         name: CORE_NAME,
-        verilog: six_axis_verilog,
+        of_machine: |machine, description| six_axis_verilog(&machine.build(), description),
         write: write_core,
         waivers: CORE_WAIVERS,
         machine: "sim/six-axis.toml",
@@ -34,8 +35,8 @@ const CORES: [Core; 2] = [
     },
     Core {
         name: ENGINE_NAME,
-        verilog: engine_verilog,
-        write: write_engine,
+        of_machine: |machine, description| engine_verilog(&machine.engine(), description),
+        write: |folder, build, description| write_engine(folder, &guarded(build), description),
         waivers: ENGINE_WAIVERS,
         machine: "sim/engine.toml",
         timebases: [(48_000_000, 2000, 16), (12_000_000, 10_000, 4), (90_000_000, 1000, 1)],
@@ -44,6 +45,13 @@ const CORES: [Core; 2] = [
 
 fn pins() -> [PinTiming; AXES] {
     [PinTiming { width: 96, gap: 5, setup: 2, hold: 7 }; AXES]
+}
+
+/// With something of everything that the guard can watch.
+fn guarded(build: &Build) -> EngineBuild {
+    let engine = EngineBuild::minimal(build, 1 << 40);
+    let guard = Guard { watchdog: 100, enable: 5, debounce: 3, limits: Limits::Pair, ..engine.guard };
+    EngineBuild { guard, ..engine }
 }
 
 fn build(clock_hz: u64, phases: u32) -> Build {
@@ -111,7 +119,7 @@ fn a_timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
 #[test]
 fn an_engine_whose_turns_do_not_fit_is_refused_with_the_arithmetic_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
-    let error = write_engine(folder.path(), &build(48_000_000, 16), "a test").unwrap_err();
+    let error = write_engine(folder.path(), &guarded(&build(48_000_000, 16)), "a test").unwrap_err();
     assert_eq!(
         error.to_string(),
         "6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz has 48: \
@@ -149,7 +157,7 @@ fn the_committed_cores_are_fresh() {
             std::fs::read_to_string(path).unwrap()
         };
         let how = "run `cargo xtask generate`";
-        assert!(read("v") == (core.verilog)(&machine.build(), core.machine).unwrap(), "{}: {how}", core.name);
+        assert!(read("v") == (core.of_machine)(&machine, core.machine).unwrap(), "{}: {how}", core.name);
         assert!(read("vlt") == core.waivers, "{}: {how}", core.name);
     }
 }

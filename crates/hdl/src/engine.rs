@@ -1,41 +1,48 @@
 //! The engine: one adder for six axes, the same pulses as six parallel ones (docs/engine.md).
 //!
 //! ```text
-//!             .------.  beat, axis
-//!             | turn |-----+----------+-----------+
-//!             '------'     v          v           v
-//!  put_*  -------------> .-------.  .-------.   .-------.  steps, phases
-//!                        | queue |->| store |==>| adder |------------.
-//!                        '-------'  '-------'<==|       |            v
-//!                          ^ pulses, losses     '-------'        .-------.
-//!                          |                                     | wheel |
-//!                        .--------.   the events of this phase   '-------'
-//!   step, dir <----------| pulser |<---------------------------------'
-//!                        '--------' six of them
+//!             .------.  beat, axis                                    estop, kick, enable
+//!             | turn |-----+----------+-----------+                         v
+//!             '------'     v          v           v                     .-------.
+//!  put_*  -------------> .-------.  .-------.   .-------. steps, phases | watch |
+//!                        | queue |->| store |==>| adder |-------.       '-------'
+//!                        '-------'  '-------'<==|       |       v           v
+//!                          ^ pulses, losses     '-------'   .-------.   .-------.
+//!                          |                        v V     | wheel |   | stops |
+//!                        .--------.             .--------.  '-------'   '-------'
+//!   step, dir <----------| pulser |<--.         | limits |------|--> hit  ^   | frozen, ramp,
+//!                        '--------'   |         '--------'      |             v halted, cause
+//!                        six of them  '---- the events of this phase
 //! ```
 //!
 //! All state of an axis is in block RAM but its pins' timers. In each tick every axis has its turn; what
 //! the turns have found takes effect at the strobe that ends the tick, for all axes at once.
 
 use crate::HdlError;
-use crate::constant::Literal;
+use crate::constant::{Literal, Parameter};
 use crate::register::{Input, Register};
 use crate::word::Word;
-use carrystep_spec::{AXES, Build, engine};
+use carrystep_spec::{AXES, EngineBuild};
 use rust_hdl::prelude::*;
 
 pub mod adder;
+pub mod limits;
 pub mod pulser;
 pub mod queue;
+pub mod stops;
 pub mod store;
 pub mod turn;
+pub mod watch;
 pub mod wheel;
 
 use adder::Adder;
+use limits::Limits;
 use pulser::Pulser;
 use queue::Queue;
+use stops::Stops;
 use store::Store;
 use turn::Turn;
+use watch::Watch;
 use wheel::Wheel;
 
 /// The engine.
@@ -59,8 +66,20 @@ pub struct Engine {
     pub start_mask: Input<Word<AXES>>,
     /// The offered start is taken in this cycle.
     pub start_ready: Signal<Out, Bit>,
-    /// Resume after a fault: hold it until `fault` falls.
+    /// Resume after a stop: hold it until `fault` falls.
     pub clear: Input<Bit>,
+    /// The host's controlled stop.
+    pub stop: Input<Bit>,
+    /// The host was heard of: the watchdog starts anew.
+    pub kick: Input<Bit>,
+    /// The host wants the drivers to be powered.
+    pub enable: Input<Bit>,
+    /// The e-stop's pin, asynchronous.
+    pub estop: Input<Bit>,
+    /// The limit pins at the low ends, asynchronous.
+    pub limit_min: Input<Word<AXES>>,
+    /// The limit pins at the high ends, asynchronous.
+    pub limit_max: Input<Word<AXES>>,
     /// The axis that the host asks about.
     pub get_axis: Input<Word<3>>,
     /// What it asks for: 0 and 1 P, low and high, 2 position, 3 discarded steps.
@@ -73,20 +92,18 @@ pub struct Engine {
     pub step: [Signal<Out, Bit>; AXES],
     /// The DIR pins, 1 is backward.
     pub dir: [Signal<Out, Bit>; AXES],
+    /// The drivers are to be powered.
+    pub enabled: Signal<Out, Bit>,
     /// All axes are done and no start is armed.
     pub idle: Signal<Out, Bit>,
-    /// Nothing new rises.
+    /// A stop has been called,
     pub fault: Signal<Out, Bit>,
-    /// No axis is added any more.
+    /// and no axis moves any more.
     pub halted: Signal<Out, Bit>,
-    /// Fault: a second step was owed.
-    pub overrun: [Signal<Out, Bit>; AXES],
-    /// Fault, told while halted: V left (-2^63, 2^63).
-    pub overspeed: Signal<Out, Word<AXES>>,
-    /// Fault, told while halted: the queue ran dry.
-    pub underrun: Signal<Out, Word<AXES>>,
-    /// Fault: the host broke the protocol.
-    pub protocol: Signal<Out, Bit>,
+    /// Why, numbered as [`carrystep_spec::engine::Cause`];
+    pub cause: Signal<Out, Word<3>>,
+    /// the axes that it came from.
+    pub culprits: Signal<Out, Word<AXES>>,
     /// Axes start at the end of this cycle.
     pub started: Signal<Out, Bit>,
     turn: Turn,
@@ -94,42 +111,36 @@ pub struct Engine {
     queue: Queue,
     pub(crate) store: Store,
     wheel: Wheel,
+    limits: Limits,
+    stops: Stops,
+    watch: Watch,
     pulser: [Pulser; AXES],
     armed: Register<Bit>,
     mask: Register<Word<AXES>>,
     going: Register<Bit>,
     taken: Register<Bit>,
     taken_word: Register<Word<3>>,
-    frozen: Register<Bit>,  // `fault`
-    halt: Register<Bit>,    // `halted`
-    settled: Register<Bit>, // halted for a whole tick
-    clearing: Register<Bit>,
-    broken: Register<Bit>,      // `protocol`
-    fast: Register<Word<AXES>>, // `overspeed`
-    dry: Register<Word<AXES>>,  // `underrun`
-    found: Register<Bit>,       // either, in this tick
-    unfed: Register<Bit>,       // a masked axis has nothing waiting
-    held: Register<Bit>,        // a masked axis runs on
-    active: Register<Bit>,      // an axis runs or waits
-    rest_1: Register<Bit>,      // none did in the last tick,
-    rest_2: Register<Bit>,      // and none in the two before
+    unfed: Register<Bit>,  // a masked axis has nothing waiting
+    held: Register<Bit>,   // a masked axis runs on
+    active: Register<Bit>, // an axis runs or waits
+    rest_1: Register<Bit>, // none did in the last tick,
+    rest_2: Register<Bit>, // and none in the two before
     strobe: Signal<Local, Bit>,
     masked: Signal<Local, Bit>,
     nobody: Signal<Local, Bit>,
     take: Signal<Local, Bit>,
-    stop: Signal<Local, Bit>,
+    free: Signal<Local, Bit>,
+    decides: Signal<Local, Bit>,
     go: Signal<Local, Bit>,
-    starves: Signal<Local, Bit>,
-    over: Signal<Local, Bit>,
-    cleared: Signal<Local, Bit>,
+    rests: Signal<Local, Bit>,
     pins_busy: Signal<Local, Bit>,
-    steps_high: Signal<Local, Bit>,
-    overruns: Signal<Local, Bit>,
-    breaks: Signal<Local, Bit>,
+    late: Signal<Local, Word<AXES>>,
+    late_bit: [Signal<Local, Word<AXES>>; AXES],
     counted: [Signal<Local, Word<6>>; AXES],
     counts: Signal<Local, Word<6>>,
     none: Literal<6, 0>,
     no_axes: Literal<AXES, 0>,
+    one_axis: [Parameter<AXES>; AXES],
     commit: Literal<3, 7>,
     six: Literal<3, 6>,
 }
@@ -138,18 +149,22 @@ impl Engine {
     /// The engine of this build.
     ///
     /// # Errors
-    /// [`HdlError::Schedule`] where the turns do not fit into the tick, [`HdlError::PinTiming`] where an axis'
-    /// timing is out of range.
-    pub fn new(build: &Build) -> Result<Self, HdlError> {
-        engine::check_schedule(&build.timebase)?;
+    /// [`HdlError::Engine`] where the turns do not fit into the tick or a figure of the guard cannot be counted,
+    /// [`HdlError::PinTiming`] where an axis' timing is out of range.
+    pub fn new(build: &EngineBuild) -> Result<Self, HdlError> {
+        build.check()?;
         let mut pulser: [Pulser; AXES] = Default::default();
         for (pulser, pins) in pulser.iter_mut().zip(&build.pins) {
             *pulser = Pulser::new(pins)?;
         }
         Ok(Self {
-            store: Store::new(build.phase),
+            store: Store::new(build.phase, &build.guard.stop),
             wheel: Wheel::new(&build.timebase),
+            limits: Limits::new(&build.guard),
+            stops: Stops::new(&build.guard),
+            watch: Watch::new(&build.guard),
             pulser,
+            one_axis: std::array::from_fn(|axis| Parameter::new(1 << axis)),
             rest_1: Register::new(true),
             rest_2: Register::new(true),
             ..Self::default()
@@ -160,16 +175,15 @@ impl Engine {
 impl Logic for Engine {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, armed, mask, going, taken, taken_word, frozen, halt, settled, clearing, broken);
-        dff_setup!(self, clock, fast, dry, found, unfed, held, active, rest_1, rest_2);
-        clock!(self, clock, turn, adder, queue, store, wheel);
+        dff_setup!(self, clock, armed, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2);
+        clock!(self, clock, turn, adder, queue, store, wheel, limits, stops, watch);
 
         self.strobe.next = self.wheel.strobe.val();
         self.masked.next = (self.turn.lane.val() & self.mask.q.val()).any();
 
         // The host's words.
         self.nobody.next = self.put_axis.val() >= self.six.val();
-        self.put_ready.next = !self.frozen.q.val()
+        self.put_ready.next = !self.stops.fault.val()
             & (self.nobody.val()
                 | (self.turn.beat.val().get_bit(7)
                     & (self.turn.axis.val() == self.put_axis.val())
@@ -184,11 +198,14 @@ impl Logic for Engine {
         }
 
         // Starts: armed at a strobe, then at the first strobe at which every axis of the mask rests and waits.
-        self.start_ready.next = self.strobe.val() & !self.armed.q.val() & !self.frozen.q.val();
-        self.stop.next = self.frozen.q.val() | self.found.q.val();
-        self.starves.next = self.strobe.val() & self.armed.q.val() & !self.stop.val() & self.unfed.q.val();
-        self.go.next =
-            self.strobe.val() & self.armed.q.val() & !self.stop.val() & !self.unfed.q.val() & !self.held.q.val();
+        self.start_ready.next = self.strobe.val()
+            & !self.armed.q.val()
+            & !self.stops.fault.val()
+            & self.enable.val()
+            & self.watch.warm.val();
+        self.free.next = !self.stops.fault.val() & !self.stops.finds.val();
+        self.decides.next = self.strobe.val() & self.armed.q.val() & self.free.val();
+        self.go.next = self.decides.val() & !self.unfed.q.val() & !self.held.q.val();
         if self.strobe.val() {
             self.going.d.next = self.go.val();
         }
@@ -196,7 +213,7 @@ impl Logic for Engine {
             self.armed.d.next = true;
             self.mask.d.next = self.start_mask.val();
         }
-        if self.go.val() | self.frozen.q.val() {
+        if self.go.val() | self.stops.fault.val() {
             self.armed.d.next = false;
         }
 
@@ -205,13 +222,6 @@ impl Logic for Engine {
             self.unfed.d.next = self.unfed.q.val() | (self.masked.val() & self.queue.empty.val());
             self.held.d.next = self.held.q.val() | (self.masked.val() & self.queue.goes_on.val());
             self.active.d.next = self.active.q.val() | self.queue.running.val() | !self.queue.empty.val();
-            self.found.d.next = self.found.q.val() | self.queue.too_fast.val() | self.queue.dry.val();
-            if self.queue.too_fast.val() {
-                self.fast.d.next = self.fast.q.val() | self.turn.lane.val();
-            }
-            if self.queue.dry.val() {
-                self.dry.d.next = self.dry.q.val() | self.turn.lane.val();
-            }
         }
         if self.strobe.val() {
             self.unfed.d.next = false;
@@ -225,46 +235,13 @@ impl Logic for Engine {
             self.rest_2.d.next = false;
         }
 
-        // Faults: the pins freeze at once, the axes halt at the strobe.
-        self.pins_busy.next = false;
-        self.steps_high.next = false;
-        self.overruns.next = false;
-        for i in 0..6 {
-            self.pins_busy.next = self.pins_busy.val() | self.pulser[i].owed.val() | self.pulser[i].step.val();
-            self.steps_high.next = self.steps_high.val() | self.pulser[i].step.val();
-            self.overruns.next = self.overruns.val() | self.pulser[i].overruns.val();
-        }
-        self.breaks.next = (self.put_valid.val() & self.nobody.val() & !self.frozen.q.val()) | self.starves.val();
-        self.over.next = self.overruns.val() | self.breaks.val() | (self.strobe.val() & self.found.q.val());
-        self.cleared.next = self.strobe.val() & self.clearing.q.val();
-        if self.over.val() {
-            self.frozen.d.next = true;
-        }
-        if self.breaks.val() {
-            self.broken.d.next = true;
-        }
-        if self.strobe.val() {
-            self.halt.d.next = self.stop.val();
-            self.settled.d.next = self.halt.q.val();
-            self.clearing.d.next =
-                self.clear.val() & self.settled.q.val() & !self.steps_high.val() & !self.clearing.q.val();
-        }
-        if self.cleared.val() {
-            self.frozen.d.next = false;
-            self.halt.d.next = false;
-            self.settled.d.next = false;
-            self.broken.d.next = false;
-            self.found.d.next = false;
-            self.fast.d.next = self.no_axes.val();
-            self.dry.d.next = self.no_axes.val();
-        }
-
         // The pins.
         self.counts.next = self.none.val();
+        self.pins_busy.next = false;
+        self.late.next = self.no_axes.val();
         for i in 0..6 {
             self.pulser[i].clock.next = self.clock.val();
-            self.pulser[i].frozen.next = self.frozen.q.val();
-            self.pulser[i].clear.next = self.cleared.val();
+            self.pulser[i].frozen.next = self.stops.frozen.val();
             self.pulser[i].request.next = self.wheel.events.val().get_bit(i) & self.wheel.phase_start.val();
             self.pulser[i].request_back.next = self.wheel.backward.val().get_bit(i);
             self.pulser[i].has_sign.next = self.wheel.events.val().get_bit(i) & self.strobe.val();
@@ -274,10 +251,16 @@ impl Logic for Engine {
                 self.counted[i].next = self.pulser[i].counts.val();
             }
             self.counts.next = self.counts.val() | self.counted[i].val();
+            self.late_bit[i].next = self.no_axes.val();
+            if self.pulser[i].overruns.val() {
+                self.late_bit[i].next = self.one_axis[i].val();
+            }
+            self.late.next = self.late.val() | self.late_bit[i].val();
+            self.pins_busy.next = self.pins_busy.val() | self.pulser[i].owed.val() | self.pulser[i].step.val();
             self.step[i].next = self.pulser[i].step.val();
             self.dir[i].next = self.pulser[i].dir.val();
-            self.overrun[i].next = self.pulser[i].overrun.val();
         }
+        self.rests.next = self.rest_2.q.val() & !self.armed.q.val() & !self.pins_busy.val();
 
         // The modules.
         self.turn.strobe.next = self.strobe.val();
@@ -285,14 +268,17 @@ impl Logic for Engine {
         self.queue.axis.next = self.turn.axis.val();
         self.queue.axis_next.next = self.turn.axis_next.val();
         self.queue.starts.next = self.going.q.val() & self.masked.val();
-        self.queue.halted.next = self.halt.q.val();
-        self.queue.clear.next = self.clearing.q.val();
+        self.queue.halted.next = self.stops.halted.val();
+        self.queue.ramp.next = self.stops.ramp.val();
+        self.queue.clear.next = self.stops.clearing.val();
         self.queue.take.next = self.take.val();
         self.queue.commit.next = self.put_word.val() == self.commit.val();
         self.queue.last.next = self.put_data.val().get_bit(0);
         self.queue.ended.next = self.adder.ended.val();
         self.queue.overflow.next = self.adder.overflow.val();
         self.queue.least.next = self.adder.least.val();
+        self.queue.turned.next = self.adder.turned.val();
+        self.queue.back.next = self.adder.back.val();
         self.queue.pulses.next = self.counts.val().get_bits::<3>(0);
         self.queue.losses.next = self.counts.val().get_bits::<3>(3);
 
@@ -303,7 +289,7 @@ impl Logic for Engine {
         self.adder.lost.next = self.queue.lost.val();
         self.adder.up.next = self.queue.up.val();
         self.adder.down.next = self.queue.down.val();
-        self.adder.wipe.next = self.clearing.q.val();
+        self.adder.wipe.next = self.stops.clearing.val();
 
         self.store.beat.next = self.turn.beat.val();
         self.store.axis.next = self.turn.axis.val();
@@ -312,7 +298,10 @@ impl Logic for Engine {
         self.store.running.next = self.queue.running.val();
         self.store.sound.next = self.queue.sound.val();
         self.store.moves.next = self.queue.moves.val();
-        self.store.wipe.next = self.clearing.q.val();
+        self.store.slows.next = self.queue.slows.val();
+        self.store.upward.next = self.queue.upward.val();
+        self.store.steady.next = self.queue.steady.val();
+        self.store.wipe.next = self.stops.clearing.val();
         self.store.put.next = self.taken.q.val();
         self.store.put_word.next = self.taken_word.q.val();
         self.store.get_axis.next = self.get_axis.val();
@@ -329,12 +318,45 @@ impl Logic for Engine {
 
         self.get_data.next = self.store.word.val();
         self.get_valid.next = self.turn.beat.val().get_bit(11);
-        self.idle.next = self.rest_2.q.val() & !self.armed.q.val() & !self.pins_busy.val();
-        self.fault.next = self.frozen.q.val();
-        self.halted.next = self.halt.q.val();
-        self.overspeed.next = self.fast.q.val();
-        self.underrun.next = self.dry.q.val();
-        self.protocol.next = self.broken.q.val();
+        self.limits.turn_ends.next = self.turn.beat.val().get_bit(12);
+        self.limits.axis.next = self.turn.axis.val();
+        self.limits.axis_next.next = self.turn.axis_next.val();
+        self.limits.lane.next = self.turn.lane.val();
+        self.limits.tick_0.next = self.watch.tick_0.val();
+        self.limits.tick_1.next = self.watch.tick_1.val();
+        self.limits.limit_min.next = self.limit_min.val();
+        self.limits.limit_max.next = self.limit_max.val();
+        self.limits.goes.next = self.queue.moves.val() & !self.adder.still.val();
+        self.limits.back.next = self.adder.back.val();
+
+        self.stops.strobe.next = self.strobe.val();
+        self.stops.turn_ends.next = self.turn.beat.val().get_bit(12);
+        self.stops.lane.next = self.turn.lane.val();
+        self.stops.runs.next = self.queue.running.val();
+        self.stops.too_fast.next = self.queue.too_fast.val();
+        self.stops.limit.next = self.limits.hit.val();
+        self.stops.dry.next = self.queue.dry.val();
+        self.stops.late.next = self.late.val();
+        self.stops.pressed.next = self.watch.pressed.val();
+        self.stops.breaks.next = (self.put_valid.val() & self.nobody.val() & !self.stops.fault.val())
+            | (self.decides.val() & self.unfed.q.val());
+        self.stops.missed.next = self.watch.missed.val() & !self.rest_2.q.val();
+        self.stops.asked.next = self.stop.val();
+        self.stops.clear.next = self.clear.val();
+        self.stops.pins_busy.next = self.pins_busy.val();
+
+        self.watch.strobe.next = self.strobe.val();
+        self.watch.estop.next = self.estop.val();
+        self.watch.kick.next = self.kick.val();
+        self.watch.enable.next = self.enable.val();
+        self.watch.idle.next = self.rests.val();
+
+        self.enabled.next = self.watch.enabled.val();
+        self.idle.next = self.rests.val();
+        self.fault.next = self.stops.fault.val();
+        self.halted.next = self.stops.halted.val();
+        self.cause.next = self.stops.cause.val();
+        self.culprits.next = self.stops.culprits.val();
         self.started.next = self.go.val();
     }
 }
@@ -342,19 +364,24 @@ impl Logic for Engine {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use carrystep_spec::{PinTiming, StartPhase, Timebase};
+    use carrystep_spec::engine::EngineError;
+    use carrystep_spec::{Build, PinTiming, StartPhase, Timebase};
 
-    #[test]
-    fn engine_synthesizes() {
+    fn build() -> EngineBuild {
         let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-        crate::sim::assert_synthesizes(Engine::new(&build).unwrap(), "carrystep_engine");
+        EngineBuild::minimal(&build, 1 << 40)
     }
 
     #[test]
-    fn a_tick_without_room_for_the_turns_is_refused() {
+    fn engine_synthesizes() {
+        crate::sim::assert_synthesizes(Engine::new(&build()).unwrap(), "carrystep_engine");
+    }
+
+    #[test]
+    fn a_tick_that_is_too_short_is_refused() {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
-        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-        assert!(matches!(Engine::new(&build), Err(HdlError::Schedule(_))));
+        let refused = Engine::new(&EngineBuild { timebase, ..build() });
+        assert!(matches!(refused.err(), Some(HdlError::Engine(EngineError::Schedule { .. }))));
     }
 }

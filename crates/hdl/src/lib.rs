@@ -24,7 +24,7 @@ pub use sim::{AxisSim, EngineSim, SixAxisSim};
 pub use six_axis::SixAxis;
 
 use carrystep_spec::build::MAX_CLOCKS;
-use carrystep_spec::engine::ScheduleError;
+use carrystep_spec::engine::EngineError;
 use thiserror::Error;
 
 /// Why there is no gateware for a build.
@@ -41,9 +41,9 @@ pub enum HdlError {
     /// Q is not 1, 4 or 16.
     #[error("{0} phases: a tick has 1, 4 or 16 phases")]
     Phases(u32),
-    /// The engine has more to do in a tick than the tick has clocks.
+    /// The engine has more to do in a tick than the tick has clocks, or counts further than it can.
     #[error(transparent)]
-    Schedule(#[from] ScheduleError),
+    Engine(#[from] EngineError),
     /// Rust-HDL's own check of a module failed.
     #[error("Rust-HDL refuses the module: {0}")]
     Check(String),

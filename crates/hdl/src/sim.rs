@@ -11,9 +11,9 @@ use crate::axis::Axis;
 use crate::engine::Engine;
 use crate::six_axis::SixAxis;
 use crate::word::Word;
-use carrystep_spec::engine::{EngineInputs, EngineOutputs, Put};
+use carrystep_spec::engine::{CAUSES, EngineInputs, EngineOutputs, Put};
 use carrystep_spec::ports::{Inputs, Outputs};
-use carrystep_spec::{AXES, Build, Faults, Segment, StartPhase};
+use carrystep_spec::{AXES, Build, EngineBuild, Faults, Segment, StartPhase};
 use rust_hdl::prelude::{Bit, Block, Out, Signal, check_all, simulate};
 
 /// Passes in which any module here settles, with room to spare.
@@ -116,7 +116,7 @@ impl EngineSim {
     ///
     /// # Errors
     /// [`HdlError`] where the build cannot be made.
-    pub fn new(build: &Build) -> Result<Self, HdlError> {
+    pub fn new(build: &EngineBuild) -> Result<Self, HdlError> {
         Ok(Self { core: connected(Engine::new(build)?)? })
     }
 
@@ -132,6 +132,12 @@ impl EngineSim {
         core.start_valid.next = inputs.start.is_some();
         core.start_mask.next = Word::from(u64::from(inputs.start.unwrap_or(0)));
         core.clear.next = inputs.clear;
+        core.stop.next = inputs.stop;
+        core.kick.next = inputs.kick;
+        core.enable.next = inputs.enable;
+        core.estop.next = inputs.estop;
+        core.limit_min.next = Word::from(u64::from(inputs.limit_min));
+        core.limit_max.next = Word::from(u64::from(inputs.limit_max));
         settle(core.as_mut());
         self.outputs()
     }
@@ -156,22 +162,16 @@ impl EngineSim {
 
     fn outputs(&self) -> EngineOutputs {
         let core = &self.core;
-        let halted = core.halted.val();
-        let told = |mask: Word<AXES>| if halted { mask.value() as u8 } else { 0 };
+        let cause = CAUSES[core.cause.val().value() as usize];
         EngineOutputs {
             put_ready: core.put_ready.val(),
             start_ready: core.start_ready.val(),
             step: mask(&core.step),
             dir: mask(&core.dir),
+            enabled: core.enabled.val(),
             idle: core.idle.val(),
-            fault: core.fault.val(),
-            halted,
-            faults: Faults {
-                overrun: mask(&core.overrun),
-                overspeed: told(core.overspeed.val()),
-                underrun: told(core.underrun.val()),
-                protocol: core.protocol.val(),
-            },
+            fault: core.fault.val().then(|| (cause, core.culprits.val().value() as u8)),
+            halted: core.halted.val(),
             started: core.started.val(),
         }
     }

@@ -15,13 +15,12 @@ uint64_t outputs(const Vcarrystep_engine& core) {
     add(core.idle, 1);
     add(core.fault, 1);
     add(core.halted, 1);
-    add(core.protocol, 1);
     add(core.started, 1);
+    add(core.enabled, 1);
+    add(core.fault ? core.cause : 0, 3);
     add(core.step, 6);
     add(core.dir, 6);
-    add(core.overrun, 6);
-    add(core.halted ? core.overspeed : 0, 6);
-    add(core.halted ? core.underrun : 0, 6);
+    add(core.fault ? core.culprits : 0, 6);
     return all;
 }
 
@@ -44,8 +43,9 @@ int main(int argc, char** argv) {
     core.eval();
     uint64_t before = ~uint64_t{0}, cycle = 0, count;
     unsigned put_valid, put_axis, put_word, put_data, start_valid, start_mask, clear;
-    while (std::fscanf(file, "%" SCNu64 " %u %x %x %x %u %x %u", &count, &put_valid, &put_axis, &put_word, &put_data,
-                       &start_valid, &start_mask, &clear) == 8) {
+    unsigned stop, kick, enable, estop, limit_min, limit_max;
+    while (std::fscanf(file, "%" SCNu64 " %u %x %x %x %u %x %u %u %u %u %u %x %x", &count, &put_valid, &put_axis, &put_word, &put_data,
+                       &start_valid, &start_mask, &clear, &stop, &kick, &enable, &estop, &limit_min, &limit_max) == 14) {
         core.put_valid = put_valid;
         core.put_axis = put_axis;
         core.put_word = put_word;
@@ -53,6 +53,12 @@ int main(int argc, char** argv) {
         core.start_valid = start_valid;
         core.start_mask = start_mask;
         core.clear = clear;
+        core.stop = stop;
+        core.kick = kick;
+        core.enable = enable;
+        core.estop = estop;
+        core.limit_min = limit_min;
+        core.limit_max = limit_max;
         for (; count != 0; --count, ++cycle) {
             core.eval();
             const uint64_t now = outputs(core);
@@ -61,7 +67,7 @@ int main(int argc, char** argv) {
             tick(core);
         }
     }
-    core.put_valid = core.start_valid = core.clear = 0;
+    core.put_valid = core.start_valid = core.clear = core.stop = core.kick = 0;
     for (int axis = 0; axis < 6; ++axis)
         for (int item = 0; item < 4; ++item) {
             core.get_axis = axis;

@@ -1,6 +1,6 @@
 //! The engine under the same host as every core: a segment is seven words and a commit.
 
-use carrystep_spec::engine::{COMMIT, EngineInputs, EngineOutputs, Put};
+use carrystep_spec::engine::{COMMIT, EngineInputs, EngineOutputs, Guard, Put};
 use carrystep_spec::{Command, Program, Segment};
 
 /// An engine that can be stepped in Rust.
@@ -49,16 +49,42 @@ pub fn puts(axis: u8, segment: &Segment) -> Vec<Put> {
     (0..).zip(words).map(|(word, data)| Put { axis, word, data }).chain([commit]).collect()
 }
 
-/// Feeds a program, a command at a time, each until it is taken.
+/// What happens around the host, at a cycle; `true` is active, whatever the polarity of the pin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Event {
+    /// The e-stop.
+    EStop(bool),
+    /// The limits at the low ends.
+    LimitMin(u8),
+    /// The limits at the high ends.
+    LimitMax(u8),
+    /// The host's controlled stop.
+    Stop(bool),
+    /// The wish for power.
+    Enable(bool),
+    /// A sign of life, in this cycle.
+    Kick,
+}
+
+/// Events in order of their cycles.
+pub type Events = Vec<(u64, Event)>;
+
+/// Feeds a program, a command at a time, each until it is taken, while events go on around it.
 #[derive(Debug, Clone)]
 pub struct EngineHost {
     acts: std::vec::IntoIter<Act>,
     current: Option<Act>,
+    events: std::iter::Peekable<std::vec::IntoIter<(u64, Event)>>,
+    cycle: u64,
+    /// What is driven beside the program.
+    around: EngineInputs,
+    estop_low: bool,
+    limits_low: u8,
 }
 
 impl EngineHost {
-    /// A host with this to do.
-    pub fn new(program: &Program) -> Self {
+    /// A host with this to do; the drivers are enabled until an event says otherwise.
+    pub fn new(guard: &Guard, program: &Program, events: &Events) -> Self {
         let mut acts = Vec::new();
         for command in program {
             match *command {
@@ -70,22 +96,48 @@ impl EngineHost {
         }
         let mut acts = acts.into_iter();
         let current = acts.next();
-        Self { acts, current }
+        let events = events.clone().into_iter().peekable();
+        let around = EngineInputs { enable: true, ..EngineInputs::default() };
+        let limits_low = if guard.limits_low { 0xff } else { 0 };
+        let mut host = Self { acts, current, events, cycle: 0, around, estop_low: guard.estop_low, limits_low };
+        host.happen();
+        host
     }
 
-    /// What is driven in this cycle; nothing but `clear` and waiting while there is a fault.
+    /// Takes the events of this cycle.
+    fn happen(&mut self) {
+        self.around.kick = false;
+        while let Some((_, event)) = self.events.next_if(|(cycle, _)| *cycle <= self.cycle) {
+            match event {
+                Event::EStop(active) => self.around.estop = active,
+                Event::LimitMin(active) => self.around.limit_min = active,
+                Event::LimitMax(active) => self.around.limit_max = active,
+                Event::Stop(asked) => self.around.stop = asked,
+                Event::Enable(wanted) => self.around.enable = wanted,
+                Event::Kick => self.around.kick = true,
+            }
+        }
+    }
+
+    /// What is driven in this cycle; of the program nothing but `clear` and waiting while there is a fault.
     pub fn inputs(&self, fault: bool) -> EngineInputs {
+        let inputs = EngineInputs {
+            estop: self.around.estop != self.estop_low,
+            limit_min: self.around.limit_min ^ self.limits_low,
+            limit_max: self.around.limit_max ^ self.limits_low,
+            ..self.around
+        };
         match self.current {
-            Some(Act::Put(put)) if !fault => EngineInputs { put: Some(put), ..EngineInputs::default() },
-            Some(Act::Start(mask)) if !fault => EngineInputs { start: Some(mask), ..EngineInputs::default() },
-            Some(Act::Clear) => EngineInputs { clear: true, ..EngineInputs::default() },
-            _ => EngineInputs::default(),
+            Some(Act::Put(put)) if !fault => EngineInputs { put: Some(put), ..inputs },
+            Some(Act::Start(mask)) if !fault => EngineInputs { start: Some(mask), ..inputs },
+            Some(Act::Clear) => EngineInputs { clear: true, ..inputs },
+            _ => inputs,
         }
     }
 
     /// Goes on where the command is done in this cycle.
     pub fn advance(&mut self, outputs: &EngineOutputs) {
-        let fault = outputs.fault;
+        let fault = outputs.fault.is_some();
         let done = match &mut self.current {
             None => false,
             Some(Act::Put(_)) => fault || outputs.put_ready,
@@ -99,10 +151,12 @@ impl EngineHost {
         if done {
             self.current = self.acts.next();
         }
+        self.cycle += 1;
+        self.happen();
     }
 
     /// Nothing is left.
-    pub fn is_done(&self) -> bool {
-        self.current.is_none()
+    pub fn is_done(&mut self) -> bool {
+        self.current.is_none() && self.events.peek().is_none()
     }
 }

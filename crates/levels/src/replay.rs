@@ -3,12 +3,12 @@
 //! The host runs once, against the model. Its every cycle is then played to the Verilog as it was: the
 //! outputs must be those of the model in each clock, and what the engine keeps at the end too.
 
-use crate::engine::{EngineCore, EngineHost};
+use crate::engine::{EngineCore, EngineHost, Events};
 use crate::tool::{self, ICARUS, VERILATOR};
 use crate::{Level, LevelError};
 use carrystep_model::Engine;
 use carrystep_spec::engine::{EngineInputs, EngineOutputs};
-use carrystep_spec::{AXES, Build, Program};
+use carrystep_spec::{AXES, EngineBuild, Program};
 use std::fmt::Write as _;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
@@ -35,11 +35,11 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Runs a program on the model until it is over and all is quiet, or for `max_clocks`; whichever comes first,
+    /// Runs a program, and what happens around it, on the model until it is over and all is quiet, or for `max_clocks`; whichever comes first,
     /// then so many ticks of rest that all is counted.
-    pub fn new(build: &Build, program: &Program, max_clocks: u64) -> Self {
+    pub fn new(build: &EngineBuild, program: &Program, events: &Events, max_clocks: u64) -> Self {
         let mut model = Engine::new(build);
-        let mut host = EngineHost::new(program);
+        let mut host = EngineHost::new(&build.guard, program, events);
         let mut recording = Self { stimuli: Vec::new(), outputs: Vec::new(), clocks: 0, kept: Kept::default() };
         let settle = 12 * u64::from(build.timebase.clocks_per_tick());
         let mut fault = false;
@@ -47,14 +47,14 @@ impl Recording {
         while quiet < settle && recording.clocks < max_clocks {
             let mut inputs = host.inputs(fault);
             let mut outputs = EngineCore::outputs(&mut model, &inputs);
-            if outputs.fault != fault {
-                fault = outputs.fault;
+            if outputs.fault.is_some() != fault {
+                fault = outputs.fault.is_some();
                 inputs = host.inputs(fault);
                 outputs = EngineCore::outputs(&mut model, &inputs);
             }
             recording.add(inputs, outputs);
             host.advance(&outputs);
-            quiet = if host.is_done() && (outputs.idle || outputs.fault) { quiet + 1 } else { 0 };
+            quiet = if host.is_done() && (outputs.idle || outputs.halted) { quiet + 1 } else { 0 };
             EngineCore::clock(&mut model, &inputs);
         }
         recording.kept = std::array::from_fn(|axis| {
@@ -75,15 +75,20 @@ impl Recording {
         self.clocks += 1;
     }
 
-    /// `count put_valid put_axis put_word put_data start_valid start_mask clear`, a line each.
+    /// `count put_valid put_axis put_word put_data start_valid start_mask clear stop kick enable estop limit_min limit_max`,
+    /// a line each.
     fn text(&self) -> String {
         let mut text = String::new();
         for (count, inputs) in &self.stimuli {
             let (axis, word, data) = inputs.put.map_or((0, 0, 0), |put| (put.axis, put.word, put.data));
             let (put, start) = (u8::from(inputs.put.is_some()), u8::from(inputs.start.is_some()));
-            let (mask, clear) = (inputs.start.unwrap_or(0), u8::from(inputs.clear));
+            let EngineInputs { clear, stop, kick, enable, estop, limit_min, limit_max, .. } = *inputs;
+            let [clear, stop, kick, enable, estop] = [clear, stop, kick, enable, estop].map(u8::from);
+            let (mask, all) = (inputs.start.unwrap_or(0), (1 << AXES) - 1);
+            let (min, max) = (limit_min & all, limit_max & all);
+            let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear} {stop} {kick} {enable}");
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{count} {put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear}");
+            let _ = writeln!(text, "{count} {host} {estop} {min:x} {max:x}");
         }
         text
     }
@@ -119,7 +124,7 @@ pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<
             return Ok(Some(format!("expected in cycle {cycle} {outputs:?}: {:x}, found {line}", packed(outputs))));
         }
     }
-    let rests = recording.outputs.last().is_some_and(|(_, outputs)| outputs.idle || outputs.fault);
+    let rests = recording.outputs.last().is_some_and(|(_, outputs)| outputs.idle || outputs.halted);
     for expected in recording.kept.iter().flatten() {
         let line = found.next().unwrap_or("nothing");
         let kept = line.strip_prefix("K ").and_then(|hex| u32::from_str_radix(hex, 16).ok());
@@ -138,11 +143,11 @@ fn parsed(line: &str) -> Option<(u64, u64)> {
 
 /// The outputs as the benches write them.
 fn packed(outputs: &EngineOutputs) -> u64 {
-    let EngineOutputs { put_ready, start_ready, step, dir, idle, fault, halted, faults, started } = *outputs;
-    let flags = [put_ready, start_ready, idle, fault, halted, faults.protocol, started];
-    let masks = [step, dir, faults.overrun, faults.overspeed, faults.underrun];
+    let EngineOutputs { put_ready, start_ready, step, dir, enabled, idle, fault, halted, started } = *outputs;
+    let (cause, culprits) = fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
+    let flags = [put_ready, start_ready, idle, fault.is_some(), halted, started, enabled];
     let flags = flags.into_iter().fold(0, |all, flag| all << 1 | u64::from(flag));
-    masks.into_iter().fold(flags, |all, mask| all << AXES | u64::from(mask))
+    [step, dir, culprits].into_iter().fold(flags << 3 | cause, |all, mask| all << AXES | u64::from(mask))
 }
 
 fn icarus(folder: &Path, verilog: &str) -> Result<Command, LevelError> {

@@ -18,6 +18,7 @@ pub mod segment;
 
 pub use bigdecimal::BigDecimal;
 pub use build::{AXES, Build, PinTiming, Timebase};
+pub use engine::EngineBuild;
 pub use error::{InputError, Source};
 pub use fault::Faults;
 pub use fixed::StartPhase;

@@ -46,6 +46,8 @@ pub struct Adder {
     pub ended: Signal<Out, Bit>,
     /// From beat 12: V + A does not fit.
     pub overflow: Signal<Out, Bit>,
+    /// From beat 12: V + A has the other sign than V.
+    pub turned: Signal<Out, Bit>,
     /// In beat 12: the tick steps.
     pub crosses: Signal<Out, Bit>,
     /// From beat 12: V < 0.
@@ -66,6 +68,7 @@ pub struct Adder {
     over: Register<Bit>,      // `ended`
     unfit: Register<Bit>,     // `overflow`
     sign_of_a: Register<Bit>, // a beat ago
+    other: Register<Bit>,     // `turned`
     low_zero: Register<Bit>,
     minus: Register<Bit>,   // `back`
     zero: Register<Bit>,    // `still`
@@ -101,7 +104,7 @@ impl Logic for Adder {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, a, b, r, top, carry_0, carry_1, carry_2, over, unfit);
-        dff_setup!(self, clock, low_zero, minus, zero, bound, crossed, odd, bits, bisects, carry_due, sign_of_a);
+        dff_setup!(self, clock, low_zero, minus, zero, bound, crossed, odd, bits, bisects, carry_due, sign_of_a, other);
 
         // A: from memory, in beat 7 from the host.
         if self.beat.val().get_bit(1)
@@ -193,6 +196,7 @@ impl Logic for Adder {
         self.sign_of_a.d.next = self.a.q.val().get_bit(31);
         if self.beat.val().get_bit(11) {
             self.unfit.d.next = self.r.q.val().get_bit(31) ^ self.top.q.val() ^ self.sign_of_a.q.val();
+            self.other.d.next = self.r.q.val().get_bit(31) ^ self.b.q.val().get_bit(31);
         }
         self.empty.next = !(self.b.q.val() & !self.sign.val()).any();
         if self.beat.val().get_bit(5) {
@@ -221,6 +225,7 @@ impl Logic for Adder {
         self.sum.next = self.r.q.val();
         self.ended.next = self.over.q.val();
         self.overflow.next = self.unfit.q.val();
+        self.turned.next = self.other.q.val();
         self.crosses.next = self.top.q.val();
         self.back.next = self.minus.q.val();
         self.still.next = self.zero.q.val();

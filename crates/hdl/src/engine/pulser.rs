@@ -26,8 +26,6 @@ pub struct Pulser {
     pub clock: Input<Clock>,
     /// A fault is latched: nothing new rises, DIR stays.
     pub frozen: Input<Bit>,
-    /// Forget the fault.
-    pub clear: Input<Bit>,
     /// A step is due.
     pub request: Input<Bit>,
     /// It goes backward.
@@ -44,10 +42,8 @@ pub struct Pulser {
     pub owed: Signal<Out, Bit>,
     /// Steps forward less steps backward, modulo 8; above that the discarded steps, modulo 8.
     pub counts: Signal<Out, Word<6>>,
-    /// A second step is owed: the fault comes with the next cycle.
+    /// A second step is owed: the stop comes with the next cycle.
     pub overruns: Signal<Out, Bit>,
-    /// Fault: a second step was owed.
-    pub overrun: Signal<Out, Bit>,
     step_pin: Register<Bit>,
     dir_pin: Register<Bit>,
     want: Register<Bit>,
@@ -60,7 +56,6 @@ pub struct Pulser {
     settled: Register<Bit>,    // DIR stands long enough
     count: Register<Word<3>>,  // of `counts`
     lost: Register<Word<3>>,
-    late: Register<Bit>, // `overrun`
     pending: Signal<Local, Bit>,
     first_back: Signal<Local, Bit>,
     rise: Signal<Local, Bit>,
@@ -118,7 +113,7 @@ impl Logic for Pulser {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, step_pin, dir_pin, want, due, due_back, since, after, busy, held, settled);
-        dff_setup!(self, clock, count, lost, late);
+        dff_setup!(self, clock, count, lost);
 
         // Which way DIR should point, and which step is due.
         if self.has_sign.val() {
@@ -184,7 +179,6 @@ impl Logic for Pulser {
         if (self.frozen.val() & self.pending.val()) | self.late_now.val() {
             self.lost.d.next = self.lost.q.val() + self.one.val();
         }
-        self.late.d.next = (self.late.q.val() | self.late_now.val()) & !self.clear.val();
 
         self.step.next = self.step_pin.q.val();
         self.dir.next = self.dir_pin.q.val();
@@ -192,7 +186,6 @@ impl Logic for Pulser {
         self.counts.next =
             bit_cast::<6, 3>(self.count.q.val()) | (bit_cast::<6, 3>(self.lost.q.val()) << self.at_3.val());
         self.overruns.next = self.late_now.val();
-        self.overrun.next = self.late.q.val();
     }
 }
 

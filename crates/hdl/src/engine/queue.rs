@@ -10,7 +10,8 @@
 //! ```
 //!
 //! The word comes from memory with the turn and goes back in its last beat:
-//! `live 3, newest 3, running, unfit, position's low bits 3, discarded's low bits 3`.
+//! `live 3, newest 3, running, unfit, position's low bits 3, discarded's low bits 3, back, known`: the last two
+//! belong to a ramp, whose first tick finds which way the axis goes.
 
 use crate::constant::Literal;
 use crate::memory::Memory;
@@ -33,6 +34,8 @@ pub struct Queue {
     pub starts: Input<Bit>,
     /// No axis runs.
     pub halted: Input<Bit>,
+    /// All axes slow down.
+    pub ramp: Input<Bit>,
     /// Forget all segments.
     pub clear: Input<Bit>,
     /// The host's word is taken in this cycle.
@@ -47,6 +50,10 @@ pub struct Queue {
     pub overflow: Input<Bit>,
     /// V = -2^63.
     pub least: Input<Bit>,
+    /// V + A has the other sign than V.
+    pub turned: Input<Bit>,
+    /// V < 0.
+    pub back: Input<Bit>,
     /// Low bits of the pulses on the pins.
     pub pulses: Input<Word<3>>,
     /// Low bits of the discarded steps.
@@ -63,6 +70,12 @@ pub struct Queue {
     pub running: Signal<Out, Bit>,
     /// Its V fits, as far as is known before beat 12.
     pub sound: Signal<Out, Bit>,
+    /// V slows down in this tick.
+    pub slows: Signal<Out, Bit>,
+    /// From below zero.
+    pub upward: Signal<Out, Bit>,
+    /// V stays as it is in this tick.
+    pub steady: Signal<Out, Bit>,
     /// In beat 12: it runs and its V fits.
     pub moves: Signal<Out, Bit>,
     /// In beat 12: it runs in the next tick too.
@@ -88,6 +101,8 @@ pub struct Queue {
     fits: Signal<Local, Bit>,
     none: Signal<Local, Bit>,
     last_one: Signal<Local, Bit>,
+    ramps: Signal<Local, Bit>,
+    over: Signal<Local, Bit>,
     follows: Signal<Local, Bit>,
     stays: Signal<Local, Bit>,
     committed: Register<Bit>,
@@ -100,6 +115,8 @@ pub struct Queue {
     next_newest: Signal<Local, Word<3>>,
     next_running: Signal<Local, Word<16>>,
     next_unfit: Signal<Local, Word<16>>,
+    next_known: Signal<Local, Word<16>>,
+    next_back: Signal<Local, Word<16>>,
     next_seen: Signal<Local, Word<3>>,
     next_lost: Signal<Local, Word<3>>,
     one: Literal<3, 1>,
@@ -108,6 +125,8 @@ pub struct Queue {
     no: Literal<16, 0>,
     running_bit: Literal<16, 64>,
     unfit_bit: Literal<16, 128>,
+    back_bit: Literal<16, 0x4000>,
+    known_bit: Literal<16, 0x8000>,
     all: Literal<16, 0xffff>,
     set: Literal<1, 1>,
     unset: Literal<1, 0>,
@@ -137,12 +156,17 @@ impl Logic for Queue {
 
         // What comes after this tick.
         self.last_one.next = self.lasts.read_data.val().any();
-        self.follows.next = self.ended.val() & !self.last_one.val() & !self.none.val();
+        self.ramps.next = self.ramp.val() & self.word.val().get_bit(15);
+        self.follows.next = self.ended.val() & !self.last_one.val() & !self.none.val() & !self.ramp.val();
         self.moves.next = self.fits.val() & !self.least.val();
-        self.stays.next = self.moves.val() & (!self.ended.val() | self.follows.val());
+        self.over.next = self.ended.val() & self.last_one.val();
+        if self.ramp.val() {
+            self.over.next = self.ramps.val() & self.turned.val();
+        }
+        self.stays.next = self.moves.val() & !self.over.val();
         self.goes_on.next = self.stays.val();
         self.too_fast.next = self.runs.val() & (self.word.val().get_bit(7) | self.least.val());
-        self.dry.next = self.moves.val() & self.ended.val() & !self.last_one.val() & self.none.val();
+        self.dry.next = self.moves.val() & self.ended.val() & !self.last_one.val() & self.none.val() & !self.ramp.val();
 
         // Pulses and losses are counted one a tick: the low bits say what is missing in memory.
         self.missing.next = self.pulses.val() - self.word.val().get_bits::<3>(8);
@@ -191,8 +215,16 @@ impl Logic for Queue {
             self.next_running.next = self.running_bit.val();
         }
         self.next_unfit.next = self.no.val();
-        if self.stays.val() & !self.ended.val() & self.overflow.val() {
+        if self.stays.val() & !self.follows.val() & !self.ramp.val() & self.overflow.val() {
             self.next_unfit.next = self.unfit_bit.val();
+        }
+        self.next_known.next = self.no.val();
+        if self.stays.val() & self.ramp.val() {
+            self.next_known.next = self.known_bit.val();
+        }
+        self.next_back.next = self.no.val();
+        if (self.ramps.val() & self.word.val().get_bit(14)) | (!self.ramps.val() & self.back.val()) {
+            self.next_back.next = self.back_bit.val();
         }
         self.next_seen.next = self.word.val().get_bits::<3>(8);
         if self.forward.q.val() {
@@ -210,6 +242,8 @@ impl Logic for Queue {
             | (bit_cast::<16, 3>(self.next_newest.val()) << self.at_3.val())
             | self.next_running.val()
             | self.next_unfit.val()
+            | self.next_known.val()
+            | self.next_back.val()
             | (bit_cast::<16, 3>(self.next_seen.val()) << self.at_8.val())
             | (bit_cast::<16, 3>(self.next_lost.val()) << self.at_11.val());
         self.control.write_bits.next = self.no.val();
@@ -223,6 +257,9 @@ impl Logic for Queue {
         self.empty.next = self.none.val();
         self.running.next = self.runs.val();
         self.sound.next = self.fits.val();
+        self.slows.next = self.ramps.val();
+        self.upward.next = self.word.val().get_bit(14);
+        self.steady.next = self.ramp.val() & !self.word.val().get_bit(15);
         self.up.next = self.forward.q.val();
         self.down.next = self.backward.q.val();
         self.lost.next = self.gone.q.val();

@@ -3,7 +3,7 @@
 //! ```text
 //! address   axis 3 | slot 3 | word 3
 //! word      0 ticks - 1   1 2 V   3 4 A   5 6 J (low, high)   7: what the axis keeps, by slot:
-//! slot      0 1 P (low, high)   2 position   3 discarded      of word 7
+//! slot      0 1 P (low, high)   2 position   3 discarded   4 5 -s   6 7 s      s: stop acceleration
 //!
 //! beat      0    1    2    3    4    5    6    7    8    9    10   11   12
 //! reads     A    J    V    P    n    pos  J'   A'   V'   P'   get             n: ticks, or discarded at rest
@@ -16,7 +16,7 @@ use crate::constant::{Literal, Parameter};
 use crate::memory::Memory;
 use crate::register::Input;
 use crate::word::{Word, bit_cast};
-use carrystep_spec::{AXES, StartPhase};
+use carrystep_spec::StartPhase;
 use rust_hdl::prelude::*;
 
 /// The memory and its addresses.
@@ -38,6 +38,12 @@ pub struct Store {
     pub sound: Input<Bit>,
     /// In beat 12: it runs and its V fits.
     pub moves: Input<Bit>,
+    /// In a ramp -s or s stands for A,
+    pub slows: Input<Bit>,
+    /// namely s,
+    pub upward: Input<Bit>,
+    /// or V stays.
+    pub steady: Input<Bit>,
     /// P becomes its start value.
     pub wipe: Input<Bit>,
     /// In beat 9: the host's word is to be written.
@@ -71,6 +77,10 @@ pub struct Store {
     p_high: Literal<3, 1>,
     position: Literal<3, 2>,
     discarded: Literal<3, 3>,
+    down_low: Literal<3, 4>,
+    down_high: Literal<3, 5>,
+    up_low: Literal<3, 6>,
+    up_high: Literal<3, 7>,
     at_3: Literal<4, 3>,
     at_6: Literal<4, 6>,
     start_high: Parameter<32>,
@@ -79,12 +89,16 @@ pub struct Store {
 }
 
 impl Store {
-    /// The memory of axes that start in this phase of a step.
-    pub fn new(start: StartPhase) -> Self {
+    /// The memory of axes that start in this phase of a step, with their stop accelerations.
+    pub fn new(start: StartPhase, stops: &[u64]) -> Self {
         let start_high = start.start_value() >> 32;
-        let p_high = Word::from(start_high);
-        let initial: Vec<_> = (0..AXES).map(|axis| (axis << 6 | 1 << 3 | 7, p_high)).collect();
-        Self { segments: Memory::of_words(&initial), start_high: Parameter::new(start_high), ..Self::default() }
+        let mut kept = Vec::new();
+        for (axis, stop) in stops.iter().enumerate() {
+            let (down, low) = (stop.wrapping_neg(), 0xffff_ffff);
+            let words = [(1, start_high), (4, down & low), (5, down >> 32), (6, stop & low), (7, stop >> 32)];
+            kept.extend(words.map(|(slot, word)| (axis << 6 | slot << 3 | 7, Word::from(word))));
+        }
+        Self { segments: Memory::of_words(&kept), start_high: Parameter::new(start_high), ..Self::default() }
     }
 }
 
@@ -98,7 +112,14 @@ impl Logic for Store {
         self.read_slot.next = self.live.val();
         self.read_word.next = self.kept.val();
         if self.beat.val().get_bit(0) {
-            self.read_word.next = self.a_low.val();
+            if self.slows.val() {
+                self.read_slot.next = self.down_low.val();
+                if self.upward.val() {
+                    self.read_slot.next = self.up_low.val();
+                }
+            } else {
+                self.read_word.next = self.a_low.val();
+            }
         }
         if self.beat.val().get_bit(1) {
             self.read_word.next = self.j_low.val();
@@ -123,7 +144,14 @@ impl Logic for Store {
             self.read_word.next = self.j_high.val();
         }
         if self.beat.val().get_bit(7) {
-            self.read_word.next = self.a_high.val();
+            if self.slows.val() {
+                self.read_slot.next = self.down_high.val();
+                if self.upward.val() {
+                    self.read_slot.next = self.up_high.val();
+                }
+            } else {
+                self.read_word.next = self.a_high.val();
+            }
         }
         if self.beat.val().get_bit(8) {
             self.read_word.next = self.v_high.val();
@@ -150,7 +178,7 @@ impl Logic for Store {
         }
         if self.beat.val().get_bit(5) {
             self.write_word.next = self.v_low.val();
-            self.writes.next = self.sound.val();
+            self.writes.next = self.sound.val() & !self.steady.val();
         }
         if self.beat.val().get_bit(6) {
             self.write_slot.next = self.p_low.val();
@@ -179,7 +207,7 @@ impl Logic for Store {
         }
         if self.beat.val().get_bit(11) {
             self.write_word.next = self.v_high.val();
-            self.writes.next = self.sound.val();
+            self.writes.next = self.sound.val() & !self.steady.val();
         }
         if self.beat.val().get_bit(12) {
             self.write_slot.next = self.p_high.val();
@@ -206,6 +234,6 @@ mod tests {
 
     #[test]
     fn store_synthesizes() {
-        assert_synthesizes(Store::new(StartPhase::Half), "carrystep_store");
+        assert_synthesizes(Store::new(StartPhase::Half, &[1 << 40; 6]), "carrystep_store");
     }
 }
