@@ -155,7 +155,7 @@ impl Seen {
             self.together += u64::from(rising > 1);
             match (before.fault, now.fault) {
                 (None, Some((cause, _))) => self.causes[cause as usize] += 1,
-                (Some((cause, _)), Some(_)) if cause == Cause::Stop => self.ramped += u64::from(rising),
+                (Some((Cause::Stop, _)), Some(_)) => self.ramped += u64::from(rising),
                 (Some(_), None) => self.cleared += 1,
                 _ => {}
             }
