@@ -150,9 +150,12 @@ impl Engine {
     ///
     /// # Errors
     /// [`HdlError::Engine`] where the turns do not fit into the tick or a figure of the guard cannot be counted,
-    /// [`HdlError::PinTiming`] where an axis' timing is out of range.
+    /// [`HdlError::Axes`] unless there are six, [`HdlError::PinTiming`] where an axis' timing is out of range.
     pub fn new(build: &EngineBuild) -> Result<Self, HdlError> {
         build.check()?;
+        if build.axes() != AXES {
+            return Err(HdlError::Axes(build.axes()));
+        }
         let mut pulser: [Pulser; AXES] = Default::default();
         for (pulser, pins) in pulser.iter_mut().zip(&build.pins) {
             *pulser = Pulser::new(pins)?;
@@ -376,6 +379,15 @@ mod tests {
     #[test]
     fn engine_synthesizes() {
         crate::sim::assert_synthesizes(Engine::new(&build()).unwrap(), "carrystep_engine");
+    }
+
+    #[test]
+    fn axes_that_have_no_hardware_are_refused() {
+        let mut seven = build();
+        seven.pins.push(PinTiming::SHORTEST);
+        seven.guard.stop.push(1);
+        seven.timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
+        assert_eq!(Engine::new(&seven).err(), Some(HdlError::Axes(7)));
     }
 
     #[test]

@@ -3,13 +3,14 @@
 use crate::shell::{self, Done};
 
 /// Program, and the Debian package that brings it.
-const NEEDED: [(&str, &str); 6] = [
+const NEEDED: [(&str, &str); 7] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
     ("g++", "g++"),
     ("make", "make"),
     ("yosys", "yosys"),
+    ("nextpnr-ice40", "nextpnr-ice40"),
 ];
 
 /// Installs what is missing, or says exactly what to install.

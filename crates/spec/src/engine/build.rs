@@ -79,16 +79,19 @@ impl Machine {
         let round = 64;
         let round_ns = u64::from(round) * self.timebase.tick_ns();
         let rounds = |ns: u64| ns.div_ceil(round_ns).saturating_add(1).min(MAX_ROUNDS.into()) as u32;
+        let mut stop: Vec<u64> = self.axes.iter().map(|axis| self.stop_units(&axis.accel_limit)).collect();
+        let Build { timebase, phase, pins } = self.build();
+        // Axes that the machine does not have never move.
+        stop.resize(pins.len(), 1);
         let guard = Guard {
             round,
             debounce: 8,
             watchdog: rounds(100_000_000),
             enable: rounds(1_000_000),
             limits: Limits::Pair,
-            ..Guard::minimal(self.axes.iter().map(|axis| self.stop_units(&axis.accel_limit)).collect())
+            ..Guard::minimal(stop)
         };
-        let pins = self.axes.iter().map(|axis| axis.pins).collect();
-        EngineBuild { timebase: self.timebase, phase: self.phase, pins, guard }
+        EngineBuild { timebase, phase, pins: pins.to_vec(), guard }
     }
 
     /// steps/s^2 in units of 2^-64 step per tick^2, rounded toward zero, within what an engine takes.
