@@ -3,6 +3,8 @@
 pub mod axis_bench;
 pub mod closed_form;
 pub mod dense;
+pub mod effort;
+pub mod engine_programs;
 pub mod golden;
 pub mod lockstep;
 pub mod moves;

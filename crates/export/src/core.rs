@@ -1,48 +1,89 @@
-//! The six-axis core as one file: header, then every module once, children first.
+//! A core as one file: header, then every module once, children first.
 
 use crate::ExportError;
 use crate::module::module_text;
 use crate::names::split_index;
 use crate::netlist::{self, Module};
-use carrystep_hdl::{HdlError, SixAxis};
-use carrystep_spec::{Build, StartPhase};
+use carrystep_hdl::{Engine, HdlError, SixAxis};
+use carrystep_spec::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use rust_hdl::prelude::{Block, check_all};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// Name of the core's top module and of its files.
+/// Name of the parallel core's top module and of its files.
 pub const CORE_NAME: &str = "carrystep_six_axis";
 
-/// Verilator's waivers for the core, each with its reason.
+/// Name of the engine's top module and of its files.
+pub const ENGINE_NAME: &str = "carrystep_engine";
+
+/// Verilator's waivers for the parallel core, each with its reason.
 pub const CORE_WAIVERS: &str = include_str!("carrystep_six_axis.vlt");
+
+/// Verilator's waivers for the engine, each with its reason.
+pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
 
 /// The workspace pins it.
 const RUST_HDL: &str = "0.46.0";
 
 /// What each module is for, in a line.
-const PURPOSES: [(&str, &str); 6] = [
+const PURPOSES: [(&str, &str); 21] = [
     ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
     ("carrystep_sequencer", "The running and the waiting segment of an axis."),
     ("carrystep_step_edge", "When in its tick a step is due: bisection, then the request to the shaper."),
     ("carrystep_axis", "One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched."),
     ("carrystep_shaper", "STEP and DIR with the width, gap, set-up and hold that the driver asks for."),
     (CORE_NAME, "Six axes on one tick, the door for segments and starts, and the freeze."),
+    ("carrystep_turn", "Whose turn it is: one axis after the other, thirteen beats each."),
+    ("carrystep_adder", "The one adder: P + V, V + A, A + J, ticks - 1, positions, and the bisection."),
+    ("carrystep_control", "The control words of the axes."),
+    ("carrystep_lasts", "Which segments are the last of their move."),
+    ("carrystep_queue", "Which segment an axis runs, and which ones wait."),
+    ("carrystep_segments", "Segments, which are also registers, and what an axis keeps between moves."),
+    ("carrystep_store", "Where everything is in the memory of the axes."),
+    ("carrystep_rim", "What the pins do in each phase of four ticks."),
+    ("carrystep_wheel", "Events on their way to the pins."),
+    ("carrystep_pulser", "STEP and DIR with the width, gap, set-up and hold that the driver asks for."),
+    ("carrystep_switches", "What is believed of each limit switch."),
+    ("carrystep_limits", "The limit switches, one look in a turn."),
+    ("carrystep_stops", "Who stops the axes, and how far the stop has come."),
+    ("carrystep_watch", "The e-stop, the host's signs of life, the drivers' power."),
+    (ENGINE_NAME, "Axes on one adder, their queues, starts, and the guard."),
 ];
 
-/// The core of this build as Verilog-2005, top module [`CORE_NAME`]; `description` names what the build was
-/// made from, one line. The same build gives the same text.
+/// The parallel core of this build as Verilog-2005, top module [`CORE_NAME`]; `description` names what the build
+/// was made from, one line. The same build gives the same text.
 ///
 /// # Errors
 /// [`ExportError`] where the build cannot be made.
 pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
-    let mut core = SixAxis::new(build)?;
+    let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins };
+    file_text(SixAxis::new(build)?, CORE_NAME, &facts, description)
+}
+
+/// The engine of this build as Verilog-2005, top module [`ENGINE_NAME`]; otherwise as [`six_axis_verilog`].
+///
+/// # Errors
+/// [`ExportError`] where the build cannot be made.
+pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, ExportError> {
+    let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins };
+    file_text(Engine::new(build)?, ENGINE_NAME, &facts, description)
+}
+
+/// What the header tells of a build.
+struct Facts<'a> {
+    timebase: Timebase,
+    phase: StartPhase,
+    pins: &'a [PinTiming],
+}
+
+fn file_text(mut core: impl Block, name: &str, build: &Facts<'_>, description: &str) -> Result<String, ExportError> {
     core.connect_all();
     check_all(&core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
     let mut top = netlist::read(&core)?;
-    top.instance = "six_axis".into();
+    top.instance = name.trim_start_matches("carrystep_").into();
     let mut library = Library { build, modules: Vec::new() };
     library.add(&top)?;
-    let mut text = header(build, description);
+    let mut text = header(name, build, description);
     for (name, module) in &library.modules {
         let purpose = PURPOSES.iter().find(|(kind, _)| name.starts_with(kind)).map_or("", |(_, purpose)| purpose);
         text.push_str(&format!("\n// {purpose}\n{module}"));
@@ -51,12 +92,23 @@ pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, Expo
     Ok(text)
 }
 
-/// Writes the Verilog and its waivers into `dir`; each file appears whole or not at all.
+/// Writes the parallel core's Verilog and its waivers into `dir`; each file appears whole or not at all.
 ///
 /// # Errors
 /// [`ExportError`] where the build cannot be made or a file cannot be written.
 pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<PathBuf>, ExportError> {
-    let files = [("v", six_axis_verilog(build, description)?), ("vlt", CORE_WAIVERS.to_owned())];
+    write_files(dir, CORE_NAME, &six_axis_verilog(build, description)?, CORE_WAIVERS)
+}
+
+/// Writes the engine's Verilog and its waivers into `dir`; otherwise as [`write_core`].
+///
+/// # Errors
+/// [`ExportError`] where the build cannot be made or a file cannot be written.
+pub fn write_engine(dir: &Path, build: &EngineBuild, description: &str) -> Result<Vec<PathBuf>, ExportError> {
+    write_files(dir, ENGINE_NAME, &engine_verilog(build, description)?, ENGINE_WAIVERS)
+}
+
+fn write_files(dir: &Path, name: &str, verilog: &str, waivers: &str) -> Result<Vec<PathBuf>, ExportError> {
     std::fs::create_dir_all(dir).map_err(|source| ExportError::Io { path: dir.to_owned(), source: folder(source) })?;
     let write = |path: &Path, text: &str| {
         let mut file = new_file(dir)?;
@@ -64,11 +116,11 @@ pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<Pa
         file.persist(path)?;
         Ok(())
     };
-    files
+    [("v", verilog), ("vlt", waivers)]
         .into_iter()
         .map(|(extension, text)| {
-            let path = dir.join(CORE_NAME).with_extension(extension);
-            write(&path, &text).map_err(|source| ExportError::Io { path: path.clone(), source })?;
+            let path = dir.join(name).with_extension(extension);
+            write(&path, text).map_err(|source| ExportError::Io { path: path.clone(), source })?;
             Ok(path)
         })
         .collect()
@@ -89,7 +141,7 @@ fn new_file(dir: &Path) -> std::io::Result<tempfile::NamedTempFile> {
 
 /// The modules so far, children first.
 struct Library<'a> {
-    build: &'a Build,
+    build: &'a Facts<'a>,
     modules: Vec<(String, String)>,
 }
 
@@ -107,19 +159,19 @@ impl Library<'_> {
         Ok(name)
     }
 
-    /// Instances of an array are one module, but for shapers, which are named by their timing.
+    /// Instances of an array are one module, but for shapers and pulsers, which are named by their timing.
     fn name(&self, instance: &str) -> String {
         let (base, index) = split_index(instance);
         match index.and_then(|index| self.build.pins.get(index)) {
-            Some(pins) if base == "shaper" => {
-                format!("carrystep_shaper_w{}_s{}_d{}_h{}", pins.width, pins.gap, pins.setup, pins.hold)
+            Some(pins) if base == "shaper" || base == "pulser" => {
+                format!("carrystep_{base}_w{}_s{}_d{}_h{}", pins.width, pins.gap, pins.setup, pins.hold)
             }
             _ => format!("carrystep_{base}"),
         }
     }
 }
 
-fn header(build: &Build, description: &str) -> String {
+fn header(name: &str, build: &Facts<'_>, description: &str) -> String {
     let time = &build.timebase;
     let start = match build.phase {
         StartPhase::Half => "half a step",
@@ -130,7 +182,7 @@ fn header(build: &Build, description: &str) -> String {
         "\
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// {CORE_NAME}: step and direction for six axes. Generated: change the generator, not this file.
+// {name}: step and direction for {axes} axes. Generated: change the generator, not this file.
 //
 // Made from    {description}
 // Made by      carrystep-export {version}, with Rust-HDL {RUST_HDL}
@@ -141,6 +193,9 @@ fn header(build: &Build, description: &str) -> String {
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
 ",
         version = env!("CARGO_PKG_VERSION"),
+        axes = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"]
+            .get(build.pins.len())
+            .unwrap_or(&"many"),
         clock = time.clock_hz(),
         tick = time.tick_ns(),
         clocks = time.clocks_per_tick(),

@@ -17,7 +17,9 @@ mod netlist;
 #[cfg(test)]
 mod tests;
 
-pub use crate::core::{CORE_NAME, CORE_WAIVERS, six_axis_verilog, write_core};
+pub use crate::core::{
+    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, engine_verilog, six_axis_verilog, write_core, write_engine,
+};
 
 use carrystep_hdl::HdlError;
 use std::path::PathBuf;

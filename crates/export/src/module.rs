@@ -4,11 +4,14 @@ use crate::ExportError;
 use crate::kernel::{Kernel, Step};
 use crate::names::{Names, Role, plain};
 use crate::netlist::Module;
-use rust_hdl::prelude::AtomKind;
+use rust_hdl::prelude::{AtomKind, Verilog};
 
 /// The text of `module` under the name `name`; `kinds` are the module names of its children.
 pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Result<String, ExportError> {
     let names = Names::new(module)?;
+    if let Verilog::Custom(body) = &module.code {
+        return Ok(primitive(&names, name, body));
+    }
     let kernel = Kernel::new(module, &names)?;
     let mut page = Page::default();
     page.open(&format!("module {name} ("));
@@ -31,6 +34,20 @@ pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Resu
     clocked(&mut page, &kernel);
     page.close("endmodule");
     Ok(page.text)
+}
+
+/// A module that brings its own body, as a memory does.
+fn primitive(names: &Names, name: &str, body: &str) -> String {
+    let mut page = Page::default();
+    page.open(&format!("module {name} ("));
+    ports(&mut page, names, &Kernel::default());
+    page.close(");");
+    page.indent += 1;
+    for line in body.lines() {
+        if line.is_empty() { page.gap() } else { page.line(line) }
+    }
+    page.close("endmodule");
+    page.text
 }
 
 fn ports(page: &mut Page, names: &Names, kernel: &Kernel) {

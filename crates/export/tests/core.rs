@@ -1,28 +1,78 @@
-//! The core as a file: ports, names, lint, synthesis, and that the committed one is fresh.
+//! The cores as files: ports, names, lint, synthesis, and that the committed ones are fresh.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-use carrystep_export::{CORE_NAME, CORE_WAIVERS, six_axis_verilog, write_core};
+use carrystep_export::{
+    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, engine_verilog, six_axis_verilog, write_core,
+    write_engine,
+};
+use carrystep_spec::engine::{Guard, Limits};
 use carrystep_spec::ports::{Direction, SIX_AXIS_PORTS};
-use carrystep_spec::{AXES, Build, Machine, PinTiming, StartPhase, Timebase};
-use std::path::Path;
+use carrystep_spec::{AXES, Build, EngineBuild, Machine, PinTiming, StartPhase, Timebase};
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
-fn build(clock_hz: u64, phases: u32) -> Build {
-    let timebase = Timebase::new(clock_hz, 1000, phases).unwrap();
-    let pins = [PinTiming { width: 96, gap: 5, setup: 2, hold: 7 }; AXES];
-    Build { timebase, phase: StartPhase::Half, pins }
+/// A core that is generated, and the machine file that the committed one is made from.
+struct Core {
+    name: &'static str,
+    of_machine: fn(&Machine, &str) -> Result<String, ExportError>,
+    write: fn(&Path, &Build, &str) -> Result<Vec<PathBuf>, ExportError>,
+    waivers: &'static str,
+    machine: &'static str,
+    /// Clock, tick and phases of some builds.
+    timebases: [(u64, u64, u32); 3],
 }
 
-/// Runs a tool in a fresh folder that holds the core: whether it succeeded, and what it printed.
-fn run(build: &Build, tool: &str, arguments: &[&str]) -> (bool, String) {
-    let folder = tempfile::tempdir().unwrap();
-    write_core(folder.path(), build, "a test").unwrap();
-    let output = Command::new(tool).args(arguments).current_dir(&folder).output();
-    let output = output.unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
-    let text = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    (output.status.success(), text.into_owned())
+const CORES: [Core; 2] = [
+    Core {
+        name: CORE_NAME,
+        of_machine: |machine, description| six_axis_verilog(&machine.build(), description),
+        write: write_core,
+        waivers: CORE_WAIVERS,
+        machine: "sim/six-axis.toml",
+        timebases: [(48_000_000, 1000, 16), (20_000_000, 1000, 4), (16_000_000, 1000, 1)],
+    },
+    Core {
+        name: ENGINE_NAME,
+        of_machine: |machine, description| engine_verilog(&machine.engine(), description),
+        write: |folder, build, description| write_engine(folder, &guarded(build), description),
+        waivers: ENGINE_WAIVERS,
+        machine: "sim/engine.toml",
+        timebases: [(48_000_000, 2000, 16), (12_000_000, 10_000, 4), (90_000_000, 1000, 1)],
+    },
+];
+
+fn pins() -> [PinTiming; AXES] {
+    [PinTiming { width: 96, gap: 5, setup: 2, hold: 7 }; AXES]
+}
+
+/// With something of everything that the guard can watch.
+fn guarded(build: &Build) -> EngineBuild {
+    let engine = EngineBuild::minimal(build, 1 << 40);
+    let guard = Guard { watchdog: 100, enable: 5, debounce: 3, limits: Limits::Pair, ..engine.guard };
+    EngineBuild { guard, ..engine }
+}
+
+fn build(clock_hz: u64, phases: u32) -> Build {
+    let timebase = Timebase::new(clock_hz, 1000, phases).unwrap();
+    Build { timebase, phase: StartPhase::Half, pins: pins() }
+}
+
+/// Runs a tool on each core in some builds, each in a fresh folder: whether it succeeded, and what it printed.
+fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &str) -> bool) {
+    for core in &CORES {
+        for (clock_hz, tick_ns, phases) in core.timebases {
+            let timebase = Timebase::new(clock_hz, tick_ns, phases).unwrap();
+            let folder = tempfile::tempdir().unwrap();
+            let build = Build { timebase, phase: StartPhase::Half, pins: pins() };
+            (core.write)(folder.path(), &build, "a test").unwrap();
+            let output = Command::new(tool).args(arguments(core.name)).current_dir(&folder).output();
+            let output = output.unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
+            let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+            assert!(fine(output.status.success(), &said), "{}, {phases} phases: {said}", core.name);
+        }
+    }
 }
 
 #[test]
@@ -67,35 +117,47 @@ fn a_timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
 }
 
 #[test]
+fn an_engine_whose_turns_do_not_fit_is_refused_with_the_arithmetic_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let error = write_engine(folder.path(), &guarded(&build(48_000_000, 16)), "a test").unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz has 48: \
+         a clock of 80000000 Hz, a longer tick or fewer axes would do"
+    );
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+}
+
+#[test]
 fn verilator_has_nothing_to_say() {
-    let (waivers, verilog) = (format!("{CORE_NAME}.vlt"), format!("{CORE_NAME}.v"));
-    let arguments = ["--lint-only", "-Wall", "--top-module", CORE_NAME, &waivers, &verilog];
-    for (clock_hz, phases) in [(48_000_000, 16), (20_000_000, 4), (16_000_000, 1)] {
-        let (ok, said) = run(&build(clock_hz, phases), "verilator", &arguments);
-        assert!(ok && said.is_empty(), "{said}");
-    }
+    let arguments = |name: &str| {
+        let words = ["--lint-only", "-Wall", "--top-module", name, &format!("{name}.vlt"), &format!("{name}.v")];
+        words.map(String::from).to_vec()
+    };
+    on_each_core("verilator", arguments, |ok, said| ok && said.is_empty());
 }
 
 #[test]
 fn yosys_finds_no_latch_and_no_undriven_wire() {
-    let script = format!(
-        "read_verilog {CORE_NAME}.v; hierarchy -check -top {CORE_NAME}; proc; check -assert; \
-         select -assert-none t:$dlatch"
-    );
-    for (clock_hz, phases) in [(48_000_000, 16), (20_000_000, 4), (16_000_000, 1)] {
-        let (ok, said) = run(&build(clock_hz, phases), "yosys", &["-q", "-p", &script]);
-        assert!(ok && !said.contains("Warning"), "{said}");
-    }
+    let arguments = |name: &str| {
+        let script = format!(
+            "read_verilog {name}.v; hierarchy -check -top {name}; proc; check -assert; select -assert-none t:$dlatch"
+        );
+        ["-q", "-p", &script].map(String::from).to_vec()
+    };
+    on_each_core("yosys", arguments, |ok, said| ok && !said.contains("Warning"));
 }
 
 #[test]
-fn the_committed_core_is_fresh() {
-    let machine = Machine::load(&Path::new(ROOT).join("sim/six-axis.toml")).unwrap();
-    let read = |extension| {
-        let path = Path::new(ROOT).join("hdl-out/core").join(CORE_NAME).with_extension(extension);
-        std::fs::read_to_string(path).unwrap()
-    };
-    let how = "run `cargo xtask generate`";
-    assert!(read("v") == six_axis_verilog(&machine.build(), "sim/six-axis.toml").unwrap(), "{how}");
-    assert!(read("vlt") == CORE_WAIVERS, "{how}");
+fn the_committed_cores_are_fresh() {
+    for core in &CORES {
+        let machine = Machine::load(&Path::new(ROOT).join(core.machine)).unwrap();
+        let read = |extension| {
+            let path = Path::new(ROOT).join("hdl-out/core").join(core.name).with_extension(extension);
+            std::fs::read_to_string(path).unwrap()
+        };
+        let how = "run `cargo xtask generate`";
+        assert!(read("v") == (core.of_machine)(&machine, core.machine).unwrap(), "{}: {how}", core.name);
+        assert!(read("vlt") == core.waivers, "{}: {how}", core.name);
+    }
 }

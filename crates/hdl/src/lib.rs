@@ -10,6 +10,8 @@
 pub mod axis;
 pub mod constant;
 pub mod edge;
+pub mod engine;
+pub mod memory;
 pub mod register;
 pub mod sequencer;
 pub mod shaper;
@@ -19,10 +21,12 @@ pub mod tick;
 pub mod word;
 
 pub use axis::Axis;
-pub use sim::{AxisSim, SixAxisSim};
+pub use engine::Engine;
+pub use sim::{AxisSim, EngineSim, SixAxisSim};
 pub use six_axis::SixAxis;
 
-use carrystep_spec::build::MAX_CLOCKS;
+use carrystep_spec::build::{AXES, MAX_CLOCKS};
+use carrystep_spec::engine::EngineError;
 use thiserror::Error;
 
 /// Why there is no gateware for a build.
@@ -39,6 +43,12 @@ pub enum HdlError {
     /// Q is not 1, 4 or 16.
     #[error("{0} phases: a tick has 1, 4 or 16 phases")]
     Phases(u32),
+    /// The engine has more to do in a tick than the tick has clocks, or counts further than it can.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The engine's modules are written for six axes.
+    #[error("an engine of {0} axes: the gateware has {AXES}; axes that a machine does not have may stay unused")]
+    Axes(usize),
     /// Rust-HDL's own check of a module failed.
     #[error("Rust-HDL refuses the module: {0}")]
     Check(String),

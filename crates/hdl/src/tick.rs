@@ -50,6 +50,13 @@ impl Tick {
     }
 }
 
+impl Tick {
+    /// The same tick, but in cycle 0 already where [`Tick::new`] is in cycle 1; for phases of two clocks or more.
+    pub fn ahead(timebase: &Timebase) -> Self {
+        Self { sub: Register::new(Word::from(1_u64)), ..Self::new(timebase) }
+    }
+}
+
 impl Logic for Tick {
     #[hdl_gen]
     fn update(&mut self) {

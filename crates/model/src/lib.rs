@@ -6,10 +6,12 @@
 //! whole idea.
 
 pub mod axis;
+pub mod engine;
 pub mod fast;
 pub mod phase;
 pub mod shaper;
 pub mod six_axis;
 
+pub use engine::Engine;
 pub use fast::Fast;
 pub use six_axis::SixAxis;

@@ -6,6 +6,7 @@
 pub mod build;
 pub mod decimal;
 pub mod driver;
+pub mod engine;
 pub mod error;
 pub mod fault;
 pub mod fixed;
@@ -17,6 +18,7 @@ pub mod segment;
 
 pub use bigdecimal::BigDecimal;
 pub use build::{AXES, Build, PinTiming, Timebase};
+pub use engine::EngineBuild;
 pub use error::{InputError, Source};
 pub use fault::Faults;
 pub use fixed::StartPhase;

@@ -27,3 +27,12 @@ pub fn lint() -> Done {
     shell::run("cargo", &["fmt", "--all", "--check"])?;
     shell::run("cargo", &["clippy", "--quiet", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
 }
+
+/// The long lock-step: what a test run does in part, it does whole.
+pub fn lockstep() -> Done {
+    tools::install()?;
+    let test = ["test", "--release", "-p", "carrystep-tests", "--test", "engine_equals_model", "--", "--nocapture"];
+    let status = shell::command("cargo", &test).env("CARRYSTEP_CLOCKS", "10000000").status();
+    let status = status.map_err(|error| format!("cannot start cargo: {error}"))?;
+    if status.success() { Ok(()) } else { Err("the engine is not its model".into()) }
+}

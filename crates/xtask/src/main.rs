@@ -26,6 +26,8 @@ enum Chore {
     Prove,
     /// Install the simulators, yosys and z3 that the tests need, by apt.
     Tools,
+    /// Ten million clocks of lock-step for each test of the engine, and its longest golden vectors.
+    Lockstep,
     /// Check that the arrows between the crates go one way.
     Arrows,
     /// Formatting and lints, without a warning.
@@ -56,6 +58,7 @@ fn main() -> ExitCode {
         Chore::Test => ladder::climb(),
         Chore::Prove => ladder::prove(),
         Chore::Tools => tools::install(),
+        Chore::Lockstep => ladder::lockstep(),
         Chore::Arrows => arrows::check(),
         Chore::Lint => ladder::lint(),
         Chore::Bench { json } => bench(json),

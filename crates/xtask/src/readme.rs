@@ -15,7 +15,9 @@ const GRAB: &str =
 
 /// Writes `hdl-out/` anew.
 pub fn generate() -> Done {
-    shell::run("cargo", &["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core"])
+    shell::run("cargo", &["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core"])?;
+    let engine = ["run", "--quiet", "--release", "-p", "carrystep-export", "--example", "engine", "--"];
+    shell::run("cargo", &[engine.as_slice(), &["sim/engine.toml", "hdl-out/core"]].concat())
 }
 
 /// Fails where the README or the committed plot is not what the demo gives now.

@@ -3,7 +3,7 @@
 use crate::shell::{self, Done};
 
 /// Program, and the Debian package that brings it.
-const NEEDED: [(&str, &str); 8] = [
+const NEEDED: [(&str, &str); 9] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
@@ -12,6 +12,7 @@ const NEEDED: [(&str, &str); 8] = [
     ("yosys", "yosys"),
     ("yosys-smtbmc", "yosys"),
     ("z3", "z3"),
+    ("nextpnr-ice40", "nextpnr-ice40"),
 ];
 
 /// Installs what is missing, or says exactly what to install.

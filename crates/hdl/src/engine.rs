@@ -1,0 +1,399 @@
+//! The engine: one adder for six axes, the same pulses as six parallel ones (docs/engine.md).
+//!
+//! ```text
+//!             .------.  beat, axis                                    estop, kick, enable
+//!             | turn |-----+----------+-----------+                         v
+//!             '------'     v          v           v                     .-------.
+//!  put_*  -------------> .-------.  .-------.   .-------. steps, phases | watch |
+//!                        | queue |->| store |==>| adder |-------.       '-------'
+//!                        '-------'  '-------'<==|       |       v           v
+//!                          ^ pulses, losses     '-------'   .-------.   .-------.
+//!                          |                        v V     | wheel |   | stops |
+//!                        .--------.             .--------.  '-------'   '-------'
+//!   step, dir <----------| pulser |<--.         | limits |------|--> hit  ^   | frozen, ramp,
+//!                        '--------'   |         '--------'      |             v halted, cause
+//!                        six of them  '---- the events of this phase
+//! ```
+//!
+//! All state of an axis is in block RAM but its pins' timers. In each tick every axis has its turn; what
+//! the turns have found takes effect at the strobe that ends the tick, for all axes at once.
+
+use crate::HdlError;
+use crate::constant::{Literal, Parameter};
+use crate::register::{Input, Register};
+use crate::word::Word;
+use carrystep_spec::{AXES, EngineBuild};
+use rust_hdl::prelude::*;
+
+pub mod adder;
+pub mod limits;
+pub mod pulser;
+pub mod queue;
+pub mod stops;
+pub mod store;
+pub mod turn;
+pub mod watch;
+pub mod wheel;
+
+use adder::Adder;
+use limits::Limits;
+use pulser::Pulser;
+use queue::Queue;
+use stops::Stops;
+use store::Store;
+use turn::Turn;
+use watch::Watch;
+use wheel::Wheel;
+
+/// The engine.
+#[derive(LogicBlock, Default)]
+pub struct Engine {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// A word of a segment is offered; it stays until it is taken.
+    pub put_valid: Input<Bit>,
+    /// For this axis.
+    pub put_axis: Input<Word<3>>,
+    /// Which word; 7 commits.
+    pub put_word: Input<Word<3>>,
+    /// The word; bit 0 of a commit: the segment is the last of its move.
+    pub put_data: Input<Word<32>>,
+    /// The offered word is taken in this cycle.
+    pub put_ready: Signal<Out, Bit>,
+    /// A start is offered; it stays until it is taken.
+    pub start_valid: Input<Bit>,
+    /// Of these axes.
+    pub start_mask: Input<Word<AXES>>,
+    /// The offered start is taken in this cycle.
+    pub start_ready: Signal<Out, Bit>,
+    /// Resume after a stop: hold it until `fault` falls.
+    pub clear: Input<Bit>,
+    /// The host's controlled stop.
+    pub stop: Input<Bit>,
+    /// The host was heard of: the watchdog starts anew.
+    pub kick: Input<Bit>,
+    /// The host wants the drivers to be powered.
+    pub enable: Input<Bit>,
+    /// The e-stop's pin, asynchronous.
+    pub estop: Input<Bit>,
+    /// The limit pins at the low ends, asynchronous.
+    pub limit_min: Input<Word<AXES>>,
+    /// The limit pins at the high ends, asynchronous.
+    pub limit_max: Input<Word<AXES>>,
+    /// The axis that the host asks about.
+    pub get_axis: Input<Word<3>>,
+    /// What it asks for: 0 and 1 P, low and high, 2 position, 3 discarded steps.
+    pub get_item: Input<Word<2>>,
+    /// The answer,
+    pub get_data: Signal<Out, Word<32>>,
+    /// in this cycle, to what was asked in the cycle before.
+    pub get_valid: Signal<Out, Bit>,
+    /// The STEP pins.
+    pub step: [Signal<Out, Bit>; AXES],
+    /// The DIR pins, 1 is backward.
+    pub dir: [Signal<Out, Bit>; AXES],
+    /// The drivers are to be powered.
+    pub enabled: Signal<Out, Bit>,
+    /// All axes are done and no start is armed.
+    pub idle: Signal<Out, Bit>,
+    /// A stop has been called,
+    pub fault: Signal<Out, Bit>,
+    /// and no axis moves any more.
+    pub halted: Signal<Out, Bit>,
+    /// Why, numbered as [`carrystep_spec::engine::Cause`];
+    pub cause: Signal<Out, Word<3>>,
+    /// the axes that it came from.
+    pub culprits: Signal<Out, Word<AXES>>,
+    /// Axes start at the end of this cycle.
+    pub started: Signal<Out, Bit>,
+    turn: Turn,
+    adder: Adder,
+    queue: Queue,
+    pub(crate) store: Store,
+    wheel: Wheel,
+    limits: Limits,
+    stops: Stops,
+    watch: Watch,
+    pulser: [Pulser; AXES],
+    armed: Register<Bit>,
+    mask: Register<Word<AXES>>,
+    going: Register<Bit>,
+    taken: Register<Bit>,
+    taken_word: Register<Word<3>>,
+    unfed: Register<Bit>,  // a masked axis has nothing waiting
+    held: Register<Bit>,   // a masked axis runs on
+    active: Register<Bit>, // an axis runs or waits
+    rest_1: Register<Bit>, // none did in the last tick,
+    rest_2: Register<Bit>, // and none in the two before
+    strobe: Signal<Local, Bit>,
+    masked: Signal<Local, Bit>,
+    nobody: Signal<Local, Bit>,
+    take: Signal<Local, Bit>,
+    free: Signal<Local, Bit>,
+    decides: Signal<Local, Bit>,
+    go: Signal<Local, Bit>,
+    rests: Signal<Local, Bit>,
+    pins_busy: Signal<Local, Bit>,
+    late: Signal<Local, Word<AXES>>,
+    late_bit: [Signal<Local, Word<AXES>>; AXES],
+    counted: [Signal<Local, Word<6>>; AXES],
+    counts: Signal<Local, Word<6>>,
+    none: Literal<6, 0>,
+    no_axes: Literal<AXES, 0>,
+    one_axis: [Parameter<AXES>; AXES],
+    commit: Literal<3, 7>,
+    six: Literal<3, 6>,
+}
+
+impl Engine {
+    /// The engine of this build.
+    ///
+    /// # Errors
+    /// [`HdlError::Engine`] where the turns do not fit into the tick or a figure of the guard cannot be counted,
+    /// [`HdlError::Axes`] unless there are six, [`HdlError::PinTiming`] where an axis' timing is out of range.
+    pub fn new(build: &EngineBuild) -> Result<Self, HdlError> {
+        build.check()?;
+        if build.axes() != AXES {
+            return Err(HdlError::Axes(build.axes()));
+        }
+        let mut pulser: [Pulser; AXES] = Default::default();
+        for (pulser, pins) in pulser.iter_mut().zip(&build.pins) {
+            *pulser = Pulser::new(pins)?;
+        }
+        Ok(Self {
+            store: Store::new(build.phase, &build.guard.stop),
+            wheel: Wheel::new(&build.timebase),
+            limits: Limits::new(&build.guard),
+            stops: Stops::new(&build.guard),
+            watch: Watch::new(&build.guard),
+            pulser,
+            one_axis: std::array::from_fn(|axis| Parameter::new(1 << axis)),
+            rest_1: Register::new(true),
+            rest_2: Register::new(true),
+            ..Self::default()
+        })
+    }
+}
+
+impl Logic for Engine {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, armed, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2);
+        clock!(self, clock, turn, adder, queue, store, wheel, limits, stops, watch);
+
+        self.strobe.next = self.wheel.strobe.val();
+        self.masked.next = (self.turn.lane.val() & self.mask.q.val()).any();
+
+        // The host's words.
+        self.nobody.next = self.put_axis.val() >= self.six.val();
+        self.put_ready.next = !self.stops.fault.val()
+            & (self.nobody.val()
+                | (self.turn.beat.val().get_bit(7)
+                    & (self.turn.axis.val() == self.put_axis.val())
+                    & !self.queue.full.val()));
+        self.take.next = self.put_valid.val() & self.put_ready.val() & !self.nobody.val();
+        self.taken.d.next = self.taken.q.val() & !self.turn.beat.val().get_bit(9);
+        if self.take.val() {
+            self.taken.d.next = self.put_word.val() != self.commit.val();
+        }
+        if self.turn.beat.val().get_bit(7) {
+            self.taken_word.d.next = self.put_word.val();
+        }
+
+        // Starts: armed at a strobe, then at the first strobe at which every axis of the mask rests and waits.
+        self.start_ready.next = self.strobe.val()
+            & !self.armed.q.val()
+            & !self.stops.fault.val()
+            & self.enable.val()
+            & self.watch.warm.val();
+        self.free.next = !self.stops.fault.val() & !self.stops.finds.val();
+        self.decides.next = self.strobe.val() & self.armed.q.val() & self.free.val();
+        self.go.next = self.decides.val() & !self.unfed.q.val() & !self.held.q.val();
+        if self.strobe.val() {
+            self.going.d.next = self.go.val();
+        }
+        if self.start_ready.val() & self.start_valid.val() {
+            self.armed.d.next = true;
+            self.mask.d.next = self.start_mask.val();
+        }
+        if self.go.val() | self.stops.fault.val() {
+            self.armed.d.next = false;
+        }
+
+        // What the turns find.
+        if self.turn.beat.val().get_bit(12) {
+            self.unfed.d.next = self.unfed.q.val() | (self.masked.val() & self.queue.empty.val());
+            self.held.d.next = self.held.q.val() | (self.masked.val() & self.queue.goes_on.val());
+            self.active.d.next = self.active.q.val() | self.queue.running.val() | !self.queue.empty.val();
+        }
+        if self.strobe.val() {
+            self.unfed.d.next = false;
+            self.held.d.next = false;
+            self.active.d.next = false;
+            self.rest_1.d.next = !self.active.q.val();
+            self.rest_2.d.next = !self.active.q.val() & self.rest_1.q.val();
+        }
+        if self.take.val() {
+            self.rest_1.d.next = false;
+            self.rest_2.d.next = false;
+        }
+
+        // The pins.
+        self.counts.next = self.none.val();
+        self.pins_busy.next = false;
+        self.late.next = self.no_axes.val();
+        for i in 0..6 {
+            self.pulser[i].clock.next = self.clock.val();
+            self.pulser[i].frozen.next = self.stops.frozen.val();
+            self.pulser[i].request.next = self.wheel.events.val().get_bit(i) & self.wheel.phase_start.val();
+            self.pulser[i].request_back.next = self.wheel.backward.val().get_bit(i);
+            self.pulser[i].has_sign.next = self.wheel.events.val().get_bit(i) & self.strobe.val();
+            self.pulser[i].sign_back.next = self.wheel.backward.val().get_bit(i);
+            self.counted[i].next = self.none.val();
+            if self.turn.lane.val().get_bit(i) {
+                self.counted[i].next = self.pulser[i].counts.val();
+            }
+            self.counts.next = self.counts.val() | self.counted[i].val();
+            self.late_bit[i].next = self.no_axes.val();
+            if self.pulser[i].overruns.val() {
+                self.late_bit[i].next = self.one_axis[i].val();
+            }
+            self.late.next = self.late.val() | self.late_bit[i].val();
+            self.pins_busy.next = self.pins_busy.val() | self.pulser[i].owed.val() | self.pulser[i].step.val();
+            self.step[i].next = self.pulser[i].step.val();
+            self.dir[i].next = self.pulser[i].dir.val();
+        }
+        self.rests.next = self.rest_2.q.val() & !self.armed.q.val() & !self.pins_busy.val();
+
+        // The modules.
+        self.turn.strobe.next = self.strobe.val();
+        self.queue.beat.next = self.turn.beat.val();
+        self.queue.axis.next = self.turn.axis.val();
+        self.queue.axis_next.next = self.turn.axis_next.val();
+        self.queue.starts.next = self.going.q.val() & self.masked.val();
+        self.queue.halted.next = self.stops.halted.val();
+        self.queue.ramp.next = self.stops.ramp.val();
+        self.queue.clear.next = self.stops.clearing.val();
+        self.queue.take.next = self.take.val();
+        self.queue.commit.next = self.put_word.val() == self.commit.val();
+        self.queue.last.next = self.put_data.val().get_bit(0);
+        self.queue.ended.next = self.adder.ended.val();
+        self.queue.overflow.next = self.adder.overflow.val();
+        self.queue.least.next = self.adder.least.val();
+        self.queue.turned.next = self.adder.turned.val();
+        self.queue.back.next = self.adder.back.val();
+        self.queue.pulses.next = self.counts.val().get_bits::<3>(0);
+        self.queue.losses.next = self.counts.val().get_bits::<3>(3);
+
+        self.adder.beat.next = self.turn.beat.val();
+        self.adder.word.next = self.store.word.val();
+        self.adder.put.next = self.put_data.val();
+        self.adder.counts.next = self.queue.running.val();
+        self.adder.lost.next = self.queue.lost.val();
+        self.adder.up.next = self.queue.up.val();
+        self.adder.down.next = self.queue.down.val();
+        self.adder.wipe.next = self.stops.clearing.val();
+
+        self.store.beat.next = self.turn.beat.val();
+        self.store.axis.next = self.turn.axis.val();
+        self.store.live.next = self.queue.live.val();
+        self.store.fresh.next = self.queue.fresh.val();
+        self.store.running.next = self.queue.running.val();
+        self.store.sound.next = self.queue.sound.val();
+        self.store.moves.next = self.queue.moves.val();
+        self.store.slows.next = self.queue.slows.val();
+        self.store.upward.next = self.queue.upward.val();
+        self.store.steady.next = self.queue.steady.val();
+        self.store.wipe.next = self.stops.clearing.val();
+        self.store.put.next = self.taken.q.val();
+        self.store.put_word.next = self.taken_word.q.val();
+        self.store.get_axis.next = self.get_axis.val();
+        self.store.get_item.next = self.get_item.val();
+        self.store.sum.next = self.adder.sum.val();
+
+        self.wheel.turn_ends.next = self.turn.beat.val().get_bit(12);
+        self.wheel.lane.next = self.turn.lane.val();
+        self.wheel.crosses.next = self.queue.moves.val() & self.adder.crosses.val();
+        self.wheel.has_sign.next = self.queue.moves.val() & !self.adder.still.val();
+        self.wheel.back.next = self.adder.back.val();
+        self.wheel.phase_known.next = self.turn.beat.val().get_bit(16);
+        self.wheel.q.next = self.adder.q.val();
+
+        self.get_data.next = self.store.word.val();
+        self.get_valid.next = self.turn.beat.val().get_bit(11);
+        self.limits.turn_ends.next = self.turn.beat.val().get_bit(12);
+        self.limits.axis.next = self.turn.axis.val();
+        self.limits.axis_next.next = self.turn.axis_next.val();
+        self.limits.lane.next = self.turn.lane.val();
+        self.limits.tick_0.next = self.watch.tick_0.val();
+        self.limits.tick_1.next = self.watch.tick_1.val();
+        self.limits.limit_min.next = self.limit_min.val();
+        self.limits.limit_max.next = self.limit_max.val();
+        self.limits.goes.next = self.queue.moves.val() & !self.adder.still.val();
+        self.limits.back.next = self.adder.back.val();
+
+        self.stops.strobe.next = self.strobe.val();
+        self.stops.turn_ends.next = self.turn.beat.val().get_bit(12);
+        self.stops.lane.next = self.turn.lane.val();
+        self.stops.runs.next = self.queue.running.val();
+        self.stops.too_fast.next = self.queue.too_fast.val();
+        self.stops.limit.next = self.limits.hit.val();
+        self.stops.dry.next = self.queue.dry.val();
+        self.stops.late.next = self.late.val();
+        self.stops.pressed.next = self.watch.pressed.val();
+        self.stops.breaks.next = (self.put_valid.val() & self.nobody.val() & !self.stops.fault.val())
+            | (self.decides.val() & self.unfed.q.val());
+        self.stops.missed.next = self.watch.missed.val() & !self.rest_2.q.val();
+        self.stops.asked.next = self.stop.val();
+        self.stops.clear.next = self.clear.val();
+        self.stops.pins_busy.next = self.pins_busy.val();
+
+        self.watch.strobe.next = self.strobe.val();
+        self.watch.estop.next = self.estop.val();
+        self.watch.kick.next = self.kick.val();
+        self.watch.enable.next = self.enable.val();
+        self.watch.idle.next = self.rests.val();
+
+        self.enabled.next = self.watch.enabled.val();
+        self.idle.next = self.rests.val();
+        self.fault.next = self.stops.fault.val();
+        self.halted.next = self.stops.halted.val();
+        self.cause.next = self.stops.cause.val();
+        self.culprits.next = self.stops.culprits.val();
+        self.started.next = self.go.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carrystep_spec::engine::EngineError;
+    use carrystep_spec::{Build, PinTiming, StartPhase, Timebase};
+
+    fn build() -> EngineBuild {
+        let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();
+        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+        EngineBuild::minimal(&build, 1 << 40)
+    }
+
+    #[test]
+    fn engine_synthesizes() {
+        crate::sim::assert_synthesizes(Engine::new(&build()).unwrap(), "carrystep_engine");
+    }
+
+    #[test]
+    fn axes_that_have_no_hardware_are_refused() {
+        let mut seven = build();
+        seven.pins.push(PinTiming::SHORTEST);
+        seven.guard.stop.push(1);
+        seven.timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
+        assert_eq!(Engine::new(&seven).err(), Some(HdlError::Axes(7)));
+    }
+
+    #[test]
+    fn a_tick_that_is_too_short_is_refused() {
+        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+        let refused = Engine::new(&EngineBuild { timebase, ..build() });
+        assert!(matches!(refused.err(), Some(HdlError::Engine(EngineError::Schedule { .. }))));
+    }
+}

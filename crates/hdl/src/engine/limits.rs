@@ -1,0 +1,156 @@
+//! The limit switches, one look in a turn: what is believed of each is in block RAM.
+//!
+//! ```text
+//! word     state | looks against it, 7 bits          address   axis 3 | max
+//! ```
+//!
+//! The pin goes through two flip-flops behind the choice of the axis: it has the whole turn to settle.
+
+use crate::constant::{Literal, Parameter};
+use crate::memory::Memory;
+use crate::register::{Input, Register};
+use crate::word::{Word, bit_cast};
+use carrystep_spec::AXES;
+use carrystep_spec::engine::{Guard, Limits as Wiring};
+use rust_hdl::prelude::*;
+
+/// Debounce, and what a switch means for the axis.
+#[derive(LogicBlock, Default)]
+pub struct Limits {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// Last beat of a turn.
+    pub turn_ends: Input<Bit>,
+    /// The axis, as a number.
+    pub axis: Input<Word<3>>,
+    /// The axis of the next cycle.
+    pub axis_next: Input<Word<3>>,
+    /// The axis, one bit.
+    pub lane: Input<Word<AXES>>,
+    /// First tick of a round: `limit_min` is looked at.
+    pub tick_0: Input<Bit>,
+    /// Second tick of a round: `limit_max` is looked at.
+    pub tick_1: Input<Bit>,
+    /// The pins.
+    pub limit_min: Input<Word<AXES>>,
+    /// The pins.
+    pub limit_max: Input<Word<AXES>>,
+    /// The axis makes its tick, with a V that is not zero.
+    pub goes: Input<Bit>,
+    /// V < 0.
+    pub back: Input<Bit>,
+    /// The axis has reached a limit.
+    pub hit: Signal<Out, Bit>,
+    switches: Memory<4, 8>,
+    max: Signal<Local, Bit>,
+    looks: Signal<Local, Bit>,
+    pins: Signal<Local, Word<AXES>>,
+    chosen: Signal<Local, Word<AXES>>,
+    sync: Register<Bit>,
+    now: Register<Bit>,
+    word: Signal<Local, Word<8>>,
+    differs: Signal<Local, Bit>,
+    flips: Signal<Local, Bit>,
+    state: Signal<Local, Bit>,
+    count: Signal<Local, Word<7>>,
+    next_word: Signal<Local, Word<8>>,
+    exist: Parameter<1>,
+    pair: Parameter<1>,
+    one_for_all: Parameter<1>,
+    low: Parameter<1>,
+    last_look: Parameter<7>,
+    first_lane: Literal<AXES, 1>,
+    one: Literal<7, 1>,
+    none: Literal<7, 0>,
+    active: Literal<8, 0x80>,
+    no: Literal<8, 0>,
+    all: Literal<8, 0xff>,
+    side: Literal<4, 1>,
+    no_side: Literal<4, 0>,
+    max_bit: Signal<Local, Word<4>>,
+    by_one: Literal<1, 1>,
+}
+
+impl Limits {
+    /// The limits of this guard, which has been checked.
+    pub fn new(guard: &Guard) -> Self {
+        let is = |wiring| Parameter::new(u64::from(guard.limits == wiring));
+        Self {
+            exist: Parameter::new(u64::from(guard.limits != Wiring::None)),
+            pair: is(Wiring::Pair),
+            one_for_all: is(Wiring::One),
+            low: Parameter::new(u64::from(guard.limits_low)),
+            last_look: Parameter::new(u64::from(guard.debounce - 1)),
+            ..Self::default()
+        }
+    }
+}
+
+impl Logic for Limits {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, sync, now);
+        clock!(self, clock, switches);
+
+        // The pin of this turn.
+        self.max.next = self.tick_1.val() & self.pair.val().any();
+        self.looks.next = self.turn_ends.val() & (self.tick_0.val() | self.max.val());
+        self.pins.next = self.limit_min.val();
+        if self.max.val() {
+            self.pins.next = self.limit_max.val();
+        }
+        self.chosen.next = self.pins.val() & self.lane.val();
+        if self.one_for_all.val().any() {
+            self.chosen.next = self.pins.val() & self.first_lane.val();
+        }
+        self.sync.d.next = self.chosen.val().any() ^ self.low.val().any();
+        self.now.d.next = self.sync.q.val();
+
+        // What is believed.
+        self.max_bit.next = self.no_side.val();
+        if self.max.val() {
+            self.max_bit.next = self.side.val();
+        }
+        self.switches.read_address.next =
+            (bit_cast::<4, 3>(self.axis_next.val()) << self.by_one.val()) | self.max_bit.val();
+        self.switches.write_address.next =
+            (bit_cast::<4, 3>(self.axis.val()) << self.by_one.val()) | self.max_bit.val();
+        self.word.next = self.switches.read_data.val();
+        self.differs.next = self.now.q.val() ^ self.word.val().get_bit(7);
+        self.flips.next = self.differs.val() & (self.word.val().get_bits::<7>(0) == self.last_look.val());
+        self.state.next = self.word.val().get_bit(7) ^ self.flips.val();
+        self.count.next = self.none.val();
+        if self.differs.val() & !self.flips.val() {
+            self.count.next = self.word.val().get_bits::<7>(0) + self.one.val();
+        }
+        self.next_word.next = bit_cast::<8, 7>(self.count.val());
+        if self.state.val() {
+            self.next_word.next = bit_cast::<8, 7>(self.count.val()) | self.active.val();
+        }
+        self.switches.write_data.next = self.next_word.val();
+        self.switches.write_bits.next = self.no.val();
+        if self.looks.val() & self.exist.val().any() {
+            self.switches.write_bits.next = self.all.val();
+        }
+
+        // What it means: one of a pair stops one way; one alone stops what runs into it, and lets it go.
+        self.hit.next = self.looks.val()
+            & self.exist.val().any()
+            & self.goes.val()
+            & self.state.val()
+            & ((self.pair.val().any() & (self.back.val() ^ self.max.val()))
+                | (!self.pair.val().any() & self.flips.val()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn limits_synthesizes() {
+        let guard = Guard { limits: Wiring::Pair, debounce: 10, ..Guard::minimal(Vec::new()) };
+        assert_synthesizes(Limits::new(&guard), "carrystep_limits");
+    }
+}

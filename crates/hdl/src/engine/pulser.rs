@@ -1,0 +1,202 @@
+//! From events to pins: the shaper of the engine. Its pins are those of [`crate::shaper`] in every clock.
+//!
+//! ```text
+//! DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
+//!          :<-- D -->:<--- H --->:             :
+//! STEP ______________/^^^^^^\________/^^^^^^\__________
+//!                    :<-W ->:<- S -->:
+//! ```
+//!
+//! Two counters run freely: `since` the last rise and `after` the last turn of DIR. Passing a bound only ends
+//! something (the pulse, the gap, the hold, the set-up), so they need not stop, and it is no matter that they wrap.
+//! Pulses and discarded steps are counted modulo eight; the engine carries them on in memory, one a tick.
+
+use crate::HdlError;
+use crate::constant::{Literal, Parameter, used_bits};
+use crate::register::{Input, Register};
+use crate::word::{Word, bit_cast};
+use carrystep_spec::PinTiming;
+use carrystep_spec::build::MAX_CLOCKS;
+use rust_hdl::prelude::*;
+
+/// STEP and DIR of one axis.
+#[derive(LogicBlock, Default)]
+pub struct Pulser {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// A fault is latched: nothing new rises, DIR stays.
+    pub frozen: Input<Bit>,
+    /// A step is due.
+    pub request: Input<Bit>,
+    /// It goes backward.
+    pub request_back: Input<Bit>,
+    /// The next tick's V is not zero.
+    pub has_sign: Input<Bit>,
+    /// The next tick's V is negative.
+    pub sign_back: Input<Bit>,
+    /// The STEP pin.
+    pub step: Signal<Out, Bit>,
+    /// The DIR pin, 1 is backward.
+    pub dir: Signal<Out, Bit>,
+    /// A step is owed.
+    pub owed: Signal<Out, Bit>,
+    /// Steps forward less steps backward, modulo 8; above that the discarded steps, modulo 8.
+    pub counts: Signal<Out, Word<6>>,
+    /// A second step is owed: the stop comes with the next cycle.
+    pub overruns: Signal<Out, Bit>,
+    step_pin: Register<Bit>,
+    dir_pin: Register<Bit>,
+    want: Register<Bit>,
+    due: Register<Bit>,        // `owed`
+    due_back: Register<Bit>,   // its direction
+    since: Register<Word<17>>, // clocks since STEP rose
+    after: Register<Word<16>>, // clocks since DIR turned
+    busy: Register<Bit>,       // pulse or gap
+    held: Register<Bit>,       // DIR may not turn
+    settled: Register<Bit>,    // DIR stands long enough
+    count: Register<Word<3>>,  // of `counts`
+    lost: Register<Word<3>>,
+    pending: Signal<Local, Bit>,
+    first_back: Signal<Local, Bit>,
+    rise: Signal<Local, Bit>,
+    aim: Signal<Local, Bit>,
+    turn: Signal<Local, Bit>,
+    second: Signal<Local, Bit>,
+    late_now: Signal<Local, Bit>,
+    change: Signal<Local, Word<3>>,
+    pulse_over: Parameter<17>,
+    gap_over: Parameter<17>,
+    hold_over: Parameter<17>,
+    since_bits: Parameter<17>,
+    setup_over: Parameter<16>,
+    after_bits: Parameter<16>,
+    holds: Parameter<1>,
+    instant: Parameter<1>, // no set-up to wait for
+    since_rise: Literal<17, 0>,
+    since_one: Literal<17, 1>,
+    after_turn: Literal<16, 0>,
+    after_one: Literal<16, 1>,
+    at_3: Literal<4, 3>,
+    one: Literal<3, 1>,
+    minus_one: Literal<3, 7>,
+}
+
+impl Pulser {
+    /// The pulser of an axis with this timing.
+    ///
+    /// # Errors
+    /// [`HdlError::PinTiming`] where a figure is not from 1 to [`MAX_CLOCKS`].
+    pub fn new(pins: &PinTiming) -> Result<Self, HdlError> {
+        let &PinTiming { width, gap, setup, hold } = pins;
+        for (name, clocks) in [("width", width), ("gap", gap), ("setup", setup), ("hold", hold)] {
+            if !(1..=MAX_CLOCKS).contains(&clocks) {
+                return Err(HdlError::PinTiming { name, clocks });
+            }
+        }
+        let [width, gap, setup, hold] = [width, gap, setup, hold].map(u64::from);
+        let (gap_over, hold_over, setup_over) = (width + gap - 2, hold.saturating_sub(2), setup.saturating_sub(2));
+        Ok(Self {
+            pulse_over: Parameter::new(width - 1),
+            gap_over: Parameter::new(gap_over),
+            hold_over: Parameter::new(hold_over),
+            since_bits: Parameter::new(used_bits((width - 1).max(gap_over).max(hold_over))),
+            setup_over: Parameter::new(setup_over),
+            after_bits: Parameter::new(used_bits(setup_over)),
+            holds: Parameter::new(u64::from(hold > 1)),
+            instant: Parameter::new(u64::from(setup == 1)),
+            ..Self::default()
+        })
+    }
+}
+
+impl Logic for Pulser {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, step_pin, dir_pin, want, due, due_back, since, after, busy, held, settled);
+        dff_setup!(self, clock, count, lost);
+
+        // Which way DIR should point, and which step is due.
+        if self.has_sign.val() {
+            self.want.d.next = self.sign_back.val();
+        }
+        self.pending.next = self.due.q.val() | self.request.val();
+        self.first_back.next = self.request_back.val();
+        if self.due.q.val() {
+            self.first_back.next = self.due_back.q.val();
+        }
+
+        // May it rise; may DIR turn.
+        self.rise.next = self.pending.val()
+            & !self.frozen.val()
+            & !self.busy.q.val()
+            & (self.settled.q.val() | self.instant.val().any())
+            & (self.dir_pin.q.val() == self.first_back.val());
+        self.aim.next = self.want.q.val();
+        if self.pending.val() {
+            self.aim.next = self.first_back.val();
+        }
+        self.turn.next = !self.frozen.val() & !self.held.q.val() & (self.dir_pin.q.val() != self.aim.val());
+
+        // The pins.
+        self.step_pin.d.next =
+            self.rise.val() | (self.step_pin.q.val() & (self.since.q.val() != self.pulse_over.val()));
+        self.dir_pin.d.next = self.dir_pin.q.val() ^ self.turn.val();
+
+        // Time since STEP rose: the pulse, the gap, the hold.
+        self.since.d.next = (self.since.q.val() + self.since_one.val()) & self.since_bits.val();
+        self.busy.d.next = self.busy.q.val() & (self.since.q.val() != self.gap_over.val());
+        self.held.d.next = self.held.q.val() & (self.since.q.val() != self.hold_over.val());
+        if self.rise.val() {
+            self.since.d.next = self.since_rise.val();
+            self.busy.d.next = true;
+            self.held.d.next = self.holds.val().any();
+        }
+
+        // Time since DIR turned: the set-up.
+        self.after.d.next = (self.after.q.val() + self.after_one.val()) & self.after_bits.val();
+        self.settled.d.next = self.settled.q.val() | (self.after.q.val() == self.setup_over.val());
+        if self.turn.val() {
+            self.after.d.next = self.after_turn.val();
+            self.settled.d.next = false;
+        }
+
+        // Where the axis is.
+        self.change.next = self.one.val();
+        if self.dir_pin.q.val() {
+            self.change.next = self.minus_one.val();
+        }
+        if self.rise.val() {
+            self.count.d.next = self.count.q.val() + self.change.val();
+        }
+
+        // What is owed, and what is lost, one a clock: in silence nothing is.
+        self.second.next = self.due.q.val() & self.request.val();
+        self.late_now.next = self.second.val() & !self.rise.val() & !self.frozen.val();
+        self.due.d.next = (self.pending.val() & !self.rise.val() & !self.frozen.val()) | self.second.val();
+        if !self.due.q.val() | self.rise.val() {
+            self.due_back.d.next = self.request_back.val();
+        }
+        if (self.frozen.val() & self.pending.val()) | self.late_now.val() {
+            self.lost.d.next = self.lost.q.val() + self.one.val();
+        }
+
+        self.step.next = self.step_pin.q.val();
+        self.dir.next = self.dir_pin.q.val();
+        self.owed.next = self.due.q.val();
+        self.counts.next =
+            bit_cast::<6, 3>(self.count.q.val()) | (bit_cast::<6, 3>(self.lost.q.val()) << self.at_3.val());
+        self.overruns.next = self.late_now.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn pulser_synthesizes() {
+        let pins = PinTiming { width: 12, gap: 5, setup: 3, hold: 2 };
+        assert_synthesizes(Pulser::new(&pins).unwrap(), "carrystep_pulser");
+    }
+}

@@ -1,0 +1,278 @@
+//! Which segment an axis runs, and which ones wait: the control word of the axis whose turn it is.
+//!
+//! An axis has eight slots. The running segment lives in slot `live`: its ticks, V and A are the axis' registers.
+//! The segments up to `newest` wait; the one after that is the host's to write.
+//!
+//! ```text
+//! slot     | 0 | 1 | 2 | 3 | 4 | 5 | 6 | 7 |
+//!                live  waits   ^   ^ newest + 1: being written
+//!                              '-- newest                           empty: newest == live
+//! ```
+//!
+//! The word comes from memory with the turn and goes back in its last beat:
+//! `live 3, newest 3, running, unfit, position's low bits 3, discarded's low bits 3, back, known`: the last two
+//! belong to a ramp, whose first tick finds which way the axis goes.
+
+use crate::constant::Literal;
+use crate::memory::Memory;
+use crate::register::{Input, Register};
+use crate::word::{Word, bit_cast};
+use rust_hdl::prelude::*;
+
+/// The control words, and the present one at work.
+#[derive(LogicBlock, Default)]
+pub struct Queue {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// The beats of [`super::turn`].
+    pub beat: Input<Word<17>>,
+    /// The axis.
+    pub axis: Input<Word<3>>,
+    /// The axis of the next cycle.
+    pub axis_next: Input<Word<3>>,
+    /// This axis starts in this tick.
+    pub starts: Input<Bit>,
+    /// No axis runs.
+    pub halted: Input<Bit>,
+    /// All axes slow down.
+    pub ramp: Input<Bit>,
+    /// Forget all segments.
+    pub clear: Input<Bit>,
+    /// The host's word is taken in this cycle.
+    pub take: Input<Bit>,
+    /// It commits.
+    pub commit: Input<Bit>,
+    /// The committed segment is the last of its move.
+    pub last: Input<Bit>,
+    /// The segment is over after this tick.
+    pub ended: Input<Bit>,
+    /// V + A does not fit.
+    pub overflow: Input<Bit>,
+    /// V = -2^63.
+    pub least: Input<Bit>,
+    /// V + A has the other sign than V.
+    pub turned: Input<Bit>,
+    /// V < 0.
+    pub back: Input<Bit>,
+    /// Low bits of the pulses on the pins.
+    pub pulses: Input<Word<3>>,
+    /// Low bits of the discarded steps.
+    pub losses: Input<Word<3>>,
+    /// The slot of the running segment.
+    pub live: Signal<Out, Word<3>>,
+    /// The slot that the host writes.
+    pub fresh: Signal<Out, Word<3>>,
+    /// The host cannot write.
+    pub full: Signal<Out, Bit>,
+    /// Nothing waits.
+    pub empty: Signal<Out, Bit>,
+    /// The axis runs in this tick.
+    pub running: Signal<Out, Bit>,
+    /// Its V fits, as far as is known before beat 12.
+    pub sound: Signal<Out, Bit>,
+    /// V slows down in this tick.
+    pub slows: Signal<Out, Bit>,
+    /// From below zero.
+    pub upward: Signal<Out, Bit>,
+    /// V stays as it is in this tick.
+    pub steady: Signal<Out, Bit>,
+    /// In beat 12: it runs and its V fits.
+    pub moves: Signal<Out, Bit>,
+    /// In beat 12: it runs in the next tick too.
+    pub goes_on: Signal<Out, Bit>,
+    /// In beat 12, fault: its V does not fit.
+    pub too_fast: Signal<Out, Bit>,
+    /// In beat 12, fault: nothing follows.
+    pub dry: Signal<Out, Bit>,
+    /// From beat 5: a step forward is to be counted.
+    pub up: Signal<Out, Bit>,
+    /// From beat 5: a step back is to be counted.
+    pub down: Signal<Out, Bit>,
+    /// From beat 5: a discarded step is to be counted, if the axis rests.
+    pub lost: Signal<Out, Bit>,
+    control: Memory<3, 16>,
+    lasts: Memory<6, 1>,
+    word: Signal<Local, Word<16>>,
+    old_live: Signal<Local, Word<3>>,
+    live_now: Signal<Local, Word<3>>,
+    newest: Signal<Local, Word<3>>,
+    fresh_now: Signal<Local, Word<3>>,
+    runs: Signal<Local, Bit>,
+    fits: Signal<Local, Bit>,
+    none: Signal<Local, Bit>,
+    last_one: Signal<Local, Bit>,
+    ramps: Signal<Local, Bit>,
+    over: Signal<Local, Bit>,
+    follows: Signal<Local, Bit>,
+    stays: Signal<Local, Bit>,
+    committed: Register<Bit>,
+    missing: Signal<Local, Word<3>>,
+    unseen: Signal<Local, Word<3>>,
+    forward: Register<Bit>,  // `up`
+    backward: Register<Bit>, // `down`
+    gone: Register<Bit>,     // `lost`
+    next_live: Signal<Local, Word<3>>,
+    next_newest: Signal<Local, Word<3>>,
+    next_running: Signal<Local, Word<16>>,
+    next_unfit: Signal<Local, Word<16>>,
+    next_known: Signal<Local, Word<16>>,
+    next_back: Signal<Local, Word<16>>,
+    next_seen: Signal<Local, Word<3>>,
+    next_lost: Signal<Local, Word<3>>,
+    one: Literal<3, 1>,
+    minus_one: Literal<3, 7>,
+    zero: Literal<3, 0>,
+    no: Literal<16, 0>,
+    running_bit: Literal<16, 64>,
+    unfit_bit: Literal<16, 128>,
+    back_bit: Literal<16, 0x4000>,
+    known_bit: Literal<16, 0x8000>,
+    all: Literal<16, 0xffff>,
+    set: Literal<1, 1>,
+    unset: Literal<1, 0>,
+    at_3: Literal<4, 3>,
+    at_8: Literal<4, 8>,
+    at_11: Literal<4, 11>,
+}
+
+impl Logic for Queue {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, committed, forward, backward, gone);
+        clock!(self, clock, control, lasts);
+
+        // The word of this turn.
+        self.word.next = self.control.read_data.val();
+        self.old_live.next = self.word.val().get_bits::<3>(0);
+        self.newest.next = self.word.val().get_bits::<3>(3);
+        self.live_now.next = self.old_live.val();
+        if self.starts.val() {
+            self.live_now.next = self.old_live.val() + self.one.val();
+        }
+        self.fresh_now.next = self.newest.val() + self.one.val();
+        self.runs.next = (self.word.val().get_bit(6) | self.starts.val()) & !self.halted.val();
+        self.fits.next = self.runs.val() & !self.word.val().get_bit(7);
+        self.none.next = self.newest.val() == self.live_now.val();
+
+        // What comes after this tick.
+        self.last_one.next = self.lasts.read_data.val().any();
+        self.ramps.next = self.ramp.val() & self.word.val().get_bit(15);
+        self.follows.next = self.ended.val() & !self.last_one.val() & !self.none.val() & !self.ramp.val();
+        self.moves.next = self.fits.val() & !self.least.val();
+        self.over.next = self.ended.val() & self.last_one.val();
+        if self.ramp.val() {
+            self.over.next = self.ramps.val() & self.turned.val();
+        }
+        self.stays.next = self.moves.val() & !self.over.val();
+        self.goes_on.next = self.stays.val();
+        self.too_fast.next = self.runs.val() & (self.word.val().get_bit(7) | self.least.val());
+        self.dry.next = self.moves.val() & self.ended.val() & !self.last_one.val() & self.none.val() & !self.ramp.val();
+
+        // Pulses and losses are counted one a tick: the low bits say what is missing in memory.
+        self.missing.next = self.pulses.val() - self.word.val().get_bits::<3>(8);
+        self.unseen.next = self.losses.val() ^ self.word.val().get_bits::<3>(11);
+        if self.beat.val().get_bit(4) {
+            self.forward.d.next = self.missing.val().any() & !self.missing.val().get_bit(2);
+            self.backward.d.next = self.missing.val().get_bit(2);
+            self.gone.d.next = self.unseen.val().any() & !self.runs.val();
+        }
+
+        // The host's word.
+        if self.beat.val().get_bit(0) {
+            self.committed.d.next = false;
+        }
+        if self.take.val() & self.commit.val() {
+            self.committed.d.next = true;
+        }
+        self.lasts.read_address.next =
+            (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val()) | bit_cast::<6, 3>(self.live_now.val());
+        self.lasts.write_address.next =
+            (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val()) | bit_cast::<6, 3>(self.fresh_now.val());
+        self.lasts.write_data.next = self.unset.val();
+        if self.last.val() {
+            self.lasts.write_data.next = self.set.val();
+        }
+        self.lasts.write_bits.next = self.unset.val();
+        if self.take.val() & self.commit.val() {
+            self.lasts.write_bits.next = self.set.val();
+        }
+
+        // The word of this axis' next turn.
+        self.next_live.next = self.live_now.val();
+        if self.moves.val() & self.follows.val() {
+            self.next_live.next = self.live_now.val() + self.one.val();
+        }
+        self.next_newest.next = self.newest.val();
+        if self.committed.q.val() {
+            self.next_newest.next = self.fresh_now.val();
+        }
+        if self.clear.val() {
+            self.next_live.next = self.zero.val();
+            self.next_newest.next = self.zero.val();
+        }
+        self.next_running.next = self.no.val();
+        if self.stays.val() {
+            self.next_running.next = self.running_bit.val();
+        }
+        self.next_unfit.next = self.no.val();
+        if self.stays.val() & !self.follows.val() & !self.ramp.val() & self.overflow.val() {
+            self.next_unfit.next = self.unfit_bit.val();
+        }
+        self.next_known.next = self.no.val();
+        if self.stays.val() & self.ramp.val() {
+            self.next_known.next = self.known_bit.val();
+        }
+        self.next_back.next = self.no.val();
+        if (self.ramps.val() & self.word.val().get_bit(14)) | (!self.ramps.val() & self.back.val()) {
+            self.next_back.next = self.back_bit.val();
+        }
+        self.next_seen.next = self.word.val().get_bits::<3>(8);
+        if self.forward.q.val() {
+            self.next_seen.next = self.word.val().get_bits::<3>(8) + self.one.val();
+        } else if self.backward.q.val() {
+            self.next_seen.next = self.word.val().get_bits::<3>(8) + self.minus_one.val();
+        }
+        self.next_lost.next = self.word.val().get_bits::<3>(11);
+        if self.gone.q.val() {
+            self.next_lost.next = self.word.val().get_bits::<3>(11) + self.one.val();
+        }
+        self.control.read_address.next = self.axis_next.val();
+        self.control.write_address.next = self.axis.val();
+        self.control.write_data.next = bit_cast::<16, 3>(self.next_live.val())
+            | (bit_cast::<16, 3>(self.next_newest.val()) << self.at_3.val())
+            | self.next_running.val()
+            | self.next_unfit.val()
+            | self.next_known.val()
+            | self.next_back.val()
+            | (bit_cast::<16, 3>(self.next_seen.val()) << self.at_8.val())
+            | (bit_cast::<16, 3>(self.next_lost.val()) << self.at_11.val());
+        self.control.write_bits.next = self.no.val();
+        if self.beat.val().get_bit(12) {
+            self.control.write_bits.next = self.all.val();
+        }
+
+        self.live.next = self.live_now.val();
+        self.fresh.next = self.fresh_now.val();
+        self.full.next = self.fresh_now.val() == self.live_now.val();
+        self.empty.next = self.none.val();
+        self.running.next = self.runs.val();
+        self.sound.next = self.fits.val();
+        self.slows.next = self.ramps.val();
+        self.upward.next = self.word.val().get_bit(14);
+        self.steady.next = self.ramp.val() & !self.word.val().get_bit(15);
+        self.up.next = self.forward.q.val();
+        self.down.next = self.backward.q.val();
+        self.lost.next = self.gone.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn queue_synthesizes() {
+        assert_synthesizes(Queue::default(), "carrystep_queue");
+    }
+}

@@ -1,0 +1,239 @@
+//! The memory of all axes: segments, which are also their registers, and what an axis keeps between moves.
+//!
+//! ```text
+//! address   axis 3 | slot 3 | word 3
+//! word      0 ticks - 1   1 2 V   3 4 A   5 6 J (low, high)   7: what the axis keeps, by slot:
+//! slot      0 1 P (low, high)   2 position   3 discarded   4 5 -s   6 7 s      s: stop acceleration
+//!
+//! beat      0    1    2    3    4    5    6    7    8    9    10   11   12
+//! reads     A    J    V    P    n    pos  J'   A'   V'   P'   get             n: ticks, or discarded at rest
+//! writes                        A    V    P    n    pos  put  A'   V'   P'    ': high halves
+//! ```
+//!
+//! A sum is written four beats after its word was read, the host's word in between.
+
+use crate::constant::{Literal, Parameter};
+use crate::memory::Memory;
+use crate::register::Input;
+use crate::word::{Word, bit_cast};
+use carrystep_spec::StartPhase;
+use rust_hdl::prelude::*;
+
+/// The memory and its addresses.
+#[derive(LogicBlock, Default)]
+pub struct Store {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// The beats of [`super::turn`].
+    pub beat: Input<Word<17>>,
+    /// The axis.
+    pub axis: Input<Word<3>>,
+    /// The slot of its running segment.
+    pub live: Input<Word<3>>,
+    /// The slot that the host writes.
+    pub fresh: Input<Word<3>>,
+    /// The axis runs.
+    pub running: Input<Bit>,
+    /// It runs, and its V fits as far as is known.
+    pub sound: Input<Bit>,
+    /// In beat 12: it runs and its V fits.
+    pub moves: Input<Bit>,
+    /// In a ramp -s or s stands for A,
+    pub slows: Input<Bit>,
+    /// namely s,
+    pub upward: Input<Bit>,
+    /// or V stays.
+    pub steady: Input<Bit>,
+    /// P becomes its start value.
+    pub wipe: Input<Bit>,
+    /// In beat 9: the host's word is to be written.
+    pub put: Input<Bit>,
+    /// Which word of the segment it is.
+    pub put_word: Input<Word<3>>,
+    /// The axis that the host asks about.
+    pub get_axis: Input<Word<3>>,
+    /// What it asks for, as the slot of word 7.
+    pub get_item: Input<Word<2>>,
+    /// What is written.
+    pub sum: Input<Word<32>>,
+    /// What was read.
+    pub word: Signal<Out, Word<32>>,
+    pub(crate) segments: Memory<9, 32>,
+    read_axis: Signal<Local, Word<3>>,
+    read_slot: Signal<Local, Word<3>>,
+    read_word: Signal<Local, Word<3>>,
+    write_slot: Signal<Local, Word<3>>,
+    write_word: Signal<Local, Word<3>>,
+    writes: Signal<Local, Bit>,
+    ticks: Literal<3, 0>,
+    v_low: Literal<3, 1>,
+    v_high: Literal<3, 2>,
+    a_low: Literal<3, 3>,
+    a_high: Literal<3, 4>,
+    j_low: Literal<3, 5>,
+    j_high: Literal<3, 6>,
+    kept: Literal<3, 7>,
+    p_low: Literal<3, 0>,
+    p_high: Literal<3, 1>,
+    position: Literal<3, 2>,
+    discarded: Literal<3, 3>,
+    down_low: Literal<3, 4>,
+    down_high: Literal<3, 5>,
+    up_low: Literal<3, 6>,
+    up_high: Literal<3, 7>,
+    at_3: Literal<4, 3>,
+    at_6: Literal<4, 6>,
+    start_high: Parameter<32>,
+    no: Literal<32, 0>,
+    all: Literal<32, 0xffff_ffff>,
+}
+
+impl Store {
+    /// The memory of axes that start in this phase of a step, with their stop accelerations.
+    pub fn new(start: StartPhase, stops: &[u64]) -> Self {
+        let start_high = start.start_value() >> 32;
+        let mut kept = Vec::new();
+        for (axis, stop) in stops.iter().enumerate() {
+            let (down, low) = (stop.wrapping_neg(), 0xffff_ffff);
+            let words = [(1, start_high), (4, down & low), (5, down >> 32), (6, stop & low), (7, stop >> 32)];
+            kept.extend(words.map(|(slot, word)| (axis << 6 | slot << 3 | 7, Word::from(word))));
+        }
+        Self { segments: Memory::of_words(&kept), start_high: Parameter::new(start_high), ..Self::default() }
+    }
+}
+
+impl Logic for Store {
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, segments);
+
+        // What is read.
+        self.read_axis.next = self.axis.val();
+        self.read_slot.next = self.live.val();
+        self.read_word.next = self.kept.val();
+        if self.beat.val().get_bit(0) {
+            if self.slows.val() {
+                self.read_slot.next = self.down_low.val();
+                if self.upward.val() {
+                    self.read_slot.next = self.up_low.val();
+                }
+            } else {
+                self.read_word.next = self.a_low.val();
+            }
+        }
+        if self.beat.val().get_bit(1) {
+            self.read_word.next = self.j_low.val();
+        }
+        if self.beat.val().get_bit(2) {
+            self.read_word.next = self.v_low.val();
+        }
+        if self.beat.val().get_bit(3) {
+            self.read_slot.next = self.p_low.val();
+        }
+        if self.beat.val().get_bit(4) {
+            if self.running.val() {
+                self.read_word.next = self.ticks.val();
+            } else {
+                self.read_slot.next = self.discarded.val();
+            }
+        }
+        if self.beat.val().get_bit(5) {
+            self.read_slot.next = self.position.val();
+        }
+        if self.beat.val().get_bit(6) {
+            self.read_word.next = self.j_high.val();
+        }
+        if self.beat.val().get_bit(7) {
+            if self.slows.val() {
+                self.read_slot.next = self.down_high.val();
+                if self.upward.val() {
+                    self.read_slot.next = self.up_high.val();
+                }
+            } else {
+                self.read_word.next = self.a_high.val();
+            }
+        }
+        if self.beat.val().get_bit(8) {
+            self.read_word.next = self.v_high.val();
+        }
+        if self.beat.val().get_bit(9) {
+            self.read_slot.next = self.p_high.val();
+        }
+        if self.beat.val().get_bit(10) {
+            self.read_axis.next = self.get_axis.val();
+            self.read_slot.next = bit_cast::<3, 2>(self.get_item.val());
+        }
+        self.segments.read_address.next = (bit_cast::<9, 3>(self.read_axis.val()) << self.at_6.val())
+            | (bit_cast::<9, 3>(self.read_slot.val()) << self.at_3.val())
+            | bit_cast::<9, 3>(self.read_word.val());
+        self.word.next = self.segments.read_data.val();
+
+        // What is written.
+        self.write_slot.next = self.live.val();
+        self.write_word.next = self.kept.val();
+        self.writes.next = false;
+        if self.beat.val().get_bit(4) {
+            self.write_word.next = self.a_low.val();
+            self.writes.next = self.sound.val();
+        }
+        if self.beat.val().get_bit(5) {
+            self.write_word.next = self.v_low.val();
+            self.writes.next = self.sound.val() & !self.steady.val();
+        }
+        if self.beat.val().get_bit(6) {
+            self.write_slot.next = self.p_low.val();
+            self.writes.next = self.sound.val() | self.wipe.val();
+        }
+        if self.beat.val().get_bit(7) {
+            self.writes.next = true;
+            if self.running.val() {
+                self.write_word.next = self.ticks.val();
+            } else {
+                self.write_slot.next = self.discarded.val();
+            }
+        }
+        if self.beat.val().get_bit(8) {
+            self.write_slot.next = self.position.val();
+            self.writes.next = true;
+        }
+        if self.beat.val().get_bit(9) {
+            self.write_slot.next = self.fresh.val();
+            self.write_word.next = self.put_word.val();
+            self.writes.next = self.put.val();
+        }
+        if self.beat.val().get_bit(10) {
+            self.write_word.next = self.a_high.val();
+            self.writes.next = self.sound.val();
+        }
+        if self.beat.val().get_bit(11) {
+            self.write_word.next = self.v_high.val();
+            self.writes.next = self.sound.val() & !self.steady.val();
+        }
+        if self.beat.val().get_bit(12) {
+            self.write_slot.next = self.p_high.val();
+            self.writes.next = self.moves.val() | self.wipe.val();
+        }
+        self.segments.write_address.next = (bit_cast::<9, 3>(self.axis.val()) << self.at_6.val())
+            | (bit_cast::<9, 3>(self.write_slot.val()) << self.at_3.val())
+            | bit_cast::<9, 3>(self.write_word.val());
+        self.segments.write_data.next = self.sum.val();
+        if self.wipe.val() & self.beat.val().get_bit(12) {
+            self.segments.write_data.next = self.sum.val() | self.start_high.val();
+        }
+        self.segments.write_bits.next = self.no.val();
+        if self.writes.val() {
+            self.segments.write_bits.next = self.all.val();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn store_synthesizes() {
+        assert_synthesizes(Store::new(StartPhase::Half, &[1 << 40; 6]), "carrystep_store");
+    }
+}

@@ -1,0 +1,106 @@
+//! Whose turn it is: one axis after the other, thirteen beats each.
+//!
+//! ```text
+//! strobe  /^\________________________________________________
+//! axis       | 0                     | 1                     | ...
+//! beat       | 0 | 1 | 2 | ...  | 12 | 0 | 1 | 2 | ...
+//!                                    |13 |14 |15 |16 |            the bisection of axis 0 ends in the turn of axis 1
+//! ```
+//!
+//! A beat is one flip-flop of a long shift register: what happens in a beat costs no decoder.
+
+use crate::constant::Literal;
+use crate::register::{Input, Register};
+use crate::word::Word;
+use carrystep_spec::AXES;
+use rust_hdl::prelude::*;
+
+/// The beats, and the axis.
+#[derive(LogicBlock, Default)]
+pub struct Turn {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// Last cycle of a tick.
+    pub strobe: Input<Bit>,
+    /// Bit i: beat i; bits 13 to 16 belong to the axis of the turn before.
+    pub beat: Signal<Out, Word<17>>,
+    /// The axis, as a number.
+    pub axis: Signal<Out, Word<3>>,
+    /// The axis of the next cycle.
+    pub axis_next: Signal<Out, Word<3>>,
+    /// The axis, one bit each; none after the last turn.
+    pub lane: Signal<Out, Word<AXES>>,
+    beats: Register<Word<17>>,
+    number: Register<Word<3>>,
+    lanes: Register<Word<AXES>>,
+    begins: Signal<Local, Bit>,
+    axis_to_come: Signal<Local, Word<3>>,
+    shifted: Signal<Local, Word<17>>,
+    by_one: Literal<1, 1>,
+    first_beat: Literal<17, 1>,
+    first_axis: Literal<3, 0>,
+    one_axis: Literal<3, 1>,
+    first_lane: Literal<AXES, 1>,
+}
+
+impl Logic for Turn {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, beats, number, lanes);
+
+        self.begins.next = self.strobe.val() | (self.beats.q.val().get_bit(12) & !self.lanes.q.val().get_bit(5));
+        self.shifted.next = self.beats.q.val() << self.by_one.val();
+        self.beats.d.next = self.shifted.val();
+        if self.begins.val() {
+            self.beats.d.next = self.shifted.val() | self.first_beat.val();
+        }
+
+        self.axis_to_come.next = self.number.q.val();
+        if self.strobe.val() {
+            self.axis_to_come.next = self.first_axis.val();
+        } else if self.beats.q.val().get_bit(12) {
+            self.axis_to_come.next = self.number.q.val() + self.one_axis.val();
+        }
+        self.number.d.next = self.axis_to_come.val();
+        if self.strobe.val() {
+            self.lanes.d.next = self.first_lane.val();
+        } else if self.beats.q.val().get_bit(12) {
+            self.lanes.d.next = self.lanes.q.val() << self.by_one.val();
+        }
+
+        self.beat.next = self.beats.q.val();
+        self.axis.next = self.number.q.val();
+        self.axis_next.next = self.axis_to_come.val();
+        self.lane.next = self.lanes.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::{assert_synthesizes, rising_edge, settle};
+    use carrystep_spec::engine::TURN;
+
+    #[test]
+    fn every_axis_has_thirteen_beats() {
+        let mut turn = Turn::default();
+        turn.connect_all();
+        for cycle in 0..100_u32 {
+            turn.clock.next = false.into();
+            turn.strobe.next = cycle == 0;
+            settle(&mut turn);
+            let turns = (1..=AXES as u32 * TURN).contains(&cycle);
+            let (axis, beat) = ((cycle.wrapping_sub(1)) / TURN, (cycle.wrapping_sub(1)) % TURN);
+            let beats = turn.beat.val().value() as u32;
+            assert_eq!(beats & 0x1fff, if turns { 1 << beat } else { 0 }, "cycle {cycle}");
+            assert_eq!(turn.lane.val().value() as u32, if turns { 1 << axis } else { 0 }, "cycle {cycle}");
+            turn.clock.next = true.into();
+            rising_edge(&mut turn);
+        }
+    }
+
+    #[test]
+    fn turn_synthesizes() {
+        assert_synthesizes(Turn::default(), "carrystep_turn");
+    }
+}

@@ -1,0 +1,80 @@
+// Replays what a host did to carrystep_engine, for Verilator, and reports every cycle in which any output
+// changed; then asks the get port for all that the engine keeps. Argument: FILE
+#include "Vcarrystep_engine.h"
+#include "verilated.h"
+#include <cinttypes>
+#include <cstdio>
+
+namespace {
+
+uint64_t outputs(const Vcarrystep_engine& core) {
+    uint64_t all = 0;
+    const auto add = [&all](uint64_t value, int bits) { all = all << bits | value; };
+    add(core.put_ready, 1);
+    add(core.start_ready, 1);
+    add(core.idle, 1);
+    add(core.fault, 1);
+    add(core.halted, 1);
+    add(core.started, 1);
+    add(core.enabled, 1);
+    add(core.fault ? core.cause : 0, 3);
+    add(core.step, 6);
+    add(core.dir, 6);
+    add(core.fault ? core.culprits : 0, 6);
+    return all;
+}
+
+void tick(Vcarrystep_engine& core) {
+    core.clock = 1;
+    core.eval();
+    core.clock = 0;
+    core.eval();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) return 2;
+    FILE* file = std::fopen(argv[1], "r");
+    if (!file) return 2;
+    VerilatedContext context;
+    Vcarrystep_engine core{&context};
+    core.clock = 0;
+    core.eval();
+    uint64_t before = ~uint64_t{0}, cycle = 0, count;
+    unsigned put_valid, put_axis, put_word, put_data, start_valid, start_mask, clear;
+    unsigned stop, kick, enable, estop, limit_min, limit_max;
+    while (std::fscanf(file, "%" SCNu64 " %u %x %x %x %u %x %u %u %u %u %u %x %x", &count, &put_valid, &put_axis, &put_word, &put_data,
+                       &start_valid, &start_mask, &clear, &stop, &kick, &enable, &estop, &limit_min, &limit_max) == 14) {
+        core.put_valid = put_valid;
+        core.put_axis = put_axis;
+        core.put_word = put_word;
+        core.put_data = put_data;
+        core.start_valid = start_valid;
+        core.start_mask = start_mask;
+        core.clear = clear;
+        core.stop = stop;
+        core.kick = kick;
+        core.enable = enable;
+        core.estop = estop;
+        core.limit_min = limit_min;
+        core.limit_max = limit_max;
+        for (; count != 0; --count, ++cycle) {
+            core.eval();
+            const uint64_t now = outputs(core);
+            if (now != before) std::printf("%" PRIu64 " %" PRIx64 "\n", cycle, now);
+            before = now;
+            tick(core);
+        }
+    }
+    core.put_valid = core.start_valid = core.clear = core.stop = core.kick = 0;
+    for (int axis = 0; axis < 6; ++axis)
+        for (int item = 0; item < 4; ++item) {
+            core.get_axis = axis;
+            core.get_item = item;
+            tick(core);
+            while (!core.get_valid) tick(core);
+            std::printf("K %x\n", core.get_data);
+        }
+    return 0;
+}

@@ -1,0 +1,74 @@
+// Replays what a host did to carrystep_engine, for Icarus, and reports every cycle in which any output
+// changed; then asks the get port for all that the engine keeps. +stimuli=FILE
+`timescale 1ns / 1ps
+module engine_bench;
+    reg clock, put_valid, start_valid, clear, stop, kick, enable, estop;
+    reg [5:0] limit_min, limit_max;
+    reg [2:0] put_axis, put_word, get_axis = 0;
+    reg [31:0] put_data;
+    reg [5:0] start_mask;
+    reg [1:0] get_item = 0;
+    wire put_ready, start_ready, idle, fault, halted, started, enabled, get_valid;
+    wire [5:0] step, dir, culprits;
+    wire [2:0] cause;
+    wire [31:0] get_data;
+
+    carrystep_engine core (
+        .clock(clock), .put_valid(put_valid), .put_axis(put_axis), .put_word(put_word), .put_data(put_data),
+        .put_ready(put_ready), .start_valid(start_valid), .start_mask(start_mask), .start_ready(start_ready),
+        .clear(clear), .stop(stop), .kick(kick), .enable(enable), .estop(estop), .limit_min(limit_min),
+        .limit_max(limit_max), .get_axis(get_axis), .get_item(get_item), .get_data(get_data), .get_valid(get_valid),
+        .step(step), .dir(dir), .enabled(enabled), .idle(idle), .fault(fault), .halted(halted), .cause(cause),
+        .culprits(culprits), .started(started));
+
+    wire [27:0] outputs = {put_ready, start_ready, idle, fault, halted, started, enabled,
+                           fault ? cause : 3'd0, step, dir, fault ? culprits : 6'd0};
+    reg [27:0] before;
+    integer file, fields, axis, item;
+    reg [63:0] cycle, count;
+    reg [8*256-1:0] name;
+
+    task tick;
+        begin
+            clock = 1;
+            #1 clock = 0;
+            #1;
+        end
+    endtask
+
+    initial begin
+        if (!$value$plusargs("stimuli=%s", name)) $finish;
+        file = $fopen(name, "r");
+        before = {28{1'bx}};
+        cycle = 0;
+        #1 clock = 0;
+        #1;
+        fields = 14;
+        while (fields == 14) begin
+            fields = $fscanf(file, "%d %b %h %h %h %b %h %b %b %b %b %b %h %h", count, put_valid, put_axis, put_word,
+                             put_data, start_valid, start_mask, clear, stop, kick, enable, estop, limit_min, limit_max);
+            if (fields == 14) while (count != 0) begin
+                #1;
+                if (outputs !== before) $display("%0d %h", cycle, outputs);
+                before = outputs;
+                tick;
+                cycle = cycle + 1;
+                count = count - 1;
+            end
+        end
+        put_valid = 0;
+        start_valid = 0;
+        clear = 0;
+        stop = 0;
+        kick = 0;
+        for (axis = 0; axis < 6; axis = axis + 1)
+            for (item = 0; item < 4; item = item + 1) begin
+                get_axis = axis;
+                get_item = item;
+                tick;
+                while (!get_valid) tick;
+                $display("K %h", get_data);
+            end
+        $finish;
+    end
+endmodule

@@ -1,0 +1,164 @@
+//! The engine under the same host as every core: a segment is seven words and a commit.
+
+pub mod replay;
+
+use carrystep_spec::engine::{COMMIT, EngineInputs, EngineOutputs, Guard, Put};
+use carrystep_spec::{Command, Program, Segment};
+
+/// An engine that can be stepped in Rust.
+pub trait EngineCore {
+    /// The outputs of this cycle with these inputs.
+    fn outputs(&mut self, inputs: &EngineInputs) -> EngineOutputs;
+    /// Goes to the next cycle.
+    fn clock(&mut self, inputs: &EngineInputs);
+}
+
+impl EngineCore for carrystep_model::Engine {
+    fn outputs(&mut self, inputs: &EngineInputs) -> EngineOutputs {
+        Self::outputs(self, inputs)
+    }
+    fn clock(&mut self, inputs: &EngineInputs) {
+        Self::clock(self, inputs);
+    }
+}
+
+impl EngineCore for carrystep_hdl::EngineSim {
+    fn outputs(&mut self, inputs: &EngineInputs) -> EngineOutputs {
+        self.settle(inputs)
+    }
+    fn clock(&mut self, _: &EngineInputs) {
+        Self::clock(self);
+    }
+}
+
+/// One thing that the host does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Act {
+    Put(Put),
+    Start(u8),
+    Wait(u32),
+    Clear,
+}
+
+/// The words of a segment, and the commit.
+///
+/// A segment of no ticks has no words: the sender refuses it (`ticks - 1` has no sign).
+pub fn puts(axis: u8, segment: &Segment) -> Vec<Put> {
+    let Some(left) = segment.ticks.checked_sub(1) else { return Vec::new() };
+    let halves = |x: i64| [x as u32, (x >> 32) as u32];
+    let words = [[left].as_slice(), &halves(segment.v), &halves(segment.a), &halves(segment.j)].concat();
+    let commit = Put { axis, word: COMMIT, data: u32::from(segment.last) };
+    (0..).zip(words).map(|(word, data)| Put { axis, word, data }).chain([commit]).collect()
+}
+
+/// What happens around the host, at a cycle; `true` is active, whatever the polarity of the pin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Event {
+    /// The e-stop.
+    EStop(bool),
+    /// The limits at the low ends.
+    LimitMin(u8),
+    /// The limits at the high ends.
+    LimitMax(u8),
+    /// The host's controlled stop.
+    Stop(bool),
+    /// The wish for power.
+    Enable(bool),
+    /// A sign of life, in this cycle.
+    Kick,
+}
+
+/// Events in order of their cycles.
+pub type Events = Vec<(u64, Event)>;
+
+/// Feeds a program, a command at a time, each until it is taken, while events go on around it.
+#[derive(Debug, Clone)]
+pub struct EngineHost {
+    acts: std::vec::IntoIter<Act>,
+    current: Option<Act>,
+    events: std::iter::Peekable<std::vec::IntoIter<(u64, Event)>>,
+    cycle: u64,
+    /// What is driven beside the program.
+    around: EngineInputs,
+    estop_low: bool,
+    limits_low: u8,
+}
+
+impl EngineHost {
+    /// A host with this to do; the drivers are enabled until an event says otherwise.
+    pub fn new(guard: &Guard, program: &Program, events: &Events) -> Self {
+        let mut acts = Vec::new();
+        for command in program {
+            match *command {
+                Command::Segment { axis, segment } => acts.extend(puts(axis, &segment).into_iter().map(Act::Put)),
+                Command::Start { mask } => acts.push(Act::Start(mask)),
+                Command::Wait { clocks } => acts.push(Act::Wait(clocks)),
+                Command::Clear => acts.push(Act::Clear),
+            }
+        }
+        let mut acts = acts.into_iter();
+        let current = acts.next();
+        let events = events.clone().into_iter().peekable();
+        let around = EngineInputs { enable: true, ..EngineInputs::default() };
+        let limits_low = if guard.limits_low { 0xff } else { 0 };
+        let mut host = Self { acts, current, events, cycle: 0, around, estop_low: guard.estop_low, limits_low };
+        host.happen();
+        host
+    }
+
+    /// Takes the events of this cycle.
+    fn happen(&mut self) {
+        self.around.kick = false;
+        while let Some((_, event)) = self.events.next_if(|(cycle, _)| *cycle <= self.cycle) {
+            match event {
+                Event::EStop(active) => self.around.estop = active,
+                Event::LimitMin(active) => self.around.limit_min = active,
+                Event::LimitMax(active) => self.around.limit_max = active,
+                Event::Stop(asked) => self.around.stop = asked,
+                Event::Enable(wanted) => self.around.enable = wanted,
+                Event::Kick => self.around.kick = true,
+            }
+        }
+    }
+
+    /// What is driven in this cycle; of the program nothing but `clear` and waiting while there is a fault.
+    pub fn inputs(&self, fault: bool) -> EngineInputs {
+        let inputs = EngineInputs {
+            estop: self.around.estop != self.estop_low,
+            limit_min: self.around.limit_min ^ self.limits_low,
+            limit_max: self.around.limit_max ^ self.limits_low,
+            ..self.around
+        };
+        match self.current {
+            Some(Act::Put(put)) if !fault => EngineInputs { put: Some(put), ..inputs },
+            Some(Act::Start(mask)) if !fault => EngineInputs { start: Some(mask), ..inputs },
+            Some(Act::Clear) => EngineInputs { clear: true, ..inputs },
+            _ => inputs,
+        }
+    }
+
+    /// Goes on where the command is done in this cycle.
+    pub fn advance(&mut self, outputs: &EngineOutputs) {
+        let fault = outputs.fault.is_some();
+        let done = match &mut self.current {
+            None => false,
+            Some(Act::Put(_)) => fault || outputs.put_ready,
+            Some(Act::Start(_)) => fault || outputs.start_ready,
+            Some(Act::Wait(clocks)) => {
+                *clocks = clocks.saturating_sub(1);
+                *clocks == 0
+            }
+            Some(Act::Clear) => !fault,
+        };
+        if done {
+            self.current = self.acts.next();
+        }
+        self.cycle += 1;
+        self.happen();
+    }
+
+    /// Nothing is left.
+    pub fn is_done(&mut self) -> bool {
+        self.current.is_none() && self.events.peek().is_none()
+    }
+}

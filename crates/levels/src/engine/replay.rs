@@ -1,0 +1,189 @@
+//! What a host did to the engine, replayed on the exported Verilog in Icarus or Verilator.
+//!
+//! The host runs once, against the model. Its every cycle is then played to the Verilog as it was: the
+//! outputs must be those of the model in each clock, and what the engine keeps at the end too.
+
+use crate::engine::{EngineCore, EngineHost, Events};
+use crate::tool::{self, ICARUS, VERILATOR};
+use crate::{Level, LevelError};
+use carrystep_model::Engine;
+use carrystep_spec::engine::{EngineInputs, EngineOutputs};
+use carrystep_spec::{AXES, EngineBuild, Program};
+use std::fmt::Write as _;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const ICARUS_BENCH: &str = include_str!("../../bench/engine_bench.v");
+const VERILATOR_BENCH: &str = include_str!("../../bench/engine_bench.cpp");
+const OPTIONS: [&str; 9] = ["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "-Wno-fatal", "-CFLAGS", "-O2"];
+
+/// P low, P high, position and discarded steps of each axis.
+pub type Kept = [[u32; 4]; AXES];
+
+/// A run of the model: what went in, what came out.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// Inputs, each with its number of cycles.
+    pub stimuli: Vec<(u64, EngineInputs)>,
+    /// Outputs of each cycle in which any changed.
+    pub outputs: Vec<(u64, EngineOutputs)>,
+    /// Cycles in all.
+    pub clocks: u64,
+    /// What is kept at the end.
+    pub kept: Kept,
+}
+
+impl Recording {
+    /// Runs a program, and what happens around it, on the model until it is over and all is quiet, or for `max_clocks`; whichever comes first,
+    /// then so many ticks of rest that all is counted.
+    pub fn new(build: &EngineBuild, program: &Program, events: &Events, max_clocks: u64) -> Self {
+        let mut model = Engine::new(build);
+        let mut host = EngineHost::new(&build.guard, program, events);
+        let mut recording = Self { stimuli: Vec::new(), outputs: Vec::new(), clocks: 0, kept: Kept::default() };
+        let settle = 12 * u64::from(build.timebase.clocks_per_tick());
+        let mut fault = false;
+        let mut quiet = 0;
+        while quiet < settle && recording.clocks < max_clocks {
+            let mut inputs = host.inputs(fault);
+            let mut outputs = EngineCore::outputs(&mut model, &inputs);
+            if outputs.fault.is_some() != fault {
+                fault = outputs.fault.is_some();
+                inputs = host.inputs(fault);
+                outputs = EngineCore::outputs(&mut model, &inputs);
+            }
+            recording.add(inputs, outputs);
+            host.advance(&outputs);
+            quiet = if host.is_done() && (outputs.idle || outputs.halted) { quiet + 1 } else { 0 };
+            EngineCore::clock(&mut model, &inputs);
+        }
+        recording.kept = std::array::from_fn(|axis| {
+            let (p, shaper) = (model.fraction(axis), model.shaper(axis));
+            [p as u32, (p >> 32) as u32, shaper.position.cast_unsigned(), shaper.discarded]
+        });
+        recording
+    }
+
+    fn add(&mut self, inputs: EngineInputs, outputs: EngineOutputs) {
+        match self.stimuli.last_mut() {
+            Some((count, same)) if *same == inputs => *count += 1,
+            _ => self.stimuli.push((1, inputs)),
+        }
+        if self.outputs.last().is_none_or(|(_, before)| *before != outputs) {
+            self.outputs.push((self.clocks, outputs));
+        }
+        self.clocks += 1;
+    }
+
+    /// `count put_valid put_axis put_word put_data start_valid start_mask clear stop kick enable estop limit_min limit_max`,
+    /// a line each.
+    fn text(&self) -> String {
+        let mut text = String::new();
+        for (count, inputs) in &self.stimuli {
+            let (axis, word, data) = inputs.put.map_or((0, 0, 0), |put| (put.axis, put.word, put.data));
+            let (put, start) = (u8::from(inputs.put.is_some()), u8::from(inputs.start.is_some()));
+            let EngineInputs { clear, stop, kick, enable, estop, limit_min, limit_max, .. } = *inputs;
+            let [clear, stop, kick, enable, estop] = [clear, stop, kick, enable, estop].map(u8::from);
+            let (mask, all) = (inputs.start.unwrap_or(0), (1 << AXES) - 1);
+            let (min, max) = (limit_min & all, limit_max & all);
+            let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear} {stop} {kick} {enable}");
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{count} {host} {estop} {min:x} {max:x}");
+        }
+        text
+    }
+}
+
+/// The first difference between a recording and its replay on the Verilog of an engine.
+///
+/// `kept` is compared where the run came to rest without a fault or a block.
+///
+/// # Errors
+/// [`LevelError`]: a tool is missing or fails, or the level has no Verilog.
+pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<Option<String>, LevelError> {
+    let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+    let stimuli = folder.path().join("stimuli.txt");
+    std::fs::write(&stimuli, recording.text()).map_err(tool::io("cannot write the stimuli"))?;
+    let mut simulation = match level {
+        Level::Icarus => icarus(folder.path(), verilog)?,
+        Level::Verilator => {
+            let mut simulation = Command::new(verilated(verilog)?);
+            simulation.arg(&stimuli);
+            simulation
+        }
+        Level::Fast | Level::Model | Level::RustHdl => {
+            return Err(LevelError::Gateware(format!("the level {level} does not run Verilog")));
+        }
+    };
+    let output = simulation.output().map_err(tool::io(format!("cannot start the {level} simulation")))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let mut found = text.lines();
+    for (cycle, outputs) in &recording.outputs {
+        let line = found.next().unwrap_or("nothing");
+        if parsed(line) != Some((*cycle, packed(outputs))) {
+            return Ok(Some(format!("expected in cycle {cycle} {outputs:?}: {:x}, found {line}", packed(outputs))));
+        }
+    }
+    let rests = recording.outputs.last().is_some_and(|(_, outputs)| outputs.idle || outputs.halted);
+    for expected in recording.kept.iter().flatten() {
+        let line = found.next().unwrap_or("nothing");
+        let kept = line.strip_prefix("K ").and_then(|hex| u32::from_str_radix(hex, 16).ok());
+        if rests && kept != Some(*expected) {
+            return Ok(Some(format!("expected to be kept: {:x?}, found {line}", recording.kept)));
+        }
+    }
+    Ok(found.next().map(|line| format!("expected nothing more, found {line}")))
+}
+
+/// A line of a bench: cycle and outputs.
+fn parsed(line: &str) -> Option<(u64, u64)> {
+    let (cycle, bits) = line.split_once(' ')?;
+    Some((cycle.parse().ok()?, u64::from_str_radix(bits, 16).ok()?))
+}
+
+/// The outputs as the benches write them.
+fn packed(outputs: &EngineOutputs) -> u64 {
+    let EngineOutputs { put_ready, start_ready, step, dir, enabled, idle, fault, halted, started } = *outputs;
+    let (cause, culprits) = fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
+    let flags = [put_ready, start_ready, idle, fault.is_some(), halted, started, enabled];
+    let flags = flags.into_iter().fold(0, |all, flag| all << 1 | u64::from(flag));
+    [step, dir, culprits].into_iter().fold(flags << 3 | cause, |all, mask| all << AXES | u64::from(mask))
+}
+
+fn icarus(folder: &Path, verilog: &str) -> Result<Command, LevelError> {
+    tool::find(&ICARUS)?;
+    write(folder, &[("core.v", verilog), ("bench.v", ICARUS_BENCH)])?;
+    let files = ["-o", "bench.vvp", "bench.v", "core.v"];
+    tool::complete(&ICARUS, Command::new(ICARUS.name).arg("-g2005").args(files).current_dir(folder))?;
+    let mut simulation = Command::new("vvp");
+    simulation.args(["-n", "bench.vvp", "+stimuli=stimuli.txt"]).current_dir(folder);
+    Ok(simulation)
+}
+
+/// The compiled simulation of this Verilog, from the cache or made now.
+fn verilated(verilog: &str) -> Result<PathBuf, LevelError> {
+    tool::find(&VERILATOR)?;
+    let cache = std::env::temp_dir().join("carrystep-verilator");
+    std::fs::create_dir_all(&cache).map_err(tool::io("cannot make the cache folder"))?;
+    let mut hash = DefaultHasher::new();
+    (verilog, VERILATOR_BENCH, OPTIONS, env!("CARGO_PKG_VERSION")).hash(&mut hash);
+    let binary = cache.join(format!("engine_{:016x}", hash.finish()));
+    if !binary.is_file() {
+        let folder = tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
+        write(folder.path(), &[("core.v", verilog), ("bench.cpp", VERILATOR_BENCH)])?;
+        let mut command = Command::new(VERILATOR.name);
+        command.args(OPTIONS).args(["--top-module", "carrystep_engine", "-o", "bench", "core.v", "bench.cpp"]);
+        tool::complete(&VERILATOR, command.current_dir(folder.path()))?;
+        // Whole or not at all: another run may be looking for it.
+        std::fs::rename(folder.path().join("obj_dir").join("bench"), &binary)
+            .map_err(tool::io("cannot keep the compiled simulation"))?;
+    }
+    Ok(binary)
+}
+
+fn write(folder: &Path, files: &[(&str, &str)]) -> Result<(), LevelError> {
+    for (name, text) in files {
+        std::fs::write(folder.join(name), text).map_err(tool::io(format!("cannot write {name}")))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,275 @@
+//! The engine as a description of what it does, not of how: six accumulators with queues, whose ticks
+//! take effect at the strobe, for all axes at once (docs/clock-by-clock.md, "engine").
+//!
+//! ```text
+//! strobe      ^ n - 1        ^ n            ^ n + 1        ^
+//! words put   |--------------| seen by tick n + 1
+//! tick n      |  worked out  |
+//! its step    |              |              | at phase q, on the pin one clock later
+//! ```
+
+mod guard;
+mod lane;
+
+use crate::shaper;
+use carrystep_spec::EngineBuild;
+use carrystep_spec::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, Limits, PUT_BEAT, Put, QUEUE, TURN};
+use guard::{Stop, Watch, freezes};
+use lane::{Lane, Look, Segment, Tick};
+
+/// The beat of a turn in which a limit's pin counts.
+const LOOK_BEAT: u32 = 10;
+
+/// The engine's state; [`Engine::outputs`] and [`Engine::clock`] are its one clock cycle.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Engine {
+    build: EngineBuild,
+    /// Clock in the tick.
+    clock: u32,
+    /// This is not the first tick: there are turns.
+    turns: bool,
+    armed: Option<u8>,
+    stop: Stop,
+    watch: Watch,
+    /// Whole ticks in which nothing ran or waited, up to 2.
+    rest: u32,
+    lanes: Vec<Lane>,
+    /// What the limits' pins were in their turn.
+    pins: Vec<bool>,
+}
+
+impl Engine {
+    /// The engine as it is configured.
+    pub fn new(build: &EngineBuild) -> Self {
+        let lane = |(pins, stop): (_, &u64)| {
+            Lane::new(build.phase.start_value(), *stop, shaper::State::at_configuration(pins))
+        };
+        Self {
+            build: build.clone(),
+            clock: 0,
+            turns: false,
+            armed: None,
+            stop: Stop::default(),
+            watch: Watch::new(),
+            rest: 2,
+            lanes: build.pins.iter().copied().zip(&build.guard.stop).map(lane).collect(),
+            pins: vec![false; build.axes()],
+        }
+    }
+
+    /// P of an axis.
+    pub fn fraction(&self, axis: usize) -> u64 {
+        self.lanes[axis].p
+    }
+
+    /// The registers of one shaper.
+    pub fn shaper(&self, axis: usize) -> &shaper::State {
+        &self.lanes[axis].shaper
+    }
+
+    /// The outputs in this cycle, given its inputs.
+    pub fn outputs(&self, inputs: &EngineInputs) -> EngineOutputs {
+        let free = self.stop.fault.is_none();
+        let (strobe, guard) = (self.strobe(), &self.build.guard);
+        EngineOutputs {
+            put_ready: free && self.takes(inputs.put.unwrap_or(Put { axis: 0, word: 0, data: 0 })),
+            start_ready: free && strobe && self.armed.is_none() && inputs.enable && self.watch.is_warm(guard),
+            step: bits(&self.lanes, |lane| lane.shaper.step),
+            dir: bits(&self.lanes, |lane| lane.shaper.dir),
+            enabled: self.watch.enabled,
+            idle: self.rest == 2 && self.armed.is_none() && !self.pins_busy(),
+            fault: self.stop.fault,
+            halted: self.stop.halted,
+            started: strobe && matches!(self.decision(&self.ticked()), Decision::Go(_)),
+        }
+    }
+
+    /// Goes to the next cycle.
+    pub fn clock(&mut self, inputs: &EngineInputs) {
+        let outputs = self.outputs(inputs);
+        let (strobe, before) = (self.strobe(), self.stop);
+        let guard = self.build.guard.clone();
+        // Causes are called in the order in which they count.
+        let mut stop = before;
+        let busy = self.pins_busy();
+        let late = self.shape();
+        if late != 0 {
+            stop.call(Cause::Overrun, late, &guard);
+        }
+        if strobe && self.watch.pressed() {
+            stop.call(Cause::EStop, 0, &guard);
+        }
+        let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.lanes.len());
+        if nobody && before.fault.is_none() {
+            stop.call(Cause::Protocol, 0, &guard);
+        }
+        self.look(inputs);
+        if let Some(put) = inputs.put.filter(|_| outputs.put_ready && !nobody) {
+            self.put(put);
+        }
+        let waits = self.rest == 2;
+        if strobe {
+            stop = self.end_tick(inputs, &outputs, stop, busy);
+        }
+        if strobe && self.watch.misses_the_host(&guard) && !waits {
+            stop.call(Cause::Watchdog, 0, &guard);
+        }
+        if inputs.stop {
+            stop.call(Cause::Stop, 0, &guard);
+        }
+        if before.fault.is_some() {
+            self.armed = None;
+        }
+        self.watch.clock(&guard, inputs, strobe, outputs.idle);
+        self.stop = stop;
+        if strobe && before.clearing {
+            self.clear();
+        }
+        self.clock = (self.clock + 1) % self.build.timebase.clocks_per_tick();
+    }
+
+    fn strobe(&self) -> bool {
+        self.clock + 1 == self.build.timebase.clocks_per_tick()
+    }
+
+    fn pins_busy(&self) -> bool {
+        self.lanes.iter().any(|lane| lane.shaper.owed.is_some() || lane.shaper.step)
+    }
+
+    /// One clock of all shapers; the axes that owe a second step.
+    fn shape(&mut self) -> u8 {
+        let per_phase = self.build.timebase.clocks_per_phase();
+        let (phase, sub) = (self.clock / per_phase, self.clock % per_phase);
+        for (lane, pins) in self.lanes.iter_mut().zip(&self.build.pins) {
+            let request = lane.emitted.step.filter(|step| sub == 0 && step.1 == phase).map(|step| step.0);
+            let input = shaper::Input { request, sign: lane.emitted.sign, frozen: self.stop.frozen };
+            lane.shaper = shaper::clock(shaper::State { overrun: false, ..lane.shaper }, input, *pins);
+        }
+        bits(&self.lanes, |lane| lane.shaper.overrun)
+    }
+
+    /// A word is taken in its axis' turn, unless the queue is full; for an axis that does not exist, at once.
+    fn takes(&self, put: Put) -> bool {
+        let axis = u32::from(put.axis);
+        self.lanes
+            .get(usize::from(put.axis))
+            .is_none_or(|lane| self.turns && self.clock == axis * TURN + PUT_BEAT && lane.queue.len() < QUEUE)
+    }
+
+    fn put(&mut self, put: Put) {
+        let lane = &mut self.lanes[usize::from(put.axis)];
+        self.rest = 0;
+        if put.word == COMMIT {
+            lane.fresh = Some(Segment::of_words(lane.words, put.data & 1 == 1));
+        } else {
+            lane.words[usize::from(put.word)] = put.data;
+        }
+    }
+
+    /// Keeps the pin of the axis whose turn it is.
+    fn look(&mut self, inputs: &EngineInputs) {
+        let guard = &self.build.guard;
+        let (axis, beat) = ((self.clock / TURN) as usize, self.clock % TURN);
+        if axis < self.lanes.len() && beat == LOOK_BEAT {
+            let pins = if self.watch.tick_of_round == 1 { inputs.limit_max } else { inputs.limit_min };
+            let bit = if guard.limits == Limits::One { 0 } else { axis };
+            self.pins[axis] = (pins >> bit & 1 == 1) != guard.limits_low;
+        }
+    }
+
+    /// The axes after this tick, and the causes that they find, the first axis first.
+    fn ticked(&self) -> (Vec<Lane>, Vec<(Cause, usize)>) {
+        let tick = Tick {
+            guard: &self.build.guard,
+            phase_bits: self.build.timebase.phase_bits(),
+            halted: self.stop.halted,
+            ramp: self.stop.ramp,
+        };
+        let max = self.watch.tick_of_round == 1 && self.build.guard.limits == Limits::Pair;
+        let looks = self.turns && (self.watch.tick_of_round == 0 || max);
+        let mut found = Vec::new();
+        let lanes = self.lanes.iter().zip(&self.pins).enumerate().map(|(axis, (lane, pin))| {
+            let (next, cause) = lane.tick(tick, looks.then_some(Look { max, pin: *pin }));
+            found.extend(cause.map(|cause| (cause, axis)));
+            next
+        });
+        (lanes.collect(), found)
+    }
+
+    /// What becomes of the armed start at this strobe.
+    fn decision(&self, (ticked, found): &(Vec<Lane>, Vec<(Cause, usize)>)) -> Decision {
+        let free = self.stop.fault.is_none() && found.is_empty();
+        let Some(mask) = self.armed.filter(|_| free) else { return Decision::Wait };
+        // What counts is what waited before this tick.
+        if mask & bits(&self.lanes, |lane| lane.queue.is_empty()) != 0 {
+            Decision::Unfed
+        } else if mask & bits(ticked, |lane| lane.running.is_some()) != 0 {
+            Decision::Wait
+        } else {
+            Decision::Go(mask)
+        }
+    }
+
+    /// The strobe: everything that the tick has brought takes effect. The stop that is under way then.
+    fn end_tick(&mut self, inputs: &EngineInputs, outputs: &EngineOutputs, mut stop: Stop, busy: bool) -> Stop {
+        let before = self.stop;
+        let guard = self.build.guard.clone();
+        let ticked = self.ticked();
+        let decision = self.decision(&ticked);
+        let (mut lanes, found) = ticked;
+        let ran = self.lanes.iter().any(|lane| lane.running.is_some()) && !before.halted;
+        let active = ran || self.lanes.iter().any(|lane| !lane.queue.is_empty());
+        self.rest = if active { 0 } else { (self.rest + 1).min(2) };
+        for lane in &mut lanes {
+            lane.queue.extend(lane.fresh.take());
+        }
+        match decision {
+            Decision::Wait => {}
+            Decision::Unfed => stop.call(Cause::Protocol, 0, &guard),
+            Decision::Go(mask) => {
+                self.armed = None;
+                for (axis, lane) in lanes.iter_mut().enumerate().filter(|(axis, _)| mask >> axis & 1 == 1) {
+                    debug_assert!(lane.running.is_none(), "axis {axis} runs");
+                    lane.running = lane.queue.pop_front();
+                }
+            }
+        }
+        if outputs.start_ready {
+            self.armed = inputs.start;
+        }
+        for (cause, axis) in &found {
+            stop.call(*cause, 1 << axis, &guard);
+        }
+        self.lanes = lanes;
+        self.turns = true;
+        let freezes = found.iter().any(|(cause, _)| freezes(*cause, &guard));
+        Stop {
+            ramp: before.fault.is_some() || !found.is_empty(),
+            halted: before.frozen || freezes || (before.ramp && !ran),
+            settled: before.halted,
+            clearing: inputs.clear && before.settled && !before.clearing && !busy && !self.watch.pressed(),
+            ..stop
+        }
+    }
+
+    fn clear(&mut self) {
+        self.stop = Stop::default();
+        for lane in &mut self.lanes {
+            lane.p = self.build.phase.start_value();
+            lane.queue.clear();
+        }
+    }
+}
+
+/// What becomes of an armed start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Decision {
+    Wait,
+    /// A masked axis has nothing waiting.
+    Unfed,
+    Go(u8),
+}
+
+fn bits(lanes: &[Lane], of: impl Fn(&Lane) -> bool) -> u8 {
+    lanes.iter().enumerate().fold(0, |bits, (axis, lane)| bits | u8::from(of(lane)) << axis)
+}

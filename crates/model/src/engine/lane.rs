@@ -1,0 +1,182 @@
+//! One axis of the engine: what a tick makes of it.
+
+use crate::phase::{bisect, crosses};
+use crate::shaper;
+use carrystep_spec::engine::{Cause, Guard, Limits, SEGMENT_WORDS};
+use std::collections::VecDeque;
+
+/// A segment as the queue holds it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Segment {
+    /// Ticks after the next one.
+    left: u32,
+    v: i64,
+    a: i64,
+    j: i64,
+    last: bool,
+}
+
+impl Segment {
+    /// The segment of these words.
+    pub(super) fn of_words(words: [u32; SEGMENT_WORDS as usize], last: bool) -> Self {
+        let [left, v, v_high, a, a_high, j, j_high] = words;
+        let long = |low: u32, high: u32| (u64::from(high) << 32 | u64::from(low)).cast_signed();
+        Self { left, v: long(v, v_high), a: long(a, a_high), j: long(j, j_high), last }
+    }
+}
+
+/// What a tick leaves for the pins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Stage {
+    /// Backward, and the phase.
+    pub(super) step: Option<(bool, u32)>,
+    pub(super) sign: i8,
+}
+
+/// A limit switch: what is believed, and how many looks speak against it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Limit {
+    active: bool,
+    against: u32,
+}
+
+/// A look at a limit in a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Look {
+    /// Of `limit_max`; otherwise of `limit_min`.
+    pub(super) max: bool,
+    /// What the pin says.
+    pub(super) pin: bool,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Lane {
+    pub(super) p: u64,
+    pub(super) running: Option<Segment>,
+    /// The running segment's V + A did not fit.
+    pub(super) unfit: bool,
+    /// In a ramp: backward.
+    ramp: Option<bool>,
+    /// Stop acceleration.
+    stop: i64,
+    pub(super) queue: VecDeque<Segment>,
+    /// Committed in this tick.
+    pub(super) fresh: Option<Segment>,
+    pub(super) words: [u32; SEGMENT_WORDS as usize],
+    pub(super) limits: [Limit; 2],
+    pub(super) computed: Stage,
+    pub(super) emitted: Stage,
+    pub(super) shaper: shaper::State,
+}
+
+/// What holds for all axes in a tick.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tick<'a> {
+    pub(super) guard: &'a Guard,
+    pub(super) phase_bits: u32,
+    pub(super) halted: bool,
+    pub(super) ramp: bool,
+}
+
+impl Lane {
+    pub(super) fn new(p: u64, stop: u64, shaper: shaper::State) -> Self {
+        Self {
+            p,
+            running: None,
+            unfit: false,
+            ramp: None,
+            stop: stop.cast_signed(),
+            queue: VecDeque::new(),
+            fresh: None,
+            words: [0; SEGMENT_WORDS as usize],
+            limits: [Limit::default(); 2],
+            computed: Stage::default(),
+            emitted: Stage::default(),
+            shaper,
+        }
+    }
+
+    /// The axis after a tick, and the cause of a stop that it finds.
+    pub(super) fn tick(&self, tick: Tick<'_>, look: Option<Look>) -> (Self, Option<Cause>) {
+        let mut next = self.clone();
+        next.emitted = self.computed;
+        next.computed = Stage::default();
+        next.running = None;
+        next.ramp = None;
+        next.unfit = false;
+        let mut found = None;
+        match self.running.filter(|_| !tick.halted) {
+            Some(Segment { v, .. }) if self.unfit || v == i64::MIN => found = Some(Cause::Overspeed),
+            Some(segment) => found = self.add(&mut next, segment, tick),
+            None => {}
+        }
+        if let Some(look) = look {
+            let became = next.limits[usize::from(look.max)].look(look.pin, tick.guard.debounce);
+            let active = next.limits[usize::from(look.max)].active;
+            let toward = if look.max { 1 } else { -1 };
+            let hit = match tick.guard.limits {
+                Limits::None => false,
+                Limits::Pair => active && next.computed.sign == toward,
+                Limits::Each | Limits::One => became && next.computed.sign != 0,
+            };
+            if hit && found != Some(Cause::Overspeed) {
+                found = Some(Cause::Limit);
+            }
+        }
+        (next, found)
+    }
+
+    /// The sums of a tick; `next` rests until something says otherwise.
+    fn add(&self, next: &mut Self, segment: Segment, tick: Tick<'_>) -> Option<Cause> {
+        let Segment { left, v, a, j, last } = segment;
+        let step = crosses(self.p, v).then(|| (v < 0, bisect(self.p, v, tick.phase_bits)));
+        next.computed = Stage { step, sign: v.signum() as i8 };
+        next.p = self.p.wrapping_add(v.cast_unsigned());
+        if tick.ramp {
+            let Some(back) = self.ramp else {
+                next.running = Some(segment);
+                next.ramp = Some(v < 0);
+                return None;
+            };
+            let slower = if back { v + self.stop } else { v - self.stop };
+            if (slower < 0) == back {
+                next.running = Some(Segment { v: slower, ..segment });
+                next.ramp = Some(back);
+            }
+            return None;
+        }
+        let (faster, unfit) = v.overflowing_add(a);
+        let on = Segment { v: faster, a: a.wrapping_add(j), ..segment };
+        if let Some(left) = left.checked_sub(1) {
+            next.running = Some(Segment { left, ..on });
+            next.unfit = unfit;
+            return None;
+        }
+        if last {
+            return None;
+        }
+        next.running = next.queue.pop_front();
+        if next.running.is_some() {
+            return None;
+        }
+        next.running = Some(on);
+        next.unfit = unfit;
+        Some(Cause::Underrun)
+    }
+}
+
+impl Limit {
+    /// Looks once; whether it has become active.
+    fn look(&mut self, pin: bool, debounce: u32) -> bool {
+        if pin == self.active {
+            self.against = 0;
+            return false;
+        }
+        self.against += 1;
+        if self.against < debounce {
+            return false;
+        }
+        *self = Self { active: pin, against: 0 };
+        pin
+    }
+}

@@ -1,0 +1,259 @@
+//! The engine is its model, every output in every clock, and its memory keeps what the model knows: in Rust-HDL's
+//! simulation, in Icarus and in Verilator.
+
+use carrystep_hdl::EngineSim;
+use carrystep_levels::Level;
+use carrystep_levels::engine::replay::{self, Recording};
+use carrystep_levels::engine::{EngineCore, EngineHost, Events};
+use carrystep_model::Engine;
+use carrystep_spec::engine::{CAUSES, Cause, EngineInputs, Guard, Limits, QUEUE};
+use carrystep_spec::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_tests::golden::{self, Case, Edge};
+use carrystep_tests::{effort, engine_programs, lockstep};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use std::cell::Cell;
+
+/// The fewest clocks that hold the turns; pins as different as in the other rungs, two of them too slow for
+/// a step in every other tick; ramps of ten ticks to some hundreds; rounds so short that all of a guard happens.
+fn build(clock_hz: u64, phases: u32, phase: StartPhase, limits: Limits) -> EngineBuild {
+    let timebase = Timebase::new(clock_hz, 1000, phases).expect("a fine timebase");
+    let mut build = Build { timebase, ..lockstep::tight_build(phases, phase) };
+    build.pins[3].gap = 237;
+    build.pins[5].hold = 221;
+    let mut build = EngineBuild::minimal(&build, 1);
+    let low = limits == Limits::Pair;
+    build.guard = Guard {
+        round: 2,
+        debounce: 3,
+        watchdog: 40,
+        enable: 2,
+        limits,
+        limit_freezes: limits == Limits::Each,
+        estop_low: low,
+        limits_low: low,
+        stop: (0..AXES).map(|axis| 1 << (52 + 2 * axis)).collect(),
+    };
+    build
+}
+
+/// Runs both until the program is over and both are quiet; the clocks it took.
+fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Result<u64, TestCaseError> {
+    let mut model = Engine::new(build);
+    let mut engine = EngineSim::new(build).expect("a fine build");
+    let mut host = EngineHost::new(&build.guard, program, events);
+    let mut fault = false;
+    let mut quiet = 0;
+    for cycle in 0..200_000_u64 {
+        let mut inputs = host.inputs(fault);
+        let mut expected = EngineCore::outputs(&mut model, &inputs);
+        if expected.fault.is_some() != fault {
+            fault = expected.fault.is_some();
+            inputs = host.inputs(fault);
+            expected = EngineCore::outputs(&mut model, &inputs);
+        }
+        let found = engine.settle(&inputs);
+        prop_assert_eq!(
+            expected,
+            found,
+            "cycle {}, tick {}",
+            cycle,
+            cycle / u64::from(build.timebase.clocks_per_tick())
+        );
+        host.advance(&expected);
+        quiet = if host.is_done() && (expected.idle || expected.halted) { quiet + 1 } else { 0 };
+        if quiet > 12 * build.timebase.clocks_per_tick() {
+            assert_kept(&model, &engine)?;
+            return Ok(cycle);
+        }
+        EngineCore::clock(&mut model, &inputs);
+        EngineCore::clock(&mut engine, &inputs);
+    }
+    Ok(200_000)
+}
+
+/// P, positions and discarded steps, when nothing moves.
+fn assert_kept(model: &Engine, engine: &EngineSim) -> Result<(), TestCaseError> {
+    for axis in 0..AXES {
+        let shaper = model.shaper(axis);
+        let p = u64::from(engine.kept(axis, 1)) << 32 | u64::from(engine.kept(axis, 0));
+        prop_assert_eq!(model.fraction(axis), p, "P of axis {}", axis);
+        prop_assert_eq!(shaper.position, engine.kept(axis, 2).cast_signed(), "position of axis {}", axis);
+        prop_assert_eq!(shaper.discarded, engine.kept(axis, 3), "discarded steps of axis {}", axis);
+    }
+    Ok(())
+}
+
+/// Runs random programs until they have taken so many clocks.
+fn run_programs(build: &EngineBuild, usual: u64, one: impl Fn(&Program, &Events) -> Result<u64, TestCaseError>) {
+    let (clocks, enough) = (Cell::new(0), effort::clocks(usual));
+    let config = Config { cases: 10, max_shrink_time: 20_000, failure_persistence: None, ..Config::default() };
+    while clocks.get() < enough {
+        let held = TestRunner::new(config.clone()).run(&engine_programs::program(), |(program, events)| {
+            clocks.set(clocks.get() + one(&program, &events)?);
+            Ok(())
+        });
+        held.unwrap_or_else(|error| panic!("{error}\n of {build:?}"));
+    }
+    effort::say(&format!("{} clocks", clocks.get()));
+}
+
+fn in_rust_hdl(build: &EngineBuild, usual: u64) {
+    run_programs(build, usual, |program, events| assert_equal(build, program, events));
+}
+
+#[test]
+fn random_programs_at_16_phases() {
+    in_rust_hdl(&build(80_000_000, 16, StartPhase::Half, Limits::Pair), 500_000);
+}
+
+#[test]
+fn random_programs_at_4_phases_with_clocks_to_spare() {
+    in_rust_hdl(&build(96_000_000, 4, StartPhase::Zero, Limits::Each), 300_000);
+}
+
+#[test]
+fn random_programs_at_1_phase_in_the_shortest_tick() {
+    in_rust_hdl(&build(79_000_000, 1, StartPhase::Half, Limits::One), 300_000);
+}
+
+fn in_verilog(level: Level, build: &EngineBuild, usual: u64) -> Seen {
+    let verilog = carrystep_export::engine_verilog(build, "a test").expect("a fine build");
+    let seen = Cell::new(Seen::default());
+    run_programs(build, usual, |program, events| {
+        let recording = Recording::new(build, program, events, 200_000);
+        let difference = replay::difference(level, &verilog, &recording).expect("the tools");
+        prop_assert!(difference.is_none(), "{}", difference.unwrap_or_default());
+        seen.set(seen.get().with(&recording));
+        Ok(recording.clocks)
+    });
+    effort::say(&format!("{:?}", seen.get()));
+    seen.get()
+}
+
+/// What happened in random programs: lock-step over nothing would prove nothing.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    clocks: u64,
+    edges: u64,
+    /// Edges of several axes in one clock.
+    together: u64,
+    /// Stops by each cause.
+    causes: [u64; CAUSES.len()],
+    /// Edges after a stop was called: of ramps.
+    ramped: u64,
+    cleared: u64,
+}
+
+impl Seen {
+    fn with(mut self, recording: &Recording) -> Self {
+        self.clocks += recording.clocks;
+        for pair in recording.outputs.windows(2) {
+            let [(_, before), (_, now)] = pair else { continue };
+            let rising = (now.step & !before.step).count_ones();
+            self.edges += u64::from(rising);
+            self.together += u64::from(rising > 1);
+            match (before.fault, now.fault) {
+                (None, Some((cause, _))) => self.causes[cause as usize] += 1,
+                (Some((Cause::Stop, _)), Some(_)) => self.ramped += u64::from(rising),
+                (Some(_), None) => self.cleared += 1,
+                _ => {}
+            }
+        }
+        self
+    }
+
+    fn assert_everything(&self) {
+        let Self { clocks, edges, together, causes, ramped, cleared } = *self;
+        let all = [[clocks, edges, together, ramped, cleared].as_slice(), &causes].concat();
+        assert!(all.iter().all(|count| *count > 0), "random programs miss something: {self:?}");
+    }
+}
+
+#[test]
+fn random_programs_in_verilator() {
+    in_verilog(Level::Verilator, &build(80_000_000, 16, StartPhase::Half, Limits::Pair), 8_000_000).assert_everything();
+}
+
+#[test]
+fn random_programs_in_verilator_at_4_phases() {
+    in_verilog(Level::Verilator, &build(96_000_000, 4, StartPhase::Zero, Limits::Each), 2_000_000);
+}
+
+#[test]
+fn random_programs_in_icarus() {
+    in_verilog(Level::Icarus, &build(80_000_000, 16, StartPhase::Zero, Limits::One), 300_000);
+}
+
+/// All golden cases of a phase, one an axis; started together, each to its last edge. The short ones in every run.
+#[test]
+fn golden_vectors_in_verilator() {
+    let vectors = golden::engine_vectors();
+    for phase in [StartPhase::Zero, StartPhase::Half] {
+        let cases: Vec<&Case> = vectors
+            .iter()
+            .filter(|case| case.phase() == phase && (effort::is_long() || case.total_ticks <= 400_000))
+            .collect();
+        for cases in cases.chunks(AXES) {
+            let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
+            let build = Build { timebase, phase, pins: [PinTiming::SHORTEST; AXES] };
+            let build = EngineBuild::minimal(&build, 1 << 40);
+            let recording = Recording::new(&build, &golden_program(cases), &Events::new(), u64::MAX);
+            let verilog = carrystep_export::engine_verilog(&build, "a test").expect("a fine build");
+            let difference = replay::difference(Level::Verilator, &verilog, &recording).expect("the tools");
+            assert_eq!(difference, None);
+            for (axis, case) in cases.iter().enumerate() {
+                case.assert_edges(&edges(&build, &recording, axis));
+                let [low, high, ..] = recording.kept[axis];
+                assert_eq!(u64::from(high) << 32 | u64::from(low), case.p_end(), "{}", case.name);
+            }
+        }
+    }
+}
+
+/// What fits into the queues, the start, and the rest as the queues have room.
+fn golden_program(cases: &[&Case]) -> Program {
+    let segments: Vec<Vec<Segment>> = cases.iter().map(|case| case.segments()).collect();
+    let part = |rows: std::ops::Range<usize>| {
+        let mut part = Program::new();
+        for row in rows {
+            let lanes = (0..).zip(&segments).filter_map(|(axis, lane)| lane.get(row).map(|segment| (axis, *segment)));
+            part.extend(lanes.map(|(axis, segment)| Command::Segment { axis, segment }));
+        }
+        part
+    };
+    let start = Command::Start { mask: (1 << cases.len()) - 1 };
+    let rows = segments.iter().map(Vec::len).max().unwrap_or(0);
+    [part(0..QUEUE), vec![start], part(QUEUE..rows)].concat()
+}
+
+/// The edges of an axis: tick, phase and direction.
+fn edges(build: &EngineBuild, recording: &Recording, axis: usize) -> Vec<Edge> {
+    let time = &build.timebase;
+    let started = recording.outputs.iter().find(|(_, outputs)| outputs.started).expect("a start").0;
+    let zero = started + 1 + time.latency_clocks();
+    let (tick, phase) = (u64::from(time.clocks_per_tick()), u64::from(time.clocks_per_phase()));
+    let level = |mask: u8| mask >> axis & 1 == 1;
+    let mut before = false;
+    let mut edges = Vec::new();
+    for (cycle, outputs) in &recording.outputs {
+        if level(outputs.step) && !before {
+            let since = cycle - zero;
+            assert_eq!(since % phase, 0, "an edge off its phase");
+            edges.push((since / tick + 1, (since % tick / phase) as u32, if level(outputs.dir) { -1 } else { 1 }));
+        }
+        before = level(outputs.step);
+    }
+    edges
+}
+
+#[test]
+fn nothing_happens_to_an_engine_without_a_host() {
+    let build = build(80_000_000, 16, StartPhase::Half, Limits::None);
+    let mut engine = EngineSim::new(&build).expect("a fine build");
+    for _ in 0..1000 {
+        let outputs = engine.settle(&EngineInputs::default());
+        assert!(outputs.idle && outputs.fault.is_none() && outputs.step == 0 && outputs.dir == 0 && !outputs.enabled);
+        engine.clock();
+    }
+}

@@ -1,0 +1,105 @@
+//! Random programs for the engine: queues filled and run dry, joint moves whose axes turn and end in one
+//! tick, and whatever the other cores are given; with the e-stop, limits, stops and silence at any clock.
+
+use crate::programs;
+use carrystep_levels::engine::{Event, Events};
+use carrystep_spec::{AXES, Command, Program, Segment};
+use proptest::prelude::*;
+
+/// Speeds up to the bound, so that axes step in almost every second tick.
+fn fast() -> impl Strategy<Value = i64> {
+    prop_oneof![
+        4 => prop_oneof![Just(i64::MAX), Just(-i64::MAX)],
+        4 => -i64::MAX..i64::MAX,
+        2 => (20_u32..62).prop_flat_map(|bits| -(1_i64 << bits)..(1 << bits)),
+        1 => Just(0),
+    ]
+}
+
+/// All axes the same ticks, a few segments ahead of the start; every axis turns at each boundary.
+fn reversals() -> impl Strategy<Value = Program> {
+    let row = (prop_oneof![1_u32..4, 4_u32..40], prop::collection::vec(fast(), AXES));
+    (prop::collection::vec(row, 1..8), any::<bool>()).prop_map(|(rows, dry)| {
+        let count = rows.len();
+        let mut program = Program::new();
+        for (place, (ticks, axes)) in rows.into_iter().enumerate() {
+            for (axis, v) in (0..).zip(axes) {
+                let v = if place % 2 == 0 { v } else { v.wrapping_neg() };
+                let segment = Segment { ticks, v, a: 0, j: 0, last: place + 1 == count && !dry };
+                program.push(Command::Segment { axis, segment });
+            }
+        }
+        program.push(Command::Start { mask: 0x3f });
+        if dry {
+            program.extend([Command::Wait { clocks: 4000 }, Command::Clear]);
+        }
+        program
+    })
+}
+
+/// V and A that leave the range after some ticks, on several axes at once.
+fn too_fast() -> impl Strategy<Value = Program> {
+    let axis = (1_u32..12, fast(), fast(), fast(), any::<bool>());
+    prop::collection::vec(axis, AXES).prop_map(|axes| {
+        let mut program = Program::new();
+        for (axis, (ticks, v, a, j, least)) in (0..).zip(axes) {
+            let v = if least && axis == 3 { i64::MIN } else { v };
+            program.push(Command::Segment { axis, segment: Segment { ticks, v, a: a / 4, j: j / 16, last: true } });
+        }
+        program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 2500 }, Command::Clear]);
+        program
+    })
+}
+
+/// Long segments at speeds that steps come from, and a clear for when they are stopped.
+fn cruises() -> impl Strategy<Value = Program> {
+    let axis = (200_u32..600, prop_oneof![4 => -(1_i64 << 60)..(1 << 60), 1 => fast()], -(1_i64 << 50)..(1 << 50));
+    prop::collection::vec(axis, AXES).prop_map(|axes| {
+        let mut program = Program::new();
+        for (axis, (ticks, v, a)) in (0..).zip(axes) {
+            program.push(Command::Segment { axis, segment: Segment { ticks, v, a, j: 0, last: true } });
+        }
+        program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 12_000 }, Command::Clear]);
+        program
+    })
+}
+
+/// One thing that goes on and is over again.
+fn episode() -> impl Strategy<Value = Events> {
+    let what = prop_oneof![
+        2 => Just((Event::EStop(true), Event::EStop(false))),
+        5 => (0_u8..64).prop_map(|mask| (Event::LimitMin(mask), Event::LimitMin(0))),
+        5 => (0_u8..64).prop_map(|mask| (Event::LimitMax(mask), Event::LimitMax(0))),
+        3 => Just((Event::Stop(true), Event::Stop(false))),
+        1 => Just((Event::Enable(false), Event::Enable(true))),
+    ];
+    let length = prop_oneof![1 => 1_u64..10, 2 => 100_u64..400, 4 => 500_u64..5000];
+    (what, 0_u64..60_000, length).prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])
+}
+
+/// Signs of life from a host that is heard of every so often, or falls silent.
+fn signs_of_life() -> impl Strategy<Value = Events> {
+    let interval = prop_oneof![3 => 100_u64..5000, 1 => 5000_u64..12_000];
+    (interval, prop_oneof![3 => Just(120_000_u64), 1 => 0_u64..40_000])
+        .prop_map(|(interval, end)| (0..end / interval).map(|i| (i * interval, Event::Kick)).collect())
+}
+
+/// Everything that happens around a program.
+fn events() -> impl Strategy<Value = Events> {
+    let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode(), 1..8)];
+    (episodes, signs_of_life()).prop_map(|(episodes, life)| {
+        let mut events = episodes.concat();
+        events.extend(life);
+        events.sort_by_key(|(cycle, _)| *cycle);
+        events
+    })
+}
+
+/// A segment for an axis that there is not.
+const STRAY: Segment = Segment { ticks: 1, v: 0, a: 0, j: 0, last: true };
+
+/// Programs for the engine, and what happens around them.
+pub fn program() -> impl Strategy<Value = (Program, Events)> {
+    let part = prop_oneof![2 => reversals(), 1 => too_fast(), 4 => cruises(), 2 => programs::program(), 1 => Just(vec![Command::Segment { axis: 7, segment: STRAY }, Command::Clear])];
+    (prop::collection::vec(part, 1..5).prop_map(|parts| parts.concat()), events())
+}
