@@ -9,3 +9,4 @@ mod bad_moves;
 mod bad_outputs;
 mod command;
 mod json_names;
+mod sweeps;

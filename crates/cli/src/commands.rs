@@ -4,4 +4,5 @@ pub mod check;
 pub mod demo;
 pub mod plan;
 pub mod simulate;
+pub mod sweep;
 pub mod verilog;

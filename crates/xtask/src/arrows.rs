@@ -4,7 +4,7 @@ use crate::shell::{self, Done};
 use std::collections::BTreeSet;
 
 /// Each crate and all crates of the house that it may reach, directly or through others.
-const ALLOWED: [(&str, &[&str]); 11] = [
+const ALLOWED: [(&str, &[&str]); 12] = [
     ("spec", &[]),
     ("profile", &["spec"]),
     ("plan", &["spec", "profile"]),
@@ -13,7 +13,8 @@ const ALLOWED: [(&str, &[&str]); 11] = [
     ("export", &["spec", "hdl"]),
     ("trace", &["spec", "profile"]),
     ("levels", &["spec", "profile", "model", "hdl", "export", "trace"]),
-    ("cli", &["spec", "profile", "plan", "model", "hdl", "export", "trace", "levels"]),
+    ("sweep", &["spec"]),
+    ("cli", &["spec", "profile", "plan", "model", "hdl", "export", "trace", "levels", "sweep"]),
     ("bench", &["spec", "profile", "plan", "model", "hdl", "export", "trace", "levels"]),
     ("xtask", &[]),
 ];
