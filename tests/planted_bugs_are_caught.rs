@@ -111,7 +111,7 @@ fn check(plan: &Plan, program: &Program, build: &Build) -> Report {
     let job = Job::new(build, program, plan.total_ticks());
     let mut checker = Checker::new(moves::check_setup(&file, plan, &timelines, &job));
     let mut feed = carrystep_levels::pins::PinFeed::new(build.timebase, timelines.len(), &mut checker);
-    let outcome = run(Level::Model, &job, &mut |cycle, outputs| feed.observe(cycle, outputs)).expect("the model");
+    let outcome = run(Level::Fast, &job, &mut |cycle, outputs| feed.observe(cycle, outputs)).expect("the fast model");
     feed.end(outcome.clocks).expect("the checker");
     checker.finish()
 }
