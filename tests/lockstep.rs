@@ -38,12 +38,14 @@ pub fn difference(expected: &Record, found: &Record) -> Option<String> {
     (expected.outcome != found.outcome).then(|| format!("{:?} expected, {:?} found", expected.outcome, found.outcome))
 }
 
-/// Panics at the first clock in which a level differs from the model.
+/// Panics at the first clock in which a level differs from the model, clock by clock or fast.
 pub fn assert_equals_model(level: Level, job: &Job<'_>) {
-    let expected = record(Level::Model, job).expect("the model");
     let found = record(level, job).unwrap_or_else(|error| panic!("{level}: {error}"));
-    if let Some(difference) = difference(&expected, &found) {
-        panic!("{level} is not the model: {difference}\n program {:?}", job.program);
+    for model in [Level::Model, Level::Fast] {
+        let expected = record(model, job).expect("the model");
+        if let Some(difference) = difference(&expected, &found) {
+            panic!("{level} is not {model}: {difference}\n program {:?}", job.program);
+        }
     }
 }
 

@@ -12,4 +12,5 @@ mod command;
 mod curves;
 mod json_names;
 mod profile;
+mod sweeps;
 mod table;

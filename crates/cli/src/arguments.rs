@@ -4,6 +4,7 @@ mod profile;
 mod table;
 
 use carrystep_levels::Level;
+use carrystep_sweep::Shard;
 use clap::{Args, Parser};
 pub use profile::Profile;
 use std::path::PathBuf;
@@ -40,6 +41,8 @@ pub enum Subcommand {
     Check(Check),
     /// Write the gateware as Verilog.
     Verilog(Verilog),
+    /// Run many machines and moves over all cores and report the worst of each figure.
+    Sweep(Sweep),
 }
 
 /// `carrystep demo`
@@ -138,6 +141,29 @@ pub struct Verilog {
     #[arg(long, default_value = "hdl-out/core", value_name = "DIR")]
     pub out: PathBuf,
     /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep sweep`
+#[derive(Debug, Args)]
+pub struct Sweep {
+    /// The sweep: a move file with blanks, and what they are filled with.
+    #[arg(value_name = "SWEEP.toml", required_unless_present = "merge")]
+    pub file: Option<PathBuf>,
+    /// So many random cases instead of the whole grid.
+    #[arg(long, value_name = "CASES")]
+    pub sample: Option<u64>,
+    /// Another seed, other random cases.
+    #[arg(long, default_value_t = 1, value_name = "NUMBER")]
+    pub seed: u64,
+    /// Only this part of the cases: 3/16 is the third of sixteen.
+    #[arg(long, default_value_t = Shard::WHOLE, value_name = "N/OF")]
+    pub shard: Shard,
+    /// Make one report of the JSON reports of all shards.
+    #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "sample", "seed", "shard"])]
+    pub merge: Vec<PathBuf>,
+    /// One JSON document instead of the table; shards are merged from these.
     #[arg(long)]
     pub json: bool,
 }

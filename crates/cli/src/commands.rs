@@ -5,5 +5,6 @@ pub mod demo;
 pub mod plan;
 pub mod profile;
 pub mod simulate;
+pub mod sweep;
 pub mod table;
 pub mod verilog;

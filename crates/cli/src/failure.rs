@@ -30,6 +30,16 @@ impl Failure {
         Self::Input(InputError::new(message))
     }
 
+    /// What is wrong, for a report of many runs.
+    pub fn message(&self) -> String {
+        match self {
+            Self::Check => "the check failed".to_owned(),
+            Self::Run(message) | Self::Tool(message) => message.clone(),
+            Self::Input(error) => error.to_string(),
+            Self::ReaderGone => "nobody reads the output".to_owned(),
+        }
+    }
+
     /// Tells the user, and gives the exit status.
     pub fn tell(self) -> ExitCode {
         let (status, text) = match self {

@@ -24,6 +24,7 @@ fn main() -> ExitCode {
         Subcommand::Simulate(simulate) => commands::simulate::run(simulate),
         Subcommand::Check(check) => commands::check::run(check),
         Subcommand::Verilog(verilog) => commands::verilog::run(verilog),
+        Subcommand::Sweep(sweep) => commands::sweep::run(sweep),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -4,7 +4,7 @@ use crate::shell::{self, Done};
 use std::collections::BTreeSet;
 
 /// Each crate and all crates of the house that it may reach, directly or through others.
-const ALLOWED: [(&str, &[&str]); 13] = [
+const ALLOWED: [(&str, &[&str]); 14] = [
     ("spec", &[]),
     ("profile", &["spec"]),
     ("table", &["spec", "profile"]),
@@ -15,7 +15,8 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     ("export", &["spec", "hdl"]),
     ("trace", &["spec", "profile"]),
     ("levels", &["spec", "profile", "model", "hdl", "export", "trace"]),
-    ("cli", &["spec", "profile", "table", "reference", "plan", "model", "hdl", "export", "trace", "levels"]),
+    ("sweep", &["spec"]),
+    ("cli", &["spec", "profile", "table", "reference", "plan", "model", "hdl", "export", "trace", "levels", "sweep"]),
     ("bench", &["spec", "profile", "plan", "model", "hdl", "export", "trace", "levels"]),
     ("xtask", &[]),
 ];

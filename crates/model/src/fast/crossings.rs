@@ -8,7 +8,7 @@ use crate::phase::bisect_all;
 const DENSE: u32 = 6;
 
 /// Steps that are searched together: their roots do not wait for each other.
-pub(super) const BATCH: usize = 16;
+pub(super) const BATCH: usize = 32;
 
 /// Refinements of a guess where there is jerk.
 const REFINEMENTS: usize = 3;

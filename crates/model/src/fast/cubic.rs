@@ -110,3 +110,54 @@ pub(super) fn first(mut low: u32, mut high: u32, holds: impl Fn(u32) -> bool) ->
     }
     low
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// V and A tick by tick, without wrapping.
+    fn ticked(cubic: Cubic, ticks: u32) -> Vec<(i128, i128)> {
+        let (mut v, mut a) = (i128::from(cubic.v), i128::from(cubic.a));
+        let mut all = vec![(v, a)];
+        for _ in 0..ticks {
+            (v, a) = (v + a, a + i128::from(cubic.j));
+            all.push((v, a));
+        }
+        all
+    }
+
+    #[test]
+    fn closed_forms_are_what_ticking_gives() {
+        for (v, a, j) in [(-50, 31, -4), (7, -3, 1), (0, 5, -2), (0, 0, 1), (i64::MAX, -1, 0), (-9, 0, 3), (8, -4, 0)] {
+            let cubic = Cubic { v, a, j };
+            let ticked = ticked(cubic, 40);
+            for n in 0..40 {
+                let before: i128 = ticked[..n as usize].iter().map(|(v, _)| v).sum();
+                assert_eq!(cubic.distance(n), before);
+                assert_eq!((cubic.speed(n), cubic.acceleration(n)), ticked[n as usize]);
+            }
+            let length = cubic.same_sign(40);
+            let same = ticked.iter().take_while(|(v, _)| v.signum() == i128::from(cubic.v).signum()).count();
+            assert!(
+                length as usize <= same.max(1) && (length as usize == same.min(40) || j != 0),
+                "{cubic:?} {length}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_extremum_beyond_the_bound_is_seen() {
+        let there_and_back = Cubic { v: i64::MAX - 10, a: 8, j: -4 };
+        assert!(ticked(there_and_back, 6).iter().any(|(v, _)| *v > i64::MAX.into()));
+        assert!(there_and_back.speed(6) < i64::MAX.into());
+        assert!(!there_and_back.stays_in_range(6));
+    }
+
+    /// The next V would be in range, if only A had a bit more.
+    #[test]
+    fn an_a_that_wraps_is_seen() {
+        let cubic = Cubic { v: 9 - i64::MAX, a: 5, j: i64::MAX };
+        assert!(cubic.speed(2).unsigned_abs() < 100);
+        assert!(!cubic.stays_in_range(2));
+    }
+}

@@ -1,0 +1,94 @@
+//! `carrystep sweep`: many machines and moves over all cores, or the reports of many shards as one.
+
+use crate::arguments::Sweep;
+use crate::failure::Failure;
+use crate::wanted::Wanted;
+use crate::{job, output};
+use carrystep_levels::Level;
+use carrystep_plan::{PlanError, plan};
+use carrystep_sweep::{Case, Report, SweepError, SweepFile, Verdict};
+use carrystep_trace::AxisReport;
+use indicatif::{ProgressBar, ProgressDrawTarget};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Runs a shard, or merges reports.
+pub fn run(arguments: &Sweep) -> Result<(), Failure> {
+    let report = match &arguments.file {
+        Some(file) => {
+            let sweep = SweepFile::load(file, arguments.sample, arguments.seed)?;
+            let cases = arguments.shard.cases(sweep.cases()).count() as u64;
+            let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr_with_hz(10));
+            let report = carrystep_sweep::run(&sweep, arguments.shard, judge, || bar.inc(1));
+            bar.finish_and_clear();
+            report
+        }
+        None => Report::merge(arguments.merge.iter().map(read).collect::<Result<Vec<_>, _>>()?)?,
+    };
+    if arguments.json {
+        output::print_json(&report)?;
+    } else {
+        output::print(&report.to_string())?;
+    }
+    if report.passed { Ok(()) } else { Err(Failure::Check) }
+}
+
+fn read(path: &PathBuf) -> Result<Report, Failure> {
+    let wrong = |error: String| Failure::input(format!("{}: {error}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+    serde_json::from_str(&text).map_err(|error| wrong(format!("no report of a sweep: {error}")))
+}
+
+/// Plans, simulates and checks a case.
+fn judge(case: &Case) -> Verdict {
+    let Ok(file) = &case.file else { return Verdict::Failed("no move file".to_owned()) };
+    let plan = match plan::<f64>(file) {
+        Ok(plan) => plan,
+        Err(error @ PlanError::Broken { .. }) => return Verdict::Failed(error.to_string()),
+        Err(error) => return Verdict::Refused(error.to_string()),
+    };
+    match job::run(file, &plan, Level::Fast, &Wanted::default()) {
+        Ok(done) if done.passed => Verdict::Passed(figures(&done)),
+        Ok(done) => {
+            let first = done.check.failures().next();
+            Verdict::Failed(first.map_or_else(|| format!("faults: {}", done.faults), str::to_owned))
+        }
+        Err(failure) => Verdict::Failed(failure.message()),
+    }
+}
+
+/// Each as a part of what is allowed, 1 at the limit; the worst axis counts.
+fn figures(done: &job::Done) -> BTreeMap<&'static str, f64> {
+    let needed = |required: f64, found: Option<f64>| found.map(|found| required / found);
+    let early = |axis: &AxisReport| axis.error_min_ns.map(|error| -error / axis.error_bound_ns);
+    let late = |axis: &AxisReport| axis.error_max_ns.map(|error| error / axis.error_bound_ns);
+    let mut worst = BTreeMap::new();
+    let mut add = |name, part: Option<f64>| {
+        if let Some(part) = part {
+            let old = worst.entry(name).or_insert(part);
+            *old = part.max(*old);
+        }
+    };
+    for axis in &done.check.axes {
+        add("early", early(axis));
+        add("late", late(axis));
+        add("step high", needed(axis.high_required_ns, axis.high_min_ns));
+        add("step low", needed(axis.low_required_ns, axis.low_min_ns));
+        add("dir set-up", needed(axis.setup_required_ns, axis.setup_min_ns));
+        add("dir hold", needed(axis.hold_required_ns, axis.hold_min_ns));
+    }
+    for limits in &done.limits.axes {
+        add("speed", Some(limits.speed_steps_per_s / limits.speed_limit_steps_per_s));
+        add("acceleration", Some(limits.acceleration_steps_per_s2 / limits.acceleration_limit_steps_per_s2));
+    }
+    worst
+}
+
+impl From<SweepError> for Failure {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::Input(error) => Self::Input(error),
+            other => Self::input(other.to_string()),
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! The sweep file: a move file with blanks, and what they are filled with.
+
+use carrystep_spec::{InputError, MoveFile, Source};
+use minijinja::{Environment, UndefinedBehavior};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+use thiserror::Error;
+
+/// What the blanks of one case are filled with.
+pub type Values = BTreeMap<String, Value>;
+
+/// Something that stands in a move file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// `phases = 16`
+    Integer(i64),
+    /// `time = 0.5`
+    Float(f64),
+    /// `profile = "ranade"`
+    Text(String),
+}
+
+/// What a blank can be filled with.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+enum Choice {
+    /// One of these.
+    List(Vec<Value>),
+    /// Any number between, each size as likely as any other; in samples only.
+    Range { from: f64, to: f64 },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Raw {
+    move_file: String,
+    vary: BTreeMap<String, Choice>,
+}
+
+/// Why there is no sweep.
+#[derive(Debug, Error)]
+pub enum SweepError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The file is not a sweep.
+    #[error("{path}: {message}")]
+    Format {
+        /// Which file.
+        path: String,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// Reports that do not belong together.
+    #[error("{0}")]
+    Merge(String),
+}
+
+/// A sweep that can make each of its cases.
+pub struct SweepFile {
+    source: Source,
+    template: Environment<'static>,
+    vary: BTreeMap<String, Choice>,
+    sample: Option<u64>,
+    seed: u64,
+}
+
+/// One case.
+#[derive(Debug)]
+pub struct Case {
+    /// Its number, from 0.
+    pub number: u64,
+    /// What its blanks are filled with.
+    pub values: Values,
+    /// The move file; an error where the values make none.
+    pub file: Result<MoveFile, InputError>,
+}
+
+impl SweepFile {
+    /// Reads a sweep: the grid of all lists, or a random sample of so many cases.
+    ///
+    /// # Errors
+    /// [`SweepError`] says what is wrong, with the line where there is one.
+    pub fn load(path: &Path, sample: Option<u64>, seed: u64) -> Result<Self, SweepError> {
+        let source = Source::read(path)?;
+        let wrong = |message: String| SweepError::Format { path: path.display().to_string(), message };
+        let raw: Raw = toml::from_str(&source.text).map_err(|error| wrong(error.to_string()))?;
+        for (name, choice) in &raw.vary {
+            match choice {
+                Choice::List(list) if list.is_empty() => return Err(wrong(format!("{name}: an empty list"))),
+                Choice::Range { .. } if sample.is_none() => {
+                    return Err(wrong(format!("{name}: a range has no grid; give --sample, or a list")));
+                }
+                Choice::Range { from, to } if !(*from > 0.0 && from < to && to.is_finite()) => {
+                    return Err(wrong(format!("{name}: a range needs 0 < from < to")));
+                }
+                _ => {}
+            }
+        }
+        let mut template = Environment::new();
+        template.set_undefined_behavior(UndefinedBehavior::Strict);
+        template.add_template_owned("move", raw.move_file).map_err(|error| wrong(error.to_string()))?;
+        Ok(Self { source, template, vary: raw.vary, sample, seed })
+    }
+
+    /// How many cases there are.
+    pub fn cases(&self) -> u64 {
+        let grid =
+            || self.vary.values().map(|choice| if let Choice::List(list) = choice { list.len() as u64 } else { 1 });
+        self.sample.unwrap_or_else(|| grid().fold(1, u64::saturating_mul))
+    }
+
+    /// What two reports must agree on to be of the same sweep.
+    pub fn fingerprint(&self) -> String {
+        let words = self.source.text.bytes().map(u64::from).chain([self.seed, self.cases()]);
+        format!("{:016x}", words.fold(0, |hash, word| mixed(hash ^ word)))
+    }
+
+    /// Case `number`: the same whoever asks.
+    pub fn case(&self, number: u64) -> Case {
+        let mut rest = number;
+        let mut random = mixed(self.seed ^ mixed(number));
+        let mut values = Values::new();
+        for (name, choice) in &self.vary {
+            random = mixed(random);
+            let value = match choice {
+                Choice::List(list) => {
+                    let length = list.len() as u64;
+                    let index = if self.sample.is_some() { random % length } else { rest % length };
+                    rest /= length;
+                    list[index as usize].clone()
+                }
+                Choice::Range { from, to } => {
+                    let part = random as f64 / 2_f64.powi(64);
+                    Value::Float(from * (to / from).powf(part))
+                }
+            };
+            values.insert(name.clone(), value);
+        }
+        let filled = values.iter().map(|(name, value)| (name.clone(), minijinja::Value::from(value.to_string())));
+        let filled = minijinja::Value::from_pairs(filled);
+        let text = self.template.get_template("move").and_then(|template| template.render(filled));
+        let file = match text {
+            Ok(text) => MoveFile::from_source(Source { path: self.source.path.clone(), text: text.into() }),
+            Err(error) => Err(InputError::new(format!("{}: {error}", self.source.path.display()))),
+        };
+        Case { number, values, file }
+    }
+}
+
+/// Steele's splitmix64: all bits of a number over all bits of the result.
+const fn mixed(number: u64) -> u64 {
+    let z = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ z >> 31
+}

@@ -1,0 +1,60 @@
+//! `carrystep sweep`: shards add up to the whole, and one bad case stops no other.
+
+use crate::command::{Folder, GOOD};
+use serde_json::Value;
+
+/// The good move in 24 variants, one part of which `driver` names.
+fn sweep(drivers: &str) -> Folder {
+    let folder = Folder::new();
+    let blanks =
+        [("\"a4988\"", "\"{{ driver }}\""), ("phases = 16", "phases = {{ phases }}"), ("x = 2 ", "x = {{ to }} ")];
+    let text = blanks.into_iter().fold(GOOD.to_owned(), |text, (old, new)| text.replacen(old, new, 1));
+    let vary = format!("driver = {drivers}\nphases = [1, 4, 16]\nto = [0, 1, 2, 30]\n");
+    folder.write("sweep.toml", format!("move_file = '''\n{text}'''\n[vary]\n{vary}"));
+    folder
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+#[test]
+fn shards_merge_to_the_whole_in_any_order() {
+    let folder = sweep("[\"a4988\", \"tmc2209\"]");
+    for options in ["", " --sample 50 --seed 7"] {
+        let whole = folder.run(&format!("sweep sweep.toml --json{options}"));
+        assert_eq!(whole.status, 0, "{}", whole.stdout);
+        for shard in 1..=3 {
+            let ran = folder.run(&format!("sweep sweep.toml --json --shard {shard}/3{options}"));
+            assert_eq!(ran.status, 0, "{}", ran.stdout);
+            folder.write(&format!("{shard}.json"), ran.stdout);
+        }
+        let merged = folder.run("sweep --json --merge 3.json 1.json 2.json");
+        assert_eq!(json(&merged.stdout), json(&whole.stdout));
+        folder.run("sweep --merge 1.json 3.json").refuses("each shard is needed once; here are 1/3, 3/3");
+    }
+    let report = json(&folder.run("sweep sweep.toml --json").stdout);
+    assert_eq!(report["cases_passed"], 24);
+    assert!(report["worst"]["step high"]["value"].as_f64().is_some_and(|part| part <= 1.0), "{report}");
+}
+
+#[test]
+fn a_failing_case_stops_no_other() {
+    let folder = sweep("[\"a4988\", \"none\"]");
+    let ran = folder.run("sweep sweep.toml --json");
+    let report = json(&ran.stdout);
+    assert_eq!(ran.status, 1);
+    assert_eq!((&report["cases_passed"], &report["cases_failed"]), (&12.into(), &12.into()));
+    assert_eq!(report["failures"][0]["values"]["driver"], "none");
+}
+
+#[test]
+fn what_is_no_sweep_is_refused() {
+    let folder = sweep("[]");
+    folder.run("sweep sweep.toml").refuses("driver: an empty list");
+    folder.run("sweep none.toml").refuses("cannot read none.toml");
+    folder.run("sweep --merge sweep.toml").refuses("sweep.toml: no report of a sweep");
+    assert_eq!(folder.run("sweep sweep.toml --shard 4/3").status, 2);
+    folder.write("range.toml", "move_file = ''\n[vary]\nx = { from = 1, to = 2 }\n");
+    folder.run("sweep range.toml").refuses("x: a range has no grid");
+}
