@@ -8,7 +8,7 @@ fn moves_that_cannot_be_read() {
         (
             "profile = \"ranade\"",
             "profile = \"ranade\"\n^too = 1",
-            "unknown field `too`, expected one of `profile`, `time`, `to`",
+            "unknown field `too`, expected one of `profile`, `path`, `time`, `fit_ns`, `to`",
         ),
         ("[[move]]\nprofile = \"ranade\"", "^[[move]]", "missing field `profile`"),
         ("[[move]]\nprofile = \"ranade\"\nto = { x = 2 }", "^[[move]]\nprofile = \"ranade\"", "missing field `to`"),

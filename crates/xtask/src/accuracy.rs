@@ -44,7 +44,8 @@ fn table() -> Result<String, String> {
         for phases in [1, 4, 16] {
             let report = simulate(profile, phases)?;
             let axis = &report["check"]["axes"][0];
-            let figure = |name: &str| axis[name].as_f64().unwrap_or(f64::NAN);
+            // What is next to nothing is shown without a sign.
+            let figure = |name: &str| axis[name].as_f64().map_or(f64::NAN, |x| if x.abs() < 0.05 { 0.0 } else { x });
             let segments = &report["limits"]["axes"][0]["segments"];
             writeln!(
                 text,
