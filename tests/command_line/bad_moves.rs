@@ -12,7 +12,11 @@ fn moves_that_cannot_be_read() {
         ),
         ("[[move]]\nprofile = \"ranade\"", "^[[move]]", "missing field `profile`"),
         ("[[move]]\nprofile = \"ranade\"\nto = { x = 2 }", "^[[move]]\nprofile = \"ranade\"", "missing field `to`"),
-        ("\"ranade\"", "^\"fast\"", "unknown variant `fast`, expected one of `ranade`, `trapezoid`, `constant`"),
+        (
+            "\"ranade\"",
+            "^\"fast\"",
+            "unknown variant `fast`, expected one of `ranade`, `trapezoid`, `scurve`, `logistic`, `sine`, `constant`",
+        ),
         ("{ x = 2 }", "^[2]", "expected distances, as in { x = 1.5 }"),
         ("{ x = 2 }", "{ x = ^\"2\" }", "string \"2\", expected a number"),
         ("{ x = 2 }", "{ x = 2, ^q = 1 }", "the machine has no axis \"q\""),
