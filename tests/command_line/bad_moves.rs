@@ -8,11 +8,15 @@ fn moves_that_cannot_be_read() {
         (
             "profile = \"ranade\"",
             "profile = \"ranade\"\n^too = 1",
-            "unknown field `too`, expected one of `profile`, `time`, `to`",
+            "unknown field `too`, expected one of `profile`, `path`, `time`, `fit_ns`, `to`",
         ),
         ("[[move]]\nprofile = \"ranade\"", "^[[move]]", "missing field `profile`"),
         ("[[move]]\nprofile = \"ranade\"\nto = { x = 2 }", "^[[move]]\nprofile = \"ranade\"", "missing field `to`"),
-        ("\"ranade\"", "^\"fast\"", "unknown variant `fast`, expected one of `ranade`, `trapezoid`, `constant`"),
+        (
+            "\"ranade\"",
+            "^\"fast\"",
+            "unknown variant `fast`, expected one of `ranade`, `trapezoid`, `scurve`, `logistic`, `sine`, `constant`",
+        ),
         ("{ x = 2 }", "^[2]", "expected distances, as in { x = 1.5 }"),
         ("{ x = 2 }", "{ x = ^\"2\" }", "string \"2\", expected a number"),
         ("{ x = 2 }", "{ x = 2, ^q = 1 }", "the machine has no axis \"q\""),

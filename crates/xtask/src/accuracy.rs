@@ -45,17 +45,19 @@ fn table() -> Result<String, String> {
             let report = simulate(profile, phases)?;
             let axis = &report["check"]["axes"][0];
             let figure = |name: &str| axis[name].as_f64().unwrap_or(f64::NAN);
+            // Adding zero makes minus zero plus.
+            let whole = |name: &str| figure(name).round() + 0.0;
             let segments = &report["limits"]["axes"][0]["segments"];
             writeln!(
                 text,
-                "| {profile} | {phases} | {segments} | {:.0} | {:.0} | {:.0} | {:.0}: {:.0} | {:.0}: {:.0} | {:.1}: {:.1} |",
-                figure("error_min_ns"),
-                figure("error_max_ns"),
-                figure("error_rms_ns"),
-                figure("error_std_ns"),
-                figure("error_std_theory_ns"),
-                figure("period_jitter_max_ns"),
-                figure("period_jitter_theory_ns"),
+                "| {profile} | {phases} | {segments} | {} | {} | {} | {}: {} | {}: {} | {:.1}: {:.1} |",
+                whole("error_min_ns"),
+                whole("error_max_ns"),
+                whole("error_rms_ns"),
+                whole("error_std_ns"),
+                whole("error_std_theory_ns"),
+                whole("period_jitter_max_ns"),
+                whole("period_jitter_theory_ns"),
                 figure("speed_ripple_max_percent"),
                 figure("speed_ripple_theory_percent"),
             )
