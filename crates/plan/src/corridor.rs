@@ -16,6 +16,9 @@ const SAMPLES: u32 = 16;
 /// How close to the profile, in steps, a curve is kept between edges that are far apart: it keeps to the next ones.
 const BETWEEN: f64 = 0.2;
 
+/// The part of the tolerance that may be lost to the chord of a tick unseen.
+const UNSEEN: f64 = 0.05;
+
 /// How close to the end of the move, in steps, a curve is kept before the integers land it.
 const AT_REST: f64 = 1e-3;
 
@@ -36,6 +39,8 @@ pub(crate) struct Corridor<'a, F> {
     pub rises: bool,
     /// Ticks.
     pub tolerance: f64,
+    /// The acceleration limit, steps per tick^2.
+    pub bend: f64,
 }
 
 /// Ticks within a piece, and where the axis is when they begin.
@@ -67,6 +72,13 @@ pub(crate) fn basis(t: f64, n: f64) -> [f64; 3] {
     let s = t / n;
     let pairs = s * (t - 1.0) / (2.0 * n);
     [s, pairs, pairs * (t - 2.0) / (3.0 * n)]
+}
+
+/// The same where edges are: on the chord from tick to tick.
+fn chord(t: f64, n: f64) -> [f64; 3] {
+    let part = t - t.floor();
+    let [from, to] = [t.floor(), t.floor() + 1.0].map(|t| basis(t, n));
+    std::array::from_fn(|k| from[k] + part * (to[k] - from[k]))
 }
 
 fn wide<F: Real>(x: F) -> f64 {
@@ -188,6 +200,13 @@ impl<F: Real> Corridor<'_, F> {
         (t, steps(i128::from(half_steps) * (ONE_STEP / 2) - done))
     }
 
+    /// How far the chord of the profile's tick is above the profile, steps.
+    fn sag(&self, stretch: Stretch, t: f64) -> f64 {
+        let part = t - t.floor();
+        let acceleration = self.profile.acceleration(self.seconds(stretch.first as f64 + t)) * self.clock.tick;
+        wide(acceleration * self.clock.tick) * part * (1.0 - part) / 2.0
+    }
+
     /// Not late, not early: the curve passes `ahead` within the tolerance of `t`, or within `least` steps of it.
     fn both_sides(&self, rows: &mut Vec<Row>, stretch: Stretch, t: f64, ahead: f64, least: f64) {
         let n = stretch.ticks as f64;
@@ -196,9 +215,13 @@ impl<F: Real> Corridor<'_, F> {
         // At rest no time is too long: such an edge is where the move ends, or where it starts.
         let weight = if width > 0.0 { width.recip() } else { 0.0 };
         let slack = if late > 0.0 { 1.0 } else { 0.0 };
-        let [after, before] = [t + late, t - late].map(|t| basis(t, n).map(|b| b * weight));
-        rows.push(Row { at: after.map(|b| -b), error: 1.0, most: -ahead * weight - slack });
-        rows.push(Row { at: before, error: 1.0, most: ahead * weight - slack });
+        // An edge is on the chord of its tick. That of the profile itself is in the bound of its edges already, so
+        // the curve's may be off the curve as far, but not further.
+        let chords = late > 0.0 && self.bend / 8.0 > UNSEEN * width;
+        let side = |t: f64| if chords { (chord(t, n), self.sag(stretch, t)) } else { (basis(t, n), 0.0) };
+        let [(after, above), (before, below)] = [t + late, t - late].map(side);
+        rows.push(Row { at: after.map(|b| -b * weight), error: 1.0, most: -(ahead + above) * weight - slack });
+        rows.push(Row { at: before.map(|b| b * weight), error: 1.0, most: (ahead + below) * weight - slack });
     }
 }
 

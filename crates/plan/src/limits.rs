@@ -21,7 +21,7 @@ impl ExactLimits {
     pub fn new<F: Real>(axis: &Axis, timebase: &Timebase) -> Option<Self> {
         let tick = BigDecimal::new(timebase.tick_ns().into(), 9);
         let speed = units(&axis.speed_limit, &[&tick])?;
-        let relative = F::epsilon().to_f64()? * 64.0 + 1e-9;
+        let relative = (F::epsilon().to_f64()? * 64.0).max(1e-9);
         Some(Self {
             start_speed: units(&axis.start_speed, &[&tick])?,
             speed,

@@ -1,7 +1,7 @@
 //! From a move file to a plan: time, profiles, shares, segments, rest, and the exact check.
 
 use crate::check::{Duty, check};
-use crate::corridor::Corridor;
+use crate::corridor::{self, Corridor};
 use crate::demand::{Clock, demand};
 use crate::direction::{Pins, Strokes, borrows, turning_rest};
 use crate::edges;
@@ -144,7 +144,9 @@ impl<'a> Planner<'a> {
                 let tolerance = tolerance.min(piece.ticks as f64 / LEAST_RATIO);
                 let [begin, end] = [piece.first, piece.first + piece.ticks].map(|tick| profile.speed(clock.at(tick)));
                 let rises = begin <= end;
-                let corridor = Corridor { profile, clock: *clock, phase, backward, pulses, piece, rises, tolerance };
+                let bend = corridor::steps(limits.acceleration);
+                let corridor =
+                    Corridor { profile, clock: *clock, phase, backward, pulses, piece, rises, tolerance, bend };
                 let mut fitter = Fitter { corridor, limits: &limits, rows: std::mem::take(&mut rows) };
                 let segments = fitter.segments(writer.position(piece), &risen);
                 rows = fitter.rows;
@@ -155,7 +157,9 @@ impl<'a> Planner<'a> {
             } else {
                 // In a fit, only the last piece lands: each landing costs a segment. Hardly anything could not.
                 let small = |next: &Piece| next.ticks == 1 || next.units <= i128::from(piece.ticks);
-                let lands = !kind.is_fitted() || pieces.get(index + 1).is_none_or(small);
+                // So does one of several segments anyway: half a unit of V, not made up for, would be seen after hours.
+                let long = piece.ticks > u64::from(u32::MAX);
+                let lands = !kind.is_fitted() || long || pieces.get(index + 1).is_none_or(small);
                 writer.piece(piece, lands)?;
             }
         }
@@ -170,7 +174,7 @@ impl<'a> Planner<'a> {
         }
         // Never at rest: the jump of the curve itself is what a start speed of 0 leaves open.
         let per_tick = profile.speed(F::zero()) * F::from(self.build.timebase.tick_seconds()).unwrap_or_else(F::nan);
-        ExactLimits { start_speed: units::nearest(per_tick).unwrap_or(0), ..limits }
+        ExactLimits { start_speed: units::toward_zero(per_tick).unwrap_or(0), ..limits }
     }
 
     /// Puts the rest before the motion, marks the end, checks all of it, and moves the pins on.

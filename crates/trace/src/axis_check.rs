@@ -48,6 +48,8 @@ pub(crate) struct AxisCheck<'a> {
     setup: AxisSetup<'a>,
     timebase: Timebase,
     slack_ps: f64,
+    /// The greatest tolerance of a fit.
+    fit_ps: f64,
     crossings: Box<dyn Iterator<Item = Crossing> + 'a>,
     /// The next two crossings: a missing pulse shows by the edge being nearer to the second.
     next: [Option<Crossing>; 2],
@@ -73,10 +75,12 @@ impl<'a> AxisCheck<'a> {
     pub(crate) fn new(setup: AxisSetup<'a>, phase: StartPhase, timebase: Timebase, slack_ps: u64) -> Self {
         let mut crossings: Box<dyn Iterator<Item = Crossing> + 'a> = Box::new(setup.timeline.crossings(phase));
         let next = [crossings.next(), crossings.next()];
+        let fit_ps = setup.timeline.legs.iter().map(|leg| (leg.fit_seconds * PS).round()).fold(0.0, f64::max);
         Self {
             setup,
             timebase,
             slack_ps: slack_ps as f64,
+            fit_ps,
             crossings,
             next,
             number: 1,
@@ -179,9 +183,9 @@ impl<'a> AxisCheck<'a> {
         Some((since, self.next.map(|c| c.map(ideal))))
     }
 
-    /// Edges may stand this far from where they belong before they are taken for others, ps.
+    /// A period may be off by this much before its edge is taken for another, ps: fitted, each of its two edges.
     fn tolerance_ps(&self) -> f64 {
-        phase_ps(&self.timebase) + self.slack_ps
+        phase_ps(&self.timebase) + self.slack_ps + 2.0 * self.fit_ps
     }
 
     fn is_extra(&self, ps: u64, origin_ps: i64, sure: bool) -> bool {
@@ -244,12 +248,7 @@ impl<'a> AxisCheck<'a> {
 
     /// How late or early an edge may be, in ps.
     pub(crate) fn bound_ps(&self) -> f64 {
-        phase_ps(&self.timebase) + self.curvature_ps + self.fit_ps() + ROUNDING_PS + self.slack_ps
-    }
-
-    /// The greatest tolerance of a fit, in ps.
-    fn fit_ps(&self) -> f64 {
-        self.setup.timeline.legs.iter().map(|leg| (leg.fit_seconds * PS).round()).fold(0.0, f64::max)
+        phase_ps(&self.timebase) + self.curvature_ps + self.fit_ps + ROUNDING_PS + self.slack_ps
     }
 
     /// Judges; `origin_ps` is what all changes were given, `shift_ps` is added to it.
@@ -266,7 +265,7 @@ impl<'a> AxisCheck<'a> {
             self.fail(&format!("final position {}, {} expected", self.position, self.setup.expected_position));
         }
         let phase = phase_ps(&self.timebase);
-        let (fit, bound) = (self.fit_ps(), self.bound_ps());
+        let (fit, bound) = (self.fit_ps, self.bound_ps());
         self.judge_errors(shift_ps as f64, bound);
         if let Some(Off { steps, bound, pulse }) = line.filter(|off| off.steps > off.bound) {
             self.fail(&format!("{steps:.3} steps off its line after a pulse {pulse}, the bound is {bound:.3} steps"));

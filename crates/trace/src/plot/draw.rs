@@ -110,12 +110,14 @@ fn panel(
     caption
         .draw(&Text::new(curves.axis.name.to_owned(), (8, 2), label(20, if passed { INK } else { BOUND })))
         .map_err(failed)?;
+    let (above, below) = charts.split_vertically(charts.dim_in_pixel().1 * 58 / 100);
+    let (metrics, below) = below.split_vertically(20);
     if let Some(axis) = report {
         let right = label(14, GREY).pos(Pos::new(HPos::Right, VPos::Top));
         let edge = caption.dim_in_pixel().0 as i32;
-        caption.draw(&Text::new(summary(axis), (edge, 5), right)).map_err(failed)?;
+        caption.draw(&Text::new(summary(axis), (edge, 5), right.clone())).map_err(failed)?;
+        metrics.draw(&Text::new(beside_theory(axis), (edge, 4), right)).map_err(failed)?;
     }
-    let (above, below) = charts.split_vertically(charts.dim_in_pixel().1 * 58 / 100);
     speed(&above, plot, curves, clock)?;
     error(&below, plot, curves, report, clock)
 }
@@ -130,6 +132,14 @@ fn summary(axis: &AxisReport) -> String {
         }
         _ => pulses,
     }
+}
+
+/// Jitter and ripple, each of what theory allows.
+fn beside_theory(axis: &AxisReport) -> String {
+    let of = |found: Option<f64>, theory: f64| found.map_or("none".to_owned(), |x| format!("{x:.3} of {theory:.3}"));
+    let jitter = of(axis.period_jitter_max_ns, axis.period_jitter_theory_ns);
+    let ripple = of(axis.speed_ripple_max_percent, axis.speed_ripple_theory_percent);
+    format!("jitter {jitter} ns, speed ripple {ripple} %")
 }
 
 /// A range around all values, with room; never empty.
