@@ -111,6 +111,8 @@ impl<F: Real> Fitter<'_, F> {
         let left = self.corridor.piece.ticks - first;
         let most = left.min(u32::MAX.into());
         let (mut good, mut bad): (Option<Fitted>, u64) = (None, most + 1);
+        // The two shortest that are too long, lengths and levels, the shorter one last.
+        let mut long = [(f64::INFINITY, f64::INFINITY); 2];
         let mut ticks = (guess as u64).clamp(1, most);
         for attempt in 0.. {
             if ticks <= 1 {
@@ -120,20 +122,17 @@ impl<F: Real> Fitter<'_, F> {
             let level = trial.map_or(f64::INFINITY, |(_, level)| level);
             match trial.filter(|_| level <= FULL) {
                 Some((fitted, _)) => good = Some(fitted),
-                None => bad = ticks,
+                None => (bad, long) = (ticks, [long[1], (ticks as f64, level)]),
             }
             let known = good.map_or(0, |fitted| fitted.ticks);
             let enough = known == most || (known == ticks && level >= ENOUGH);
-            if good.is_some() && (enough || attempt >= TRIES || bad - known <= known / 64 + 1) {
+            if good.is_some() && (enough || attempt >= TRIES || bad - known <= known / 40 + 1) {
                 break;
             }
-            // A small error says little: it may be what the segment starts with.
-            let factor = (AIM / level).powf(0.25).clamp(0.25, 4.0);
-            let factor = if level < JOINT { factor.max(LEAP) } else { factor };
-            let next = (ticks as f64 * factor) as u64;
-            ticks = match next {
-                _ if next > known && next < bad => next,
-                _ if next >= bad && bad > most => most,
+            let next = if long[1].1.is_finite() { shorter(long) } else { longer(ticks as f64, level) };
+            ticks = match next as u64 {
+                next if next > known && next < bad => next,
+                next if next >= bad && bad > most => most,
                 _ => known.midpoint(bad),
             };
         }
@@ -259,4 +258,19 @@ impl<F: Real> Fitter<'_, F> {
         let distance = if ends { rest } else { ideal.min(rest).clamp(0, self.limits.speed) };
         Fitted { ticks: 1, bend: Bend::default(), distance }
     }
+}
+
+/// The length that should just do, from the two shortest that do not: as the power of the length that goes through
+/// both, or the fourth.
+fn shorter([(longer, worse), (length, level)]: [(f64, f64); 2]) -> f64 {
+    let power = (worse / level).ln() / (longer / length).ln();
+    let power = if power.is_finite() { power.clamp(2.0, 16.0) } else { 4.0 };
+    length * (AIM / level).powf(power.recip()).max(0.25)
+}
+
+/// The length that should just do, from one that does, or that cannot be at all. A small error says little: it may be
+/// what the segment starts with.
+fn longer(length: f64, level: f64) -> f64 {
+    let factor = (AIM / level).powf(0.25).clamp(0.25, 4.0);
+    length * if level < JOINT { factor.max(LEAP) } else { factor }
 }

@@ -214,7 +214,8 @@ impl<F: Real> Profile<F> for LogisticRamp<F> {
 
     fn mean_speed(&self, from: F, to: F) -> F {
         let y = self.steepness * (to - from);
-        let ln_from = -softplus(self.steepness * (self.centre - from));
+        let at_start = from <= F::zero();
+        let ln_from = if at_start { -self.ln_start } else { -softplus(self.steepness * (self.centre - from)) };
         if y > F::zero() { self.asymptote * (gain(ln_from, y) / y) } else { self.speed(from) }
     }
 }

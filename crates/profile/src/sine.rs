@@ -132,7 +132,10 @@ impl<F: Real> Profile<F> for SineRamp<F> {
         if d <= F::zero() {
             return self.speed(from);
         }
-        self.top / real(2.0 * PI) * (x_minus_sin(d) / d * s + d.sin() / d * x_minus_sin(s))
+        let fall = x_minus_sin(s);
+        // From rest on s = d, and one series is both.
+        let rise = if p.is_zero() { fall } else { x_minus_sin(d) };
+        self.top / real(2.0 * PI) * (rise / d * s + d.sin() / d * fall)
     }
 }
 

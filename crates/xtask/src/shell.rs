@@ -28,8 +28,16 @@ pub fn command(program: &str, arguments: &[&str]) -> Command {
 
 /// Runs a command, its output going to the terminal.
 pub fn run(program: &str, arguments: &[&str]) -> Done {
-    say(&format!("$ {program} {}", arguments.join(" ")));
-    let status = command(program, arguments).status().map_err(|error| format!("cannot start {program}: {error}"))?;
+    run_with(&[], program, arguments)
+}
+
+/// The same, with variables in its environment.
+pub fn run_with(variables: &[(&str, &str)], program: &str, arguments: &[&str]) -> Done {
+    let set: String = variables.iter().map(|(name, value)| format!("{name}={value} ")).collect();
+    say(&format!("$ {set}{program} {}", arguments.join(" ")));
+    let mut command = command(program, arguments);
+    let status =
+        command.envs(variables.iter().copied()).status().map_err(|error| format!("cannot start {program}: {error}"))?;
     if status.success() { Ok(()) } else { Err(format!("`{program} {}` failed ({status})", arguments.join(" "))) }
 }
 
