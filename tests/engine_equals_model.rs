@@ -11,7 +11,7 @@ use carrystep_spec::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segm
 use carrystep_tests::golden::{self, Case, Edge};
 use carrystep_tests::{effort, engine_programs, lockstep};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;
 
 /// The fewest clocks that hold the turns; pins as different as in the other rungs, two of them too slow for
@@ -87,8 +87,12 @@ fn assert_kept(model: &Engine, engine: &EngineSim) -> Result<(), TestCaseError> 
 /// Runs random programs until they have taken so many clocks.
 fn run_programs(build: &EngineBuild, usual: u64, one: impl Fn(&Program, &Events) -> Result<u64, TestCaseError>) {
     let (clocks, enough) = (Cell::new(0), effort::clocks(usual));
-    let config = Config { cases: 10, max_shrink_time: 20_000, failure_persistence: None, ..Config::default() };
+    let mut config = Config { cases: 10, max_shrink_time: 20_000, failure_persistence: None, ..Config::default() };
     while clocks.get() < enough {
+        // From a given seed, other programs in each round too.
+        if let RngSeed::Fixed(seed) = &mut config.rng_seed {
+            *seed = seed.wrapping_add(1);
+        }
         let held = TestRunner::new(config.clone()).run(&engine_programs::program(), |(program, events)| {
             clocks.set(clocks.get() + one(&program, &events)?);
             Ok(())
