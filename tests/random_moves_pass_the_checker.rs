@@ -11,27 +11,43 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 
-/// All moves, as fast as may be and in their own time; how many pulses were judged.
-fn passes(random: &RandomMoves) -> Result<u64, TestCaseError> {
-    let mut pulses = 0;
+/// What was judged: lest a test of hardly anything pass.
+#[derive(Debug, Clone, Copy, Default)]
+struct Judged {
+    pulses: u64,
+    /// Moves in sixteen phases.
+    moves: usize,
+}
+
+/// All moves, as fast as may be and in their own time.
+fn passes(random: &RandomMoves) -> Result<Judged, TestCaseError> {
+    let mut judged = Judged::default();
     for file in random.files() {
         let plan = plan::<f64>(&file).unwrap_or_else(|error| panic!("{error}\n{}", file.source.text));
         let report = moves::check(&file, &plan, &plan.lines(), &plan.program(), &plan.build);
         prop_assert!(report.passed, "{report}\n{}", file.source.text);
-        pulses += report.axes.iter().map(|axis| axis.pulses_found).sum::<u64>();
+        judged.pulses += report.axes.iter().map(|axis| axis.pulses_found).sum::<u64>();
+        if plan.build.timebase.phases() == 16 {
+            judged.moves += plan.moves.len();
+        }
     }
-    Ok(pulses)
+    Ok(judged)
 }
 
 fn all_pass(kinds: &'static [ProfileKind], cases: u32) {
-    let pulses = Cell::new(0);
+    let all = Cell::new(Judged::default());
     let mut runner = TestRunner::new(Config { cases, failure_persistence: None, ..Config::default() });
     let held = runner.run(&random_moves(Pace::Brisk, kinds), |random| {
-        pulses.set(pulses.get() + passes(&random)?);
+        let (one, so_far) = (passes(&random)?, all.get());
+        all.set(Judged { pulses: so_far.pulses + one.pulses, moves: so_far.moves + one.moves });
         Ok(())
     });
     held.unwrap_or_else(|error| panic!("{error}"));
-    assert!(pulses.get() > 100 * u64::from(cases), "hardly anything was checked");
+    let Judged { pulses, moves } = all.get();
+    assert!(
+        pulses > 100 * u64::from(cases) && moves >= cases as usize,
+        "hardly anything was checked: {moves}, {pulses}"
+    );
 }
 
 #[test]

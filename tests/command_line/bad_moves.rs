@@ -30,7 +30,24 @@ fn moves_that_cannot_be_read() {
         ("time = 0.05", "time = ^-0.5", "time = -0.5: must be over zero"),
         ("time = 0.05", "time = ^1000001", "time = 1000001 s: a move takes at most 10^6 s"),
         ("time = 0.05", "time = ^\"soon\"", "string \"soon\", expected a number"),
+        ("time = 0.05", "fit_ns = ^0", "fit_ns = 0: no fit is without an error"),
+        ("time = 0.05", "fit_ns = ^-1", "integer `-1`, expected"),
+        ("time = 0.05", "path = ^\"crooked\"", "unknown variant `crooked`, expected `free` or `straight`"),
+        ("\"ranade\"", "^\"scurve\"", "axis \"x\" has no jerk_limit"),
     ]);
+}
+
+/// What cannot be, by which limit, and the least time that would do; which then does.
+#[test]
+fn curves_in_a_time_that_is_too_short() {
+    let jerk = GOOD.replace("driver =", "jerk_limit = 40_000\ndriver =");
+    for (profile, limit) in [("sine", "accel_limit"), ("logistic", "accel_limit"), ("scurve", "accel_limit")] {
+        let timed = |time: &str| jerk.replace("\"ranade\"", &format!("\"{profile}\"\ntime = {time}"));
+        let ran = Folder::with_move(timed("0.001")).run("plan move.toml");
+        ran.refuses(&format!("over {limit} 25000; at least "));
+        let least = ran.stderr.split("at least ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+        assert_eq!(Folder::with_move(timed(least)).run("plan move.toml").status, 0, "{profile} in {least} s");
+    }
 }
 
 #[test]

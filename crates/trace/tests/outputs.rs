@@ -43,7 +43,8 @@ fn the_plot_stays_small_and_names_what_it_shows() {
         play(&train, &mut plot);
         let svg = plot.svg(&machine.check(&train, KNOWN)).unwrap();
         assert!(svg.len() < 1_500_000, "{}", svg.len());
-        for word in ["There and back", "steps/s", "error, ns", "time, ms", "profile", "bound"] {
+        for word in ["There and back", "steps/s", "error, ns", "time, ms", "profile", "bound", "jitter", "speed ripple"]
+        {
             assert!(svg.contains(word), "{word}");
         }
         if let Some(folder) = std::env::var_os("CARRYSTEP_PLOTS") {
