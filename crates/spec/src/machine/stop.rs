@@ -45,7 +45,7 @@ pub(super) fn at_the_limit(accel_limit: &BigDecimal, timebase: &Timebase) -> u64
 
 /// Units of 2^-64 step per tick^2 in steps/s^2.
 pub(crate) fn steps_per_s2(units: u64, timebase: &Timebase) -> f64 {
-    units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(2)
+    units as f64 * 2_f64.powi(-64) * 1e18 / (timebase.tick_ns() as f64).powi(2)
 }
 
 /// steps/s^2 in units of 2^-64 step per tick^2, rounded toward zero.
