@@ -149,7 +149,7 @@ fn axes_that_cannot_be_told_apart_or_are_too_many() {
         (
             "driver = \"a4988\"\n",
             &and(&format!("^[[machine.axis]]\nname = \"x6\"\n{AXIS}\n")),
-            "7 axes: this gateware drives at most 6",
+            "7 axes: moves are planned for at most 6",
         ),
         (
             "driver = \"a4988\"\n",

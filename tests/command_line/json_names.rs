@@ -28,7 +28,7 @@ const PLAN: &str = "passed tick_ns moves
     moves[].axes[].segments moves[].axes[].segments[].ticks moves[].axes[].segments[].v
     moves[].axes[].segments[].a moves[].axes[].segments[].j moves[].axes[].segments[].last";
 
-const RUN: &str = "passed level clocks run_s faults positions files";
+const RUN: &str = "passed core level clocks run_s faults positions files";
 
 /// Every name in a document, `a.b` for b in a and `a[]` for what the list a holds.
 fn names(value: &Value, path: &str, found: &mut Vec<String>) {

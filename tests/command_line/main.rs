@@ -10,6 +10,7 @@ mod bad_moves;
 mod bad_outputs;
 mod command;
 mod curves;
+mod engine;
 mod json_names;
 mod profile;
 mod sweeps;

@@ -5,7 +5,7 @@ mod table;
 
 use carrystep_levels::Level;
 use carrystep_sweep::Shard;
-use clap::{Args, Parser};
+use clap::{Args, Parser, ValueEnum};
 pub use profile::Profile;
 use std::path::PathBuf;
 pub use table::{Table, TableKind};
@@ -45,6 +45,33 @@ pub enum Subcommand {
     Sweep(Sweep),
 }
 
+/// Which gateware.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Core {
+    /// One adder for all axes, with queues and a guard: for boards.
+    Engine,
+    /// An adder an axis: what the engine is compared with.
+    Parallel,
+}
+
+impl Core {
+    /// Its name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Engine => "engine",
+            Self::Parallel => "parallel",
+        }
+    }
+
+    /// The level at which it runs fastest.
+    pub const fn fastest(self) -> Level {
+        match self {
+            Self::Engine => Level::Model,
+            Self::Parallel => Level::Fast,
+        }
+    }
+}
+
 /// `carrystep demo`
 #[derive(Debug, Args)]
 pub struct Demo {
@@ -82,9 +109,12 @@ pub struct Simulate {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
-    /// Where the gateware runs.
-    #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
-    pub level: Level,
+    /// The gateware.
+    #[arg(long, default_value = "parallel", value_name = "CORE")]
+    pub core: Core,
+    /// Where the gateware runs; default: fast, or model for the engine, which has no fast model.
+    #[arg(long, value_name = "LEVEL", value_parser = level())]
+    pub level: Option<Level>,
     /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
@@ -134,7 +164,10 @@ pub struct Check {
 /// `carrystep verilog`
 #[derive(Debug, Args)]
 pub struct Verilog {
-    /// The machine whose clock, phases and pin timings are built in; default: the shipped six-axis machine.
+    /// The gateware.
+    #[arg(long, default_value = "parallel", value_name = "CORE")]
+    pub core: Core,
+    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped machine of the core.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
     /// Folder for the Verilog and its lint waivers.

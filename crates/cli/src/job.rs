@@ -1,14 +1,17 @@
 //! One planned move file through one level: sinks on, run, and what came of it.
 
+use crate::arguments::Core;
 use crate::failure::Failure;
+use crate::gateware::Gateware;
 use crate::progress::Progress;
 use crate::table::{self, Limits};
 use crate::wanted::Wanted;
+use carrystep_levels::engine::run::EngineJob;
 use carrystep_levels::pins::PinFeed;
 use carrystep_levels::{Job, Level};
 use carrystep_plan::Plan;
 use carrystep_profile::Timeline;
-use carrystep_spec::MoveFile;
+use carrystep_spec::{EngineBuild, MoveFile};
 use carrystep_trace::{
     AxisSetup, AxisWaves, Checker, CsvWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee, VcdWriter, Waves,
     save_file,
@@ -26,7 +29,9 @@ const LONGEST_S: u64 = 4_000_000;
 pub struct Done {
     /// Everything below holds.
     pub passed: bool,
-    /// Where the gateware ran.
+    /// The gateware.
+    pub core: &'static str,
+    /// Where it ran.
     pub level: &'static str,
     /// Clock cycles simulated.
     pub clocks: u64,
@@ -57,7 +62,8 @@ impl fmt::Display for Done {
         for file in &self.files {
             writeln!(f, "wrote {}", file.display())?;
         }
-        writeln!(f, "{}: {} clocks, faults: {}", self.level, self.clocks, self.faults)?;
+        let engine = if self.core == Core::Engine.name() { "engine, " } else { "" };
+        writeln!(f, "{engine}{}: {} clocks, faults: {}", self.level, self.clocks, self.faults)?;
         f.write_str(if self.passed { "ALL HOLDS\n" } else { "FAILED\n" })
     }
 }
@@ -103,15 +109,32 @@ pub fn fits_a_capture(plan: &Plan) -> Result<(), Failure> {
     Err(Failure::input(format!("the moves take {seconds} s: a capture holds at most {LONGEST_S} s; split the file")))
 }
 
-/// Runs a plan at a level, checks every pulse and writes what is wanted.
-pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
+/// The engine of a file's machine, where one is asked for.
+fn engine(file: &MoveFile, core: Core, level: Level) -> Result<Option<EngineBuild>, Failure> {
+    if core == Core::Parallel {
+        return Ok(None);
+    }
+    if level == Level::Fast {
+        return Err(Failure::input("the engine has no level fast: --level model is its fastest"));
+    }
+    let engine = file.machine.engine();
+    engine.check().map_err(|error| Failure::input(format!("{}: {error}", file.source.path.display())))?;
+    Ok(Some(engine))
+}
+
+/// Runs a plan on a core at a level, checks every pulse and writes what is wanted.
+pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
+    let engine = engine(file, core, level)?;
     carrystep_levels::available(level)?;
     fits_a_capture(plan)?;
     let mut files = wanted.begin(&file.source.path)?;
     let program = plan.program();
-    let job = Job::new(&plan.build, &program, plan.total_ticks());
+    let gateware = match &engine {
+        None => Gateware::Parallel(Job::new(&plan.build, &program, plan.total_ticks())),
+        Some(engine) => Gateware::Engine(EngineJob::new(engine, &program, plan.total_ticks())),
+    };
     let timebase = plan.build.timebase;
-    let load = carrystep_levels::origin(&job)?;
+    let load = gateware.origin()?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks()).cast_signed();
     let timelines = plan.timelines();
 
@@ -151,9 +174,9 @@ pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Resul
         }
         let mut feed = PinFeed::new(timebase, file.machine.axes.len(), &mut tee);
         let mut progress = Progress::new(level.name(), plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
-        let outcome = carrystep_levels::run(level, &job, &mut |cycle, outputs| {
+        let outcome = gateware.run(level, &mut |cycle, step, dir| {
             progress.at(cycle);
-            feed.observe(cycle, outputs);
+            feed.pins(cycle, step, dir);
         })?;
         feed.end(outcome.clocks)?;
         outcome
@@ -172,15 +195,15 @@ pub fn run(file: &MoveFile, plan: &Plan, level: Level, wanted: &Wanted) -> Resul
     }
 
     let limits = table::limits(file, plan);
-    let positions: Vec<i32> = outcome.last.position[..file.machine.axes.len()].to_vec();
-    let faults = outcome.last.faults;
+    let positions: Vec<i32> = outcome.positions.into_iter().take(file.machine.axes.len()).collect();
     let landed = positions.iter().zip(&check.axes).all(|(&found, axis)| i64::from(found) == axis.position_expected);
     Ok(Done {
-        passed: check.passed() && limits.landed() && !faults.any() && landed,
+        passed: check.passed() && limits.landed() && outcome.fault.is_none() && landed,
+        core: core.name(),
         level: level.name(),
         clocks: outcome.clocks,
         run_s,
-        faults: faults.to_string(),
+        faults: outcome.fault.unwrap_or_else(|| "none".into()),
         positions,
         limits,
         check,

@@ -4,6 +4,7 @@ mod arguments;
 mod commands;
 mod failure;
 mod figures;
+mod gateware;
 mod job;
 mod output;
 mod progress;

@@ -1,6 +1,7 @@
 //! A core as one file: header, then every module once, children first.
 
 use crate::ExportError;
+use crate::guard;
 use crate::module::module_text;
 use crate::names::split_index;
 use crate::netlist::{self, Module};
@@ -56,7 +57,7 @@ const PURPOSES: [(&str, &str); 21] = [
 /// # Errors
 /// [`ExportError`] where the build cannot be made.
 pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
-    let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins };
+    let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins, guard: String::new() };
     file_text(&mut SixAxis::new(build)?, CORE_NAME, &facts, description)
 }
 
@@ -65,7 +66,8 @@ pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, Expo
 /// # Errors
 /// [`ExportError`] where the build cannot be made.
 pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, ExportError> {
-    let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins };
+    let guard = guard::lines(build);
+    let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins, guard };
     file_text(engine(build)?.as_mut(), ENGINE_NAME, &facts, description)
 }
 
@@ -74,6 +76,8 @@ struct Facts<'a> {
     timebase: Timebase,
     phase: StartPhase,
     pins: &'a [PinTiming],
+    /// Lines of the header, where there is a guard.
+    guard: String,
 }
 
 fn file_text(core: &mut dyn Block, name: &str, build: &Facts<'_>, description: &str) -> Result<String, ExportError> {
@@ -110,20 +114,23 @@ pub fn write_engine(dir: &Path, build: &EngineBuild, description: &str) -> Resul
 
 fn write_files(dir: &Path, name: &str, verilog: &str, waivers: &str) -> Result<Vec<PathBuf>, ExportError> {
     std::fs::create_dir_all(dir).map_err(|source| ExportError::Io { path: dir.to_owned(), source: folder(source) })?;
-    let write = |path: &Path, text: &str| {
-        let mut file = new_file(dir)?;
-        file.write_all(text.as_bytes())?;
-        file.persist(path)?;
-        Ok(())
+    let files =
+        [("v", verilog), ("vlt", waivers)].map(|(extension, text)| (dir.join(name).with_extension(extension), text));
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        |source| ExportError::Io { path, source }
     };
-    [("v", verilog), ("vlt", waivers)]
-        .into_iter()
-        .map(|(extension, text)| {
-            let path = dir.join(name).with_extension(extension);
-            write(&path, text).map_err(|source| ExportError::Io { path: path.clone(), source })?;
-            Ok(path)
-        })
-        .collect()
+    // All are written before the first one appears.
+    let whole = files.map(|(path, text)| {
+        let file = new_file(dir).and_then(|mut file| file.write_all(text.as_bytes()).map(|()| file));
+        file.map_err(failed(&path)).map(|file| (path, file))
+    });
+    let whole: Vec<_> = whole.into_iter().collect::<Result<_, _>>()?;
+    let appear = |(path, file): (PathBuf, tempfile::NamedTempFile)| {
+        file.persist(&path).map_err(|error| failed(&path)(error.error))?;
+        Ok(path)
+    };
+    whole.into_iter().map(appear).collect()
 }
 
 /// A file in the folder's place is told as what it is; the system says only that something exists.
@@ -208,6 +215,7 @@ fn header(name: &str, build: &Facts<'_>, description: &str) -> String {
             pins.width, pins.gap, pins.setup, pins.hold
         ));
     }
+    text.push_str(&build.guard);
     text.push_str("\n`default_nettype none\n");
     text
 }

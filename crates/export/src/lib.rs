@@ -10,6 +10,7 @@
 
 mod core;
 mod expression;
+mod guard;
 mod kernel;
 mod module;
 mod names;

@@ -27,7 +27,7 @@ struct Core {
 const CORES: [Core; 2] = [
     Core {
         name: CORE_NAME,
-        of_machine: |machine, description| six_axis_verilog(&machine.build(), description),
+        of_machine: |machine, description| six_axis_verilog(&machine.build().unwrap(), description),
         write: write_core,
         waivers: CORE_WAIVERS,
         machine: "sim/six-axis.toml",

@@ -1,6 +1,8 @@
 //! The engine under the same host as every core: a segment is seven words and a commit.
 
+mod feed;
 pub mod replay;
+pub mod run;
 
 use carrystep_spec::engine::{COMMIT, EngineInputs, EngineOutputs, Guard, Put};
 use carrystep_spec::{Command, Program, Segment};
@@ -78,6 +80,10 @@ pub struct EngineHost {
     current: Option<Act>,
     events: std::iter::Peekable<std::vec::IntoIter<(u64, Event)>>,
     cycle: u64,
+    /// The host is heard of in every cycle.
+    awake: bool,
+    /// There was a fault in the cycle before.
+    fault: bool,
     /// What is driven beside the program.
     around: EngineInputs,
     estop_low: bool,
@@ -85,7 +91,7 @@ pub struct EngineHost {
 }
 
 impl EngineHost {
-    /// A host with this to do; the drivers are enabled until an event says otherwise.
+    /// A host with this to do, command by command; the drivers are enabled until an event says otherwise.
     pub fn new(guard: &Guard, program: &Program, events: &Events) -> Self {
         let mut acts = Vec::new();
         for command in program {
@@ -96,19 +102,29 @@ impl EngineHost {
                 Command::Clear => acts.push(Act::Clear),
             }
         }
+        Self::doing(guard, acts, events.clone(), false)
+    }
+
+    /// A host that keeps the queues of planned moves full, and is heard of all the time.
+    pub fn feeding(guard: &Guard, program: &Program) -> Self {
+        Self::doing(guard, feed::acts(program), Events::new(), true)
+    }
+
+    fn doing(guard: &Guard, acts: Vec<Act>, events: Events, awake: bool) -> Self {
         let mut acts = acts.into_iter();
         let current = acts.next();
-        let events = events.clone().into_iter().peekable();
+        let events = events.into_iter().peekable();
         let around = EngineInputs { enable: true, ..EngineInputs::default() };
         let limits_low = if guard.limits_low { 0xff } else { 0 };
-        let mut host = Self { acts, current, events, cycle: 0, around, estop_low: guard.estop_low, limits_low };
+        let estop_low = guard.estop_low;
+        let mut host = Self { acts, current, events, cycle: 0, awake, fault: false, around, estop_low, limits_low };
         host.happen();
         host
     }
 
     /// Takes the events of this cycle.
     fn happen(&mut self) {
-        self.around.kick = false;
+        self.around.kick = self.awake;
         while let Some((_, event)) = self.events.next_if(|(cycle, _)| *cycle <= self.cycle) {
             match event {
                 Event::EStop(active) => self.around.estop = active,
@@ -155,6 +171,21 @@ impl EngineHost {
         }
         self.cycle += 1;
         self.happen();
+    }
+
+    /// One cycle of a core under this host: what goes in, and what comes out.
+    pub fn step(&mut self, core: &mut impl EngineCore) -> (EngineInputs, EngineOutputs) {
+        let mut inputs = self.inputs(self.fault);
+        let mut outputs = core.outputs(&inputs);
+        // The host sees this cycle's fault: ask again where it has just changed.
+        if outputs.fault.is_some() != self.fault {
+            self.fault = outputs.fault.is_some();
+            inputs = self.inputs(self.fault);
+            outputs = core.outputs(&inputs);
+        }
+        self.advance(&outputs);
+        core.clock(&inputs);
+        (inputs, outputs)
     }
 
     /// Nothing is left.

@@ -23,12 +23,17 @@ impl<'a> PinFeed<'a> {
 
     /// The outputs in a cycle; a pin's new level begins with the cycle.
     pub fn observe(&mut self, cycle: u64, outputs: &Outputs) {
-        if self.failed.is_some() || (outputs.step == self.step && outputs.dir == self.dir) {
+        self.pins(cycle, outputs.step, outputs.dir);
+    }
+
+    /// The pins in a cycle, bit i is axis i; otherwise as [`PinFeed::observe`].
+    pub fn pins(&mut self, cycle: u64, step: u8, dir: u8) {
+        if self.failed.is_some() || (step == self.step && dir == self.dir) {
             return;
         }
         let ps = self.timebase.clock_to_ps(cycle);
         // DIR first: where both change in one cycle, the new direction is that of the step.
-        for (pin, now, before) in [(Pin::Dir, outputs.dir, self.dir), (Pin::Step, outputs.step, self.step)] {
+        for (pin, now, before) in [(Pin::Dir, dir, self.dir), (Pin::Step, step, self.step)] {
             for axis in (0..self.axes).filter(|axis| (now ^ before) >> axis & 1 == 1) {
                 let change = PinChange { ps, axis, pin, level: now >> axis & 1 == 1 };
                 if let Err(error) = self.sink.change(change) {
@@ -36,7 +41,7 @@ impl<'a> PinFeed<'a> {
                 }
             }
         }
-        (self.step, self.dir) = (outputs.step, outputs.dir);
+        (self.step, self.dir) = (step, dir);
     }
 
     /// The run is over after this many cycles.

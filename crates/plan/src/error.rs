@@ -1,11 +1,15 @@
 //! Why a file cannot be planned.
 
 use carrystep_profile::Refusal;
+use carrystep_spec::TooManyAxes;
 use thiserror::Error;
 
 /// A move that cannot be done as asked, and what to do. `index` counts moves from 0, messages from 1.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PlanError {
+    /// The gateware that plans are made for has fewer axes.
+    #[error(transparent)]
+    Axes(#[from] TooManyAxes),
     /// A limit of an axis forbids it.
     #[error("move {}, axis {axis}: {}", index + 1, refused(refusal, *least_time))]
     Refused {
@@ -88,6 +92,7 @@ impl PlanError {
     /// The move that it is about, from 0: [`carrystep_spec::MoveFile::move_error`] shows its place.
     pub const fn move_index(&self) -> Option<usize> {
         match self {
+            Self::Axes(_) => None,
             Self::Refused { index, .. }
             | Self::NotWholeTicks { index, .. }
             | Self::TooLong { index, .. }

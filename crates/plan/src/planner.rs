@@ -67,7 +67,7 @@ impl<'a> Planner<'a> {
         let exact = |axis: &Axis| ExactLimits::new::<F>(axis, &timebase).ok_or_else(|| broken(0, axis, Broken::Range));
         Ok(Self {
             file,
-            build: file.machine.build(),
+            build: file.machine.build()?,
             limits: file.machine.axes.iter().map(exact).collect::<Result<_, _>>()?,
             pins: vec![Pins::new(&timebase); file.machine.axes.len()],
             ticks: 0,

@@ -9,12 +9,15 @@
 //! ```
 
 use crate::build::Timebase;
+use std::fmt;
 
 mod build;
 mod error;
+mod figures;
 
 pub use build::{EngineBuild, Guard, Limits};
 pub use error::EngineError;
+pub use figures::{Between, GuardFigures};
 
 /// Most axes of an engine.
 pub const MAX_AXES: usize = 8;
@@ -33,6 +36,9 @@ pub const SEGMENT_WORDS: u8 = 7;
 
 /// The word that commits: bit 0 of its data is `last`.
 pub const COMMIT: u8 = 7;
+
+/// Most ticks of a round.
+pub const MAX_ROUND: u32 = 1024;
 
 /// Most of any figure of the guard that is counted in rounds.
 pub const MAX_ROUNDS: u32 = (1 << 12) - 1;
@@ -115,6 +121,21 @@ pub enum Cause {
     Underrun = 6,
     /// The host asked for it.
     Stop = 7,
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::EStop => "e-stop",
+            Self::Overrun => "overrun",
+            Self::Protocol => "segment protocol broken",
+            Self::Watchdog => "watchdog",
+            Self::Overspeed => "overspeed",
+            Self::Limit => "limit",
+            Self::Underrun => "underrun",
+            Self::Stop => "stop",
+        })
+    }
 }
 
 /// All causes, in the order of their numbers.

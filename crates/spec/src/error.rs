@@ -100,7 +100,8 @@ fn line_column(before: &str) -> (usize, usize) {
 
 /// What the parser says in the words of its language, for who writes the file.
 fn in_plain_words(message: &str) -> String {
-    const WORDS: [(&str, &str); 7] = [
+    const WORDS: [(&str, &str); 8] = [
+        ("wanted string or table", "expected a word in quotes"),
         ("expected f64", "expected a number"),
         ("expected u64", "expected a whole number, zero or more"),
         ("expected u32", "expected a whole number, zero or more"),

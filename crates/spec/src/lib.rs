@@ -22,6 +22,6 @@ pub use engine::EngineBuild;
 pub use error::{InputError, Source};
 pub use fault::Faults;
 pub use fixed::StartPhase;
-pub use machine::{Axis, Machine};
+pub use machine::{Axis, Machine, TooManyAxes};
 pub use move_file::{Move, MoveFile, PathKind, ProfileKind};
 pub use segment::{Command, Program, Segment};

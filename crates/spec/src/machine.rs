@@ -5,14 +5,22 @@
 use crate::build::{AXES, Build, MAX_CLOCKS, PinTiming, Timebase, TimebaseError};
 use crate::decimal;
 use crate::driver::drivers;
+use crate::engine::{Guard, MAX_AXES};
 use crate::error::{InputError, Source};
 use crate::fixed::StartPhase;
 use crate::number::{not_negative, positive};
 use bigdecimal::{BigDecimal, Zero};
+use guard::RawGuard;
 use serde::Deserialize;
 use std::ops::Range;
 use std::path::Path;
+use thiserror::Error;
 use toml::Spanned;
+
+mod guard;
+mod stop;
+
+pub(crate) use stop::steps_per_s2;
 
 /// A machine whose every value has been checked.
 #[derive(Debug, Clone)]
@@ -21,9 +29,16 @@ pub struct Machine {
     pub timebase: Timebase,
     /// Where in a step moves start.
     pub phase: StartPhase,
-    /// One to six axes.
+    /// One to eight axes.
     pub axes: Vec<Axis>,
+    /// What stops them, where an engine drives them.
+    pub guard: Guard,
 }
+
+/// A machine that the parallel axes cannot drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("{0} axes: the parallel gateware drives at most {AXES}; an engine may have up to {MAX_AXES}")]
+pub struct TooManyAxes(pub usize);
 
 /// One axis; speeds and accelerations are exact products of the file's numbers.
 #[derive(Debug, Clone)]
@@ -40,6 +55,8 @@ pub struct Axis {
     pub accel_limit: BigDecimal,
     /// Greatest jerk, steps/s^3, where the file gives one.
     pub jerk_limit: Option<BigDecimal>,
+    /// How fast the engine's guard ramps it down, 2^-64 step per tick^2, from 1 to 2^62.
+    pub stop: u64,
     /// What the driver asks of the pins, ns: width, gap, set-up, hold.
     pub pins_ns: [u64; 4],
     /// The same in clocks.
@@ -64,13 +81,19 @@ impl Machine {
         file.machine.check(source)
     }
 
-    /// The build parameters of this machine's gateware.
-    pub fn build(&self) -> Build {
+    /// The build parameters of this machine's parallel gateware.
+    ///
+    /// # Errors
+    /// [`TooManyAxes`]: the machine has more than six.
+    pub fn build(&self) -> Result<Build, TooManyAxes> {
+        if self.axes.len() > AXES {
+            return Err(TooManyAxes(self.axes.len()));
+        }
         let mut pins = [PinTiming::SHORTEST; AXES];
         for (slot, axis) in pins.iter_mut().zip(&self.axes) {
             *slot = axis.pins;
         }
-        Build { timebase: self.timebase, phase: self.phase, pins }
+        Ok(Build { timebase: self.timebase, phase: self.phase, pins })
     }
 
     /// The number of the axis of this name.
@@ -100,6 +123,8 @@ pub(crate) struct RawMachine {
     phases: Option<Spanned<u32>>,
     #[serde(default)]
     phase: StartPhase,
+    #[serde(default)]
+    guard: RawGuard,
     axis: Spanned<Vec<Spanned<RawAxis>>>,
 }
 
@@ -112,6 +137,7 @@ struct RawAxis {
     speed_limit: Spanned<f64>,
     accel_limit: Spanned<f64>,
     jerk_limit: Option<Spanned<f64>>,
+    stop_accel: Option<Spanned<f64>>,
     driver: Option<Spanned<String>>,
     step_ns: Option<Spanned<u64>>,
     gap_ns: Option<Spanned<u64>>,
@@ -120,6 +146,11 @@ struct RawAxis {
 }
 
 impl RawMachine {
+    /// Where the first axis stands that a parallel core has no place for.
+    pub(crate) fn seventh(&self) -> Option<Range<usize>> {
+        self.axis.as_ref().get(AXES).map(Spanned::span)
+    }
+
     pub(crate) fn check(self, source: &Source) -> Result<Machine, InputError> {
         let timebase = self.timebase(source)?;
         let span = self.axis.span();
@@ -128,12 +159,11 @@ impl RawMachine {
             return Err(InputError::at(source, span, "a machine without axes")
                 .help("add a [[machine.axis]] table for each axis"));
         }
-        if raw.len() > AXES {
-            return Err(InputError::at(
-                source,
-                raw[AXES].span(),
-                format!("{} axes: this gateware drives at most {AXES}", raw.len()),
-            ));
+        if raw.len() > MAX_AXES {
+            let message = format!("{} axes: an engine drives at most {MAX_AXES}", raw.len());
+            return Err(
+                InputError::at(source, raw[MAX_AXES].span(), message).help("leave out axes, or build two engines")
+            );
         }
         let mut axes: Vec<Axis> = Vec::with_capacity(raw.len());
         for axis in raw {
@@ -145,7 +175,8 @@ impl RawMachine {
             }
             axes.push(axis);
         }
-        Ok(Machine { timebase, phase: self.phase, axes })
+        let guard = self.guard.check(source, &timebase, axes.iter().map(|axis| axis.stop).collect())?;
+        Ok(Machine { timebase, phase: self.phase, axes, guard })
     }
 
     fn timebase(&self, source: &Source) -> Result<Timebase, InputError> {
@@ -204,7 +235,12 @@ impl RawAxis {
                 .help("the start speed is part of the speed range: at most speed_limit"));
         }
         let (pins_ns, pins) = self.pins(source, timebase)?;
-        let axis = Axis { name, steps_per_unit, start_speed, speed_limit, accel_limit, jerk_limit, pins_ns, pins };
+        let stop = match &self.stop_accel {
+            None => stop::at_the_limit(&accel_limit, timebase),
+            Some(value) => stop::units(source, value, &steps_per_unit, timebase)?,
+        };
+        let axis =
+            Axis { name, steps_per_unit, start_speed, speed_limit, accel_limit, jerk_limit, stop, pins_ns, pins };
         axis.check_speed(source, self.speed_limit.span(), timebase)?;
         axis.check_acceleration(source, self.accel_limit.span(), timebase)?;
         Ok(axis)

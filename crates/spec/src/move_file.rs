@@ -3,6 +3,7 @@
 //! Targets add up as exact decimals; a move is the difference of two targets rounded to steps, so
 //! that rounding never accumulates.
 
+use crate::build::AXES;
 use crate::decimal;
 use crate::error::{InputError, Source};
 use crate::machine::{Machine, RawMachine};
@@ -135,6 +136,8 @@ impl MoveFile {
     /// [`InputError`] with file, line and column.
     pub fn from_source(source: Source) -> Result<Self, InputError> {
         let raw: RawMoveFile = source.parse()?;
+        let machine_file = raw.machine_file.as_ref().map(Spanned::span);
+        let too_many = raw.machine.as_ref().and_then(RawMachine::seventh).or(machine_file);
         let machine = match (raw.machine_file, raw.machine) {
             (Some(file), None) => {
                 let path = source.path.parent().unwrap_or(Path::new("")).join(file.as_ref());
@@ -158,6 +161,10 @@ impl MoveFile {
                     .help("name a machine_file, or describe the [machine] here"));
             }
         };
+        if machine.axes.len() > AXES {
+            let message = format!("{} axes: moves are planned for at most {AXES}", machine.axes.len());
+            return Err(InputError::at(&source, too_many.unwrap_or(0..0), message));
+        }
         if raw.moves.is_empty() {
             return Err(InputError::at(&source, 0..0, "no moves").help("add a [[move]] table"));
         }

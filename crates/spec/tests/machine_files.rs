@@ -67,7 +67,7 @@ fn a_build_has_six_axes_whatever_the_machine_has() {
     let machine = machine(&two);
     assert_eq!((machine.axis_index("y"), machine.axis_index("q")), (Some(1), None));
     assert_eq!(machine.axis_names(), "x, y");
-    let build = machine.build();
+    let build = machine.build().unwrap();
     assert_eq!(build.pins[0].width, 48);
     assert_eq!(build.pins[1].width, 5);
     assert_eq!(build.pins[2..], [PinTiming::SHORTEST; AXES - 2]);

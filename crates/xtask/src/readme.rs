@@ -15,9 +15,8 @@ const GRAB: &str =
 
 /// Writes `hdl-out/` anew.
 pub fn generate() -> Done {
-    shell::run("cargo", &["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core"])?;
-    let engine = ["run", "--quiet", "--release", "-p", "carrystep-export", "--example", "engine", "--"];
-    shell::run("cargo", &[engine.as_slice(), &["sim/engine.toml", "hdl-out/core"]].concat())
+    let write = ["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core", "--core"];
+    ["parallel", "engine"].iter().try_for_each(|core| shell::run("cargo", &[write.as_slice(), &[core]].concat()))
 }
 
 /// Fails where the README or the committed plot is not what the demo gives now.

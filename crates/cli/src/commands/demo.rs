@@ -1,6 +1,6 @@
 //! `carrystep demo`: the main job on the shipped machine, into one folder.
 
-use crate::arguments::Demo;
+use crate::arguments::{Core, Demo};
 use crate::failure::{Failure, refused};
 use crate::job::{self, Done};
 use crate::output::{self, write_file};
@@ -35,7 +35,7 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
         csv: Some(out("demo.csv")),
         plot: Some(out("demo.svg")),
     };
-    let mut done = job::run(&file, &plan, arguments.level, &wanted)?;
+    let mut done = job::run(&file, &plan, Core::Parallel, arguments.level, &wanted)?;
     done.files.splice(0..0, verilog);
     print(&done, arguments.json, &arguments.out)?;
     done.verdict()

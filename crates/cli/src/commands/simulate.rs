@@ -16,7 +16,8 @@ pub fn run(arguments: &Simulate) -> Result<(), Failure> {
         csv: arguments.csv.clone(),
         plot: arguments.plot.clone(),
     };
-    let done = job::run(&file, &plan, arguments.level, &wanted)?;
+    let level = arguments.level.unwrap_or(arguments.core.fastest());
+    let done = job::run(&file, &plan, arguments.core, level, &wanted)?;
     if arguments.json {
         output::print_json(&done)?;
     } else {

@@ -1,6 +1,6 @@
 //! `carrystep sweep`: many machines and moves over all cores, or the reports of many shards as one.
 
-use crate::arguments::Sweep;
+use crate::arguments::{Core, Sweep};
 use crate::failure::Failure;
 use crate::wanted::Wanted;
 use crate::{job, output};
@@ -47,7 +47,7 @@ fn judge(case: &Case) -> Verdict {
         Err(error @ PlanError::Broken { .. }) => return Verdict::Failed(error.to_string()),
         Err(error) => return Verdict::Refused(error.to_string()),
     };
-    match job::run(file, &plan, Level::Fast, &Wanted::default()) {
+    match job::run(file, &plan, Core::Parallel, Level::Fast, &Wanted::default()) {
         Ok(done) if done.passed => Verdict::Passed(figures(&done)),
         Ok(done) => {
             let first = done.check.failures().next();

@@ -1,18 +1,25 @@
 //! `carrystep verilog`: the gateware of a machine as Verilog.
 
-use crate::arguments::Verilog;
+use crate::arguments::{Core, Verilog};
 use crate::commands::demo;
 use crate::failure::Failure;
 use crate::output;
-use carrystep_spec::Machine;
+use carrystep_export::{CORE_NAME, ENGINE_NAME, ExportError};
+use carrystep_spec::engine::GuardFigures;
+use carrystep_spec::{Machine, Source};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+const ENGINE_MACHINE: &str = include_str!("../../../../sim/engine.toml");
 
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Written {
     passed: bool,
     top: &'static str,
+    /// What stops the axes, as counted; the parallel core has no guard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    guard: Option<GuardFigures>,
     files: Vec<PathBuf>,
 }
 
@@ -20,14 +27,43 @@ struct Written {
 pub fn run(arguments: &Verilog) -> Result<(), Failure> {
     let (machine, name) = match &arguments.machine {
         Some(path) => (Machine::load(path)?, path.display().to_string()),
-        None => (demo::machine()?, "sim/six-axis.toml".to_owned()),
+        None => shipped(arguments.core)?,
     };
-    let files = carrystep_export::write_core(&arguments.out, &machine.build(), &name)
-        .map_err(|error| Failure::input(error.to_string()))?;
-    let written = Written { passed: true, top: carrystep_export::CORE_NAME, files };
+    let written = write(arguments.core, &arguments.out, &machine, &name)?;
     if arguments.json {
         return output::print_json(&written);
     }
     let lines: Vec<String> = written.files.iter().map(|file| format!("wrote {}\n", file.display())).collect();
     output::print(&lines.concat())
+}
+
+/// The machine that `hdl-out/core` is made from.
+fn shipped(core: Core) -> Result<(Machine, String), Failure> {
+    match core {
+        Core::Parallel => Ok((demo::machine()?, "sim/six-axis.toml".to_owned())),
+        Core::Engine => {
+            let path = "sim/engine.toml";
+            let source = Source { path: path.into(), text: ENGINE_MACHINE.into() };
+            Ok((Machine::from_source(&source)?, path.to_owned()))
+        }
+    }
+}
+
+fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Written, Failure> {
+    let refused = |error: ExportError| match error {
+        ExportError::Io { .. } => Failure::input(error.to_string()),
+        _ => Failure::input(format!("{name}: {error}")),
+    };
+    match core {
+        Core::Parallel => {
+            let build = machine.build().map_err(|error| Failure::input(format!("{name}: {error}")))?;
+            let files = carrystep_export::write_core(out, &build, name).map_err(refused)?;
+            Ok(Written { passed: true, top: CORE_NAME, guard: None, files })
+        }
+        Core::Engine => {
+            let build = machine.engine();
+            let files = carrystep_export::write_engine(out, &build, name).map_err(refused)?;
+            Ok(Written { passed: true, top: ENGINE_NAME, guard: Some(build.guard_figures()), files })
+        }
+    }
 }

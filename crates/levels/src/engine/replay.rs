@@ -3,7 +3,7 @@
 //! The host runs once, against the model. Its every cycle is then played to the Verilog as it was: the
 //! outputs must be those of the model in each clock, and what the engine keeps at the end too.
 
-use crate::engine::{EngineCore, EngineHost, Events};
+use crate::engine::{EngineHost, Events};
 use crate::tool::{self, ICARUS, VERILATOR};
 use crate::{Level, LevelError};
 use carrystep_model::Engine;
@@ -38,24 +38,19 @@ impl Recording {
     /// Runs a program, and what happens around it, on the model until it is over and all is quiet, or for `max_clocks`; whichever comes first,
     /// then so many ticks of rest that all is counted.
     pub fn new(build: &EngineBuild, program: &Program, events: &Events, max_clocks: u64) -> Self {
+        Self::of(build, EngineHost::new(&build.guard, program, events), max_clocks)
+    }
+
+    /// The same of any host.
+    pub(super) fn of(build: &EngineBuild, mut host: EngineHost, max_clocks: u64) -> Self {
         let mut model = Engine::new(build);
-        let mut host = EngineHost::new(&build.guard, program, events);
         let mut recording = Self { stimuli: Vec::new(), outputs: Vec::new(), clocks: 0, kept: Kept::default() };
-        let settle = 12 * u64::from(build.timebase.clocks_per_tick());
-        let mut fault = false;
+        let settle = settle(build);
         let mut quiet = 0;
         while quiet < settle && recording.clocks < max_clocks {
-            let mut inputs = host.inputs(fault);
-            let mut outputs = EngineCore::outputs(&mut model, &inputs);
-            if outputs.fault.is_some() != fault {
-                fault = outputs.fault.is_some();
-                inputs = host.inputs(fault);
-                outputs = EngineCore::outputs(&mut model, &inputs);
-            }
+            let (inputs, outputs) = host.step(&mut model);
             recording.add(inputs, outputs);
-            host.advance(&outputs);
             quiet = if host.is_done() && (outputs.idle || outputs.halted) { quiet + 1 } else { 0 };
-            EngineCore::clock(&mut model, &inputs);
         }
         let kept = |axis| {
             let (p, shaper) = (model.fraction(axis), model.shaper(axis));
@@ -98,6 +93,11 @@ impl Recording {
         }
         text
     }
+}
+
+/// Cycles of rest after which all is counted.
+pub(super) fn settle(build: &EngineBuild) -> u64 {
+    12 * u64::from(build.timebase.clocks_per_tick())
 }
 
 /// The first difference between a recording and its replay on the Verilog of an engine.

@@ -1,10 +1,10 @@
 //! The build parameters of an engine: axes, pins, and what its guard watches.
 
-use super::{EngineError, MAX_AXES, MAX_LOOKS, MAX_ROUNDS, check_schedule};
+use super::{EngineError, MAX_AXES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, check_schedule};
 use crate::build::{Build, PinTiming, Timebase};
 use crate::fixed::StartPhase;
 use crate::machine::Machine;
-use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
+use serde::{Deserialize, Serialize};
 
 /// All parameters of an engine.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -43,11 +43,13 @@ pub struct Guard {
 }
 
 /// How the limit switches are wired.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Limits {
     /// There are none.
     None,
     /// Two for each axis: each stops the way that it ends.
+    #[default]
     Pair,
     /// One for each axis, for both ends.
     Each,
@@ -73,33 +75,10 @@ impl Guard {
 }
 
 impl Machine {
-    /// The engine of this machine. Its guard: ramps at the acceleration limit, a pair of limit switches an axis,
-    /// looked at every 64 ticks and believed after 8 looks, 100 ms for the host, 1 ms for the drivers.
+    /// The engine of this machine, with as many axes.
     pub fn engine(&self) -> EngineBuild {
-        let round = 64;
-        let round_ns = u64::from(round) * self.timebase.tick_ns();
-        let rounds = |ns: u64| ns.div_ceil(round_ns).saturating_add(1).min(MAX_ROUNDS.into()) as u32;
-        let mut stop: Vec<u64> = self.axes.iter().map(|axis| self.stop_units(&axis.accel_limit)).collect();
-        let Build { timebase, phase, pins } = self.build();
-        // Axes that the machine does not have never move.
-        stop.resize(pins.len(), 1);
-        let guard = Guard {
-            round,
-            debounce: 8,
-            watchdog: rounds(100_000_000),
-            enable: rounds(1_000_000),
-            limits: Limits::Pair,
-            ..Guard::minimal(stop)
-        };
-        EngineBuild { timebase, phase, pins: pins.to_vec(), guard }
-    }
-
-    /// steps/s^2 in units of 2^-64 step per tick^2, rounded toward zero, within what an engine takes.
-    fn stop_units(&self, steps: &BigDecimal) -> u64 {
-        let square_ns = BigDecimal::from(self.timebase.tick_ns() * self.timebase.tick_ns());
-        let units = (steps * square_ns * BigDecimal::from(1_u128 << 64)).with_scale_round(18, RoundingMode::Down);
-        let whole = (units / BigDecimal::from(1_000_000_000_000_000_000_u64)).with_scale_round(0, RoundingMode::Down);
-        whole.to_u64().unwrap_or(u64::MAX).clamp(1, 1 << 62)
+        let pins = self.axes.iter().map(|axis| axis.pins).collect();
+        EngineBuild { timebase: self.timebase, phase: self.phase, pins, guard: self.guard.clone() }
     }
 }
 
@@ -126,7 +105,7 @@ impl EngineBuild {
             return Err(EngineError::Axes(axes));
         }
         check_schedule(axes, &self.timebase)?;
-        if !(2..=1024).contains(&guard.round) || !guard.round.is_power_of_two() {
+        if !(2..=MAX_ROUND).contains(&guard.round) || !guard.round.is_power_of_two() {
             return Err(EngineError::Round(guard.round));
         }
         for (name, rounds) in [("watchdog", guard.watchdog), ("enable", guard.enable)] {

@@ -1,6 +1,6 @@
 //! Why there can be no engine with some parameters: each error names them, and what would do.
 
-use super::{MAX_AXES, MAX_LOOKS, MAX_ROUNDS, TURN};
+use super::{MAX_AXES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, TURN};
 use thiserror::Error;
 
 /// Parameters that make no engine.
@@ -29,7 +29,7 @@ pub enum EngineError {
         least_hz: u64,
     },
     /// A round is not a power of two.
-    #[error("a round of {0} ticks: a power of two from 2 to 1024 is needed")]
+    #[error("a round of {0} ticks: a power of two from 2 to {MAX_ROUND} is needed")]
     Round(u32),
     /// A figure of the guard that its counter cannot hold.
     #[error("{name} of {rounds} rounds: at most {MAX_ROUNDS} can be counted; a longer round would do")]

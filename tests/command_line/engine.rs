@@ -1,0 +1,199 @@
+//! The engine from the user's side: its Verilog, its refusals, and moves run on it.
+
+use crate::command::{Folder, edit};
+use serde_json::Value;
+
+/// One axis whose tick has clocks for six. No line of it is twice there.
+const MACHINE: &str = r#"[machine]
+clock_hz = 80_000_000
+tick_ns = 1000
+phases = 16
+
+[machine.guard]
+watchdog_ms = 50
+enable_ms = 0.1
+debounce_us = 100
+estop = "low"
+limits = "each"
+limit_level = "low"
+limit_stop = "freeze"
+
+[[machine.axis]]
+name = "x"
+steps_per_unit = 5
+start_speed = 200
+speed_limit = 1000
+accel_limit = 5000
+stop_accel = 20_000
+driver = "a4988"
+"#;
+
+const MOVES: &str = r#"
+[[move]]
+profile = "ranade"
+to = { x = 2 }
+
+[[move]]
+profile = "trapezoid"
+time = 0.05
+to = { x = -1.3 }
+"#;
+
+const WRITE: &str = "verilog --machine m.toml --core engine --out out";
+
+fn with_machine(text: impl AsRef<[u8]>) -> Folder {
+    let folder = Folder::new();
+    folder.write("m.toml", text);
+    folder
+}
+
+#[test]
+fn the_verilog_says_what_its_guard_does() {
+    let folder = with_machine(MACHINE);
+    let ran = folder.run(WRITE);
+    assert_eq!((ran.status, ran.stderr.as_str()), (0, ""));
+    assert_eq!(ran.stdout, "wrote out/carrystep_engine.v\nwrote out/carrystep_engine.vlt\n");
+    assert_eq!(folder.files(), ["m.toml", "out", "out/carrystep_engine.v", "out/carrystep_engine.vlt"]);
+    let text = std::fs::read_to_string(folder.path("out/carrystep_engine.v")).unwrap();
+    for line in [
+        "// Made from    m.toml",
+        "// Guard        counts in rounds of 16 ticks, 16 us",
+        "//   watchdog   50 to 50.017 ms without a sign of the host: ramp",
+        "//   enable     0.112 to 0.129 ms from ENABLE to the first start",
+        "//   e-stop     active low: freeze",
+        "//   limits     one an axis, active low, believed after 112 to 129 us: freeze",
+        "//   axis 0     ramps by 100000 steps/s^2",
+    ] {
+        assert!(text.lines().any(|found| found == line), "no line {line} in\n{}", &text[..2000]);
+    }
+    let none = MACHINE.replace("watchdog_ms = 50", "watchdog_ms = 0").replace("enable_ms = 0.1", "enable_ms = 0");
+    let folder = with_machine(none.replace("\"each\"", "\"none\""));
+    assert_eq!(folder.run(WRITE).status, 0);
+    let text = std::fs::read_to_string(folder.path("out/carrystep_engine.v")).unwrap();
+    for line in
+        ["//   watchdog   none", "//   enable     no time from ENABLE to the first start", "//   limits     none"]
+    {
+        assert!(text.lines().any(|found| found == line), "{line}");
+    }
+}
+
+#[test]
+fn the_document_has_the_guard_as_counted() {
+    let ran = with_machine(MACHINE).run(&format!("{WRITE} --json"));
+    let document: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let names = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>().join(" ");
+    assert_eq!(names(&document), "files guard passed top");
+    assert_eq!(
+        names(&document["guard"]),
+        "debounce_us enable_ms estop limit_level limit_stop limits round_us stop_accel_steps_per_s2 watchdog_ms"
+    );
+    assert_eq!(document["top"], "carrystep_engine");
+    assert_eq!(document["guard"]["watchdog_ms"], serde_json::json!({ "least": 50.0, "most": 50.017 }));
+    assert_eq!(document["guard"]["limits"], "each");
+}
+
+#[test]
+fn what_cannot_be_built_is_refused_and_nothing_is_there() {
+    let rows = [
+        ("phases = 16", "phases = ^5", "5 phases: a tick has 1, 4 or 16 phases"),
+        ("clock_hz = 80_000_000", "clock_hz = ^84_000_000", ""),
+        ("speed_limit = 1000", "speed_limit = ^97_000", "over what the driver's width and gap allow"),
+        ("driver = \"a4988\"", "driver = \"a4988\"\nstep_ns = ^9_000_000", "step_ns = 9000000 ns is 720000 clocks"),
+        ("watchdog_ms = 50", "watchdog_ms = ^5000", "at most 4192.256 can be counted"),
+        ("enable_ms = 0.1", "enable_ms = ^-0.1", "must be zero or more"),
+        ("debounce_us = 100", "debounce_us = ^nan", "not a usable number"),
+        ("estop = \"low\"", "estop = ^\"none\"", "unknown variant `none`"),
+        ("limits = \"each\"", "limits = ^3", "expected a word in quotes"),
+        ("limit_stop = \"freeze\"", "^limits_stop = \"freeze\"", "unknown field `limits_stop`"),
+        ("stop_accel = 20_000", "stop_accel = ^0", "stop_accel = 0: must be over zero"),
+        ("stop_accel = 20_000", "stop_accel = ^1e20", "not from 2^-64 to 1/4 step per tick^2"),
+    ];
+    for (old, new, says) in rows {
+        let (text, place) = edit(MACHINE, old, new);
+        let folder = with_machine(text);
+        let says = if says.is_empty() { "84 clocks per tick do not divide into 16 equal phases" } else { says };
+        let ran = folder.run(WRITE);
+        ran.refuses(says);
+        // Where clock, tick and phases do not go together, all of them are wrong.
+        let place = if says.contains("do not divide") { (4, 10) } else { place };
+        ran.refuses_at("m.toml", place, says);
+        assert_eq!(folder.files(), ["m.toml"]);
+    }
+}
+
+#[test]
+fn a_schedule_that_does_not_fit_is_refused_with_the_arithmetic() {
+    let axis = MACHINE.split_once("[[machine.axis]]").unwrap().1;
+    let six: String =
+        (1..6).map(|i| format!("[[machine.axis]]{}", axis.replace("\"x\"", &format!("\"x{i}\"")))).collect();
+    let text = format!("{MACHINE}{six}").replace("80_000_000", "48_000_000");
+    let folder = with_machine(&text);
+    folder.run(WRITE).refuses(
+        "m.toml: 6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz has \
+         48: a clock of 80000000 Hz, a longer tick or fewer axes would do",
+    );
+    folder.write("move.toml", format!("{text}{MOVES}"));
+    let simulate = "simulate move.toml --core engine --vcd a.vcd --csv a.csv";
+    folder.run(simulate).refuses("move.toml: 6 axes need 13 clocks each");
+    assert_eq!(folder.files(), ["m.toml", "move.toml"]);
+    assert_eq!(folder.run("verilog --machine m.toml --core parallel --out out").status, 0);
+}
+
+#[test]
+fn nine_axes_are_too_many_for_any_core_and_seven_for_the_parallel_one() {
+    let (head, axis) = MACHINE.split_once("[[machine.axis]]").unwrap();
+    let axes = |count: usize| {
+        let axis = |i| format!("[[machine.axis]]{}", axis.replace("\"x\"", &format!("\"x{i}\"")));
+        format!("{head}{}", (0..count).map(axis).collect::<String>())
+    };
+    let folder = with_machine(axes(9));
+    for core in ["engine", "parallel"] {
+        let ran = folder.run(&format!("verilog --machine m.toml --core {core} --out out"));
+        ran.refuses_at("m.toml", (15 + 8 * 8, 1), "9 axes: an engine drives at most 8");
+    }
+    folder.write("m.toml", axes(7));
+    folder.run("verilog --machine m.toml --out out").refuses("m.toml: 7 axes: the parallel gateware drives at most 6");
+    folder.write("move.toml", format!("machine_file = \"m.toml\"\n{}", MOVES.replace("x =", "x0 =")));
+    folder.run("plan move.toml").refuses_at("move.toml", (1, 16), "7 axes: moves are planned for at most 6");
+    assert_eq!(folder.files(), ["m.toml", "move.toml"]);
+    folder.run("verilog --core serial --out out").refuses("invalid value 'serial' for '--core <CORE>'");
+}
+
+/// The report of a run, and its waveform.
+fn run(folder: &Folder, more: &str) -> (Value, String) {
+    let ran = folder.run(&format!("simulate move.toml --vcd a.vcd --json {more}"));
+    assert_eq!((ran.status, ran.stderr.as_str()), (0, ""), "{more}: {}", ran.stdout);
+    (serde_json::from_str(&ran.stdout).unwrap(), std::fs::read_to_string(folder.path("a.vcd")).unwrap())
+}
+
+#[test]
+fn moves_on_the_engine_have_the_pulses_of_the_parallel_core() {
+    let folder = Folder::with_move(format!("{MACHINE}{MOVES}"));
+    let (parallel, _) = run(&folder, "--core parallel");
+    let (model, waves) = run(&folder, "--core engine");
+    let (rust_hdl, same_waves) = run(&folder, "--core engine --level rust-hdl");
+    assert_eq!(waves, same_waves);
+    assert_eq!((&parallel["core"], &parallel["level"]), (&"parallel".into(), &"fast".into()));
+    assert_eq!((&model["core"], &model["level"]), (&"engine".into(), &"model".into()));
+    for engine in [&model, &rust_hdl] {
+        assert_eq!((&engine["faults"], &engine["positions"]), (&parallel["faults"], &parallel["positions"]));
+        assert_eq!(engine["clocks"], model["clocks"]);
+        // The engine starts later; from there on all is the same.
+        assert!(engine["check"]["origin_ps"].as_u64() > parallel["check"]["origin_ps"].as_u64());
+        assert_eq!(engine["check"]["axes"], parallel["check"]["axes"]);
+    }
+    let checked = folder.run("check a.vcd move.toml");
+    assert_eq!(checked.status, 0, "{}", checked.stdout);
+}
+
+#[test]
+fn the_engine_has_no_fast_model_and_tools_may_be_missing() {
+    let folder = Folder::with_move(format!("{MACHINE}{MOVES}"));
+    folder.run("simulate move.toml --core engine --level fast --vcd a.vcd").refuses("the engine has no level fast");
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_carrystep"));
+    command.args("simulate move.toml --core engine --level verilator --vcd a.vcd".split(' ')).env("PATH", "");
+    let ran = folder.output(&mut command);
+    assert_eq!((ran.status, ran.stdout.as_str()), (3, ""));
+    assert!(ran.stderr.contains("sudo apt-get install verilator"), "{}", ran.stderr);
+    assert_eq!(folder.files(), ["move.toml"]);
+}
