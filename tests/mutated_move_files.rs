@@ -9,10 +9,19 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use std::time::{Duration, Instant};
 
-/// The shipped machine and the demo's moves, in one file without comments.
+/// Every key of the guard.
+const GUARD: &str = "[machine.guard]\nwatchdog_ms = 100\nenable_ms = 1\ndebounce_us = 500\nestop = \"low\"\nlimits = \"each\"\n\
+                     limit_level = \"low\"\nlimit_stop = \"freeze\"\n";
+
+/// The shipped machine with a guard, and the demo's moves, in one file without comments.
 fn good() -> String {
     let moves = include_str!("../sim/demo.toml").replace("machine_file = \"six-axis.toml\"", "");
-    let lines = include_str!("../sim/six-axis.toml").lines().chain(moves.lines());
+    let machine = include_str!("../sim/six-axis.toml").replacen(
+        "[[machine.axis]]",
+        &format!("{GUARD}[[machine.axis]]\nstop_accel = 5e3"),
+        1,
+    );
+    let lines = machine.lines().chain(moves.lines());
     lines.map(|line| line.split('#').next().unwrap_or("")).collect::<Vec<_>>().join("\n")
 }
 

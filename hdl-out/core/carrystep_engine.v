@@ -15,6 +15,17 @@
 //   axis 3     W 120, S 120, D 240, H 240
 //   axis 4     W 5, S 5, D 1, H 1
 //   axis 5     W 144, S 144, D 72, H 72
+// Guard        counts in rounds of 16 ticks, 32 us
+//   watchdog   100 to 100.034 ms without a sign of the host: ramp
+//   enable     1.024 to 1.058 ms from ENABLE to the first start
+//   e-stop     active high: freeze
+//   limits     two an axis, active high, believed after 512 to 546 us: ramp
+//   axis 0     ramps by 800000 steps/s^2
+//   axis 1     ramps by 640000 steps/s^2
+//   axis 2     ramps by 600000 steps/s^2
+//   axis 3     ramps by 355556 steps/s^2
+//   axis 4     ramps by 888889 steps/s^2
+//   axis 5     ramps by 150000 steps/s^2
 
 `default_nettype none
 
@@ -992,7 +1003,7 @@ module carrystep_limits (
     localparam PAIR = 1'b1;
     localparam ONE_FOR_ALL = 1'b0;
     localparam LOW = 1'b0;
-    localparam [6:0] LAST_LOOK = 7'd7;
+    localparam [6:0] LAST_LOOK = 7'd16;
     localparam [5:0] FIRST_LANE = 6'd1;
     localparam [6:0] ONE = 7'd1;
     localparam [6:0] NONE = 7'd0;
@@ -1229,11 +1240,11 @@ module carrystep_watch (
     output wire         tick_1
 );
     localparam ESTOP_LOW = 1'b0;
-    localparam [9:0] ROUND_BITS = 10'd63;
-    localparam [11:0] WATCHDOG = 12'd783;
-    localparam [11:0] SILENCE_BITS = 12'd1023;
-    localparam [11:0] WARM_AT = 12'd9;
-    localparam [11:0] WARM_BITS = 12'd15;
+    localparam [9:0] ROUND_BITS = 10'd15;
+    localparam [11:0] WATCHDOG = 12'd3126;
+    localparam [11:0] SILENCE_BITS = 12'd4095;
+    localparam [11:0] WARM_AT = 12'd33;
+    localparam [11:0] WARM_BITS = 12'd63;
     localparam [9:0] FIRST_TICK = 10'd0;
     localparam [9:0] ONE_TICK = 10'd1;
     localparam [11:0] NO_ROUND = 12'd0;

@@ -39,6 +39,19 @@ time = 0.05
 to = { x = -1.3 }
 "#;
 
+/// Three steps, so that Rust-HDL is soon done.
+const SHORT: &str = r#"
+[[move]]
+profile = "constant"
+time = 0.002
+to = { x = 0.4 }
+
+[[move]]
+profile = "constant"
+time = 0.001
+to = { x = -0.2 }
+"#;
+
 const WRITE: &str = "verilog --machine m.toml --core engine --out out";
 
 fn with_machine(text: impl AsRef<[u8]>) -> Folder {
@@ -168,22 +181,21 @@ fn run(folder: &Folder, more: &str) -> (Value, String) {
 
 #[test]
 fn moves_on_the_engine_have_the_pulses_of_the_parallel_core() {
-    let folder = Folder::with_move(format!("{MACHINE}{MOVES}"));
-    let (parallel, _) = run(&folder, "--core parallel");
-    let (model, waves) = run(&folder, "--core engine");
-    let (rust_hdl, same_waves) = run(&folder, "--core engine --level rust-hdl");
-    assert_eq!(waves, same_waves);
-    assert_eq!((&parallel["core"], &parallel["level"]), (&"parallel".into(), &"fast".into()));
-    assert_eq!((&model["core"], &model["level"]), (&"engine".into(), &"model".into()));
-    for engine in [&model, &rust_hdl] {
+    for (moves, level) in [(MOVES, "model"), (SHORT, "rust-hdl")] {
+        let folder = Folder::with_move(format!("{MACHINE}{moves}"));
+        let (parallel, _) = run(&folder, "--core parallel");
+        let (engine, waves) = run(&folder, "--core engine");
+        assert_eq!((&parallel["core"], &parallel["level"]), (&"parallel".into(), &"fast".into()));
+        assert_eq!((&engine["core"], &engine["level"]), (&"engine".into(), &"model".into()));
+        let (same, same_waves) = run(&folder, &format!("--core engine --level {level}"));
+        assert_eq!((&same["check"], &same["clocks"], &same_waves), (&engine["check"], &engine["clocks"], &waves));
         assert_eq!((&engine["faults"], &engine["positions"]), (&parallel["faults"], &parallel["positions"]));
-        assert_eq!(engine["clocks"], model["clocks"]);
         // The engine starts later; from there on all is the same.
         assert!(engine["check"]["origin_ps"].as_u64() > parallel["check"]["origin_ps"].as_u64());
         assert_eq!(engine["check"]["axes"], parallel["check"]["axes"]);
+        let checked = folder.run("check a.vcd move.toml");
+        assert_eq!(checked.status, 0, "{}", checked.stdout);
     }
-    let checked = folder.run("check a.vcd move.toml");
-    assert_eq!(checked.status, 0, "{}", checked.stdout);
 }
 
 #[test]

@@ -5,7 +5,7 @@ mod table;
 
 use carrystep_levels::Level;
 use carrystep_sweep::Shard;
-use clap::{Args, Parser, ValueEnum};
+use clap::{Args, Parser};
 pub use profile::Profile;
 use std::path::PathBuf;
 pub use table::{Table, TableKind};
@@ -46,7 +46,7 @@ pub enum Subcommand {
 }
 
 /// Which gateware.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Core {
     /// One adder for all axes, with queues and a guard: for boards.
     Engine,
@@ -55,6 +55,9 @@ pub enum Core {
 }
 
 impl Core {
+    /// All cores.
+    const ALL: [Self; 2] = [Self::Engine, Self::Parallel];
+
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
@@ -109,8 +112,8 @@ pub struct Simulate {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
-    /// The gateware.
-    #[arg(long, default_value = "parallel", value_name = "CORE")]
+    /// Which gateware: one adder for all axes, with queues and a guard, or an adder an axis.
+    #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// Where the gateware runs; default: fast, or model for the engine, which has no fast model.
     #[arg(long, value_name = "LEVEL", value_parser = level())]
@@ -164,8 +167,8 @@ pub struct Check {
 /// `carrystep verilog`
 #[derive(Debug, Args)]
 pub struct Verilog {
-    /// The gateware.
-    #[arg(long, default_value = "parallel", value_name = "CORE")]
+    /// Which gateware: one adder for all axes, with queues and a guard, or an adder an axis.
+    #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped machine of the core.
     #[arg(long, value_name = "MACHINE.toml")]
@@ -199,6 +202,12 @@ pub struct Sweep {
     /// One JSON document instead of the table; shards are merged from these.
     #[arg(long)]
     pub json: bool,
+}
+
+fn core() -> impl clap::builder::TypedValueParser<Value = Core> {
+    use clap::builder::{PossibleValuesParser, TypedValueParser};
+    let named = |name: &str| Core::ALL.into_iter().find(|core| core.name() == name).ok_or("no such core");
+    PossibleValuesParser::new(Core::ALL.map(Core::name)).try_map(move |name| named(&name))
 }
 
 fn level() -> impl clap::builder::TypedValueParser<Value = Level> {

@@ -2,14 +2,12 @@
 //!
 //! Raw structures mirror the TOML; [`Machine`] is what is left after every value has been checked.
 
-use crate::build::{AXES, Build, MAX_CLOCKS, PinTiming, Timebase, TimebaseError};
-use crate::decimal;
-use crate::driver::drivers;
+use crate::build::{AXES, Build, PinTiming, Timebase, TimebaseError};
 use crate::engine::{Guard, MAX_AXES};
 use crate::error::{InputError, Source};
 use crate::fixed::StartPhase;
-use crate::number::{not_negative, positive};
-use bigdecimal::{BigDecimal, Zero};
+use axis::RawAxis;
+use bigdecimal::BigDecimal;
 use guard::RawGuard;
 use serde::Deserialize;
 use std::ops::Range;
@@ -17,6 +15,7 @@ use std::path::Path;
 use thiserror::Error;
 use toml::Spanned;
 
+mod axis;
 mod guard;
 mod stop;
 
@@ -128,23 +127,6 @@ pub(crate) struct RawMachine {
     axis: Spanned<Vec<Spanned<RawAxis>>>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a [[machine.axis]] table")]
-struct RawAxis {
-    name: Spanned<String>,
-    steps_per_unit: Spanned<f64>,
-    start_speed: Option<Spanned<f64>>,
-    speed_limit: Spanned<f64>,
-    accel_limit: Spanned<f64>,
-    jerk_limit: Option<Spanned<f64>>,
-    stop_accel: Option<Spanned<f64>>,
-    driver: Option<Spanned<String>>,
-    step_ns: Option<Spanned<u64>>,
-    gap_ns: Option<Spanned<u64>>,
-    setup_ns: Option<Spanned<u64>>,
-    hold_ns: Option<Spanned<u64>>,
-}
-
 impl RawMachine {
     /// Where the first axis stands that a parallel core has no place for.
     pub(crate) fn seventh(&self) -> Option<Range<usize>> {
@@ -202,163 +184,5 @@ impl RawMachine {
                  48 MHz x 1000 ns = 48 clocks = 16 phases x 3",
             )
         })
-    }
-}
-
-impl RawAxis {
-    fn check(self, source: &Source, timebase: &Timebase) -> Result<Axis, InputError> {
-        let name = self.name.as_ref().clone();
-        let fit = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(fit) || name.len() > 32 {
-            return Err(InputError::at(source, self.name.span(), format!("{name:?} cannot name an axis")).help(
-                "a name starts with a letter and has letters, digits and _ only, 32 at most: it becomes a signal name",
-            ));
-        }
-        let steps_per_unit = positive(source, &self.steps_per_unit, "steps_per_unit")?;
-        let in_steps = |value: BigDecimal| value * &steps_per_unit;
-        let start_speed = match &self.start_speed {
-            None => BigDecimal::zero(),
-            Some(value) => in_steps(not_negative(source, value, "start_speed")?),
-        };
-        let speed_limit = in_steps(positive(source, &self.speed_limit, "speed_limit")?);
-        let accel_limit = in_steps(positive(source, &self.accel_limit, "accel_limit")?);
-        not_too_slow(source, self.speed_limit.span(), "speed_limit", &speed_limit, "steps/s")?;
-        not_too_slow(source, self.accel_limit.span(), "accel_limit", &accel_limit, "steps/s^2")?;
-        let jerk_limit = match &self.jerk_limit {
-            None => None,
-            Some(value) => Some(in_steps(positive(source, value, "jerk_limit")?)),
-        };
-        if start_speed > speed_limit
-            && let Some(start) = &self.start_speed
-        {
-            return Err(InputError::at(source, start.span(), "start_speed is over speed_limit")
-                .help("the start speed is part of the speed range: at most speed_limit"));
-        }
-        let (pins_ns, pins) = self.pins(source, timebase)?;
-        let stop = match &self.stop_accel {
-            None => stop::at_the_limit(&accel_limit, timebase),
-            Some(value) => stop::units(source, value, &steps_per_unit, timebase)?,
-        };
-        let axis =
-            Axis { name, steps_per_unit, start_speed, speed_limit, accel_limit, jerk_limit, stop, pins_ns, pins };
-        axis.check_speed(source, self.speed_limit.span(), timebase)?;
-        axis.check_acceleration(source, self.accel_limit.span(), timebase)?;
-        Ok(axis)
-    }
-
-    /// Width, gap, set-up and hold, from the driver's preset and what overrides it.
-    fn pins(&self, source: &Source, timebase: &Timebase) -> Result<([u64; 4], PinTiming), InputError> {
-        let preset = match &self.driver {
-            None => None,
-            Some(name) => Some(drivers().get(name.as_ref().as_str()).ok_or_else(|| {
-                let known: Vec<&str> = drivers().keys().map(String::as_str).collect();
-                InputError::at(source, name.span(), format!("no driver is called '{}'", name.as_ref()))
-                    .help(format!("known: {}; or give step_ns, gap_ns, setup_ns and hold_ns", known.join(", ")))
-            })?),
-        };
-        let mut ns = [0; 4];
-        let mut clocks = [0; 4];
-        let rows = [
-            ("step_ns", &self.step_ns, preset.map(|d| d.step_ns)),
-            ("gap_ns", &self.gap_ns, preset.map(|d| d.gap_ns)),
-            ("setup_ns", &self.setup_ns, preset.map(|d| d.setup_ns)),
-            ("hold_ns", &self.hold_ns, preset.map(|d| d.hold_ns)),
-        ];
-        for (slot, (key, given, default)) in rows.into_iter().enumerate() {
-            let Some(value) = given.as_ref().map(|v| *v.as_ref()).or(default) else {
-                return Err(InputError::at(
-                    source,
-                    self.name.span(),
-                    format!("axis '{}' has no driver and no {key}", self.name.as_ref()),
-                )
-                .help("name a driver, or give step_ns, gap_ns, setup_ns and hold_ns"));
-            };
-            ns[slot] = value;
-            let span = given.as_ref().map_or_else(|| self.name.span(), Spanned::span);
-            let exact = timebase.clocks_for_ns(value);
-            clocks[slot] = u32::try_from(exact).ok().filter(|&c| c < MAX_CLOCKS).ok_or_else(|| {
-                InputError::at(
-                    source,
-                    span,
-                    format!("{key} = {value} ns is {exact} clocks: the timers count to {}", MAX_CLOCKS - 1),
-                )
-            })?;
-        }
-        Ok((ns, PinTiming { width: clocks[0], gap: clocks[1], setup: clocks[2], hold: clocks[3] }))
-    }
-}
-
-/// Limits under a thousandth of a step ask for plans of months, and are too coarse in units of 2^-64 step per tick.
-fn not_too_slow(
-    source: &Source,
-    span: Range<usize>,
-    key: &str,
-    limit: &BigDecimal,
-    unit: &str,
-) -> Result<(), InputError> {
-    let least = BigDecimal::new(1.into(), 3);
-    if *limit >= least {
-        return Ok(());
-    }
-    let limit = decimal::to_f64(limit);
-    Err(InputError::at(source, span, format!("{key} is {limit} {unit}: under {least} {unit}"))
-        .help("check steps_per_unit and the unit of the limit; a moving axis makes a step in a quarter of an hour"))
-}
-
-impl Axis {
-    /// Under half a step per tick, and a period that the driver's width and gap allow.
-    fn check_speed(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
-        let limit = decimal::to_f64(&self.speed_limit);
-        let per_unit = decimal::to_f64(&self.steps_per_unit);
-        let half = 0.5e9 / timebase.tick_ns() as f64;
-        let doubled = &self.speed_limit * BigDecimal::from(2 * timebase.tick_ns());
-        if doubled >= 1_000_000_000 {
-            return Err(InputError::at(
-                source,
-                span,
-                format!("speed_limit is {limit} steps/s: half a step per tick or more"),
-            )
-            .help(format!(
-                "with ticks of {} ns stay under {half} steps/s, {} units/s",
-                timebase.tick_ns(),
-                half / per_unit
-            )));
-        }
-        let PinTiming { width, gap, .. } = self.pins;
-        let clocks = u64::from(width) + u64::from(gap) + u64::from(timebase.clocks_per_phase());
-        if &self.speed_limit * BigDecimal::from(clocks) > timebase.clock_hz() {
-            let most = timebase.clock_hz() as f64 / clocks as f64;
-            return Err(InputError::at(
-                source,
-                span,
-                format!("speed_limit is {limit} steps/s: over what the driver's width and gap allow"),
-            )
-            .help(format!(
-                "a pulse takes {width} + {gap} clocks and one phase of {}: at most {most:.0} steps/s, {:.6} units/s",
-                timebase.clocks_per_phase(),
-                most / per_unit
-            )));
-        }
-        Ok(())
-    }
-
-    /// Under half a step per tick squared, so that A fits its register.
-    fn check_acceleration(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
-        let tick = BigDecimal::from(timebase.tick_ns());
-        if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {
-            let limit = decimal::to_f64(&self.accel_limit);
-            let half = 0.5e18 / (timebase.tick_ns() as f64).powi(2);
-            return Err(InputError::at(
-                source,
-                span,
-                format!("accel_limit is {limit} steps/s^2: half a step per tick^2 or more"),
-            )
-            .help(format!(
-                "with ticks of {} ns stay under {half} steps/s^2, {} units/s^2",
-                timebase.tick_ns(),
-                half / decimal::to_f64(&self.steps_per_unit)
-            )));
-        }
-        Ok(())
     }
 }
