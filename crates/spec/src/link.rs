@@ -11,35 +11,53 @@ pub mod registers;
 
 pub use build_id::BuildId;
 
-/// Ends a frame, and begins one.
-pub const END: u8 = 0xc0;
-/// Says that the next byte stands for another.
-pub const ESC: u8 = 0xdb;
-/// After [`ESC`]: END.
-pub const ESC_END: u8 = 0xdc;
-/// After [`ESC`]: ESC.
-pub const ESC_ESC: u8 = 0xdd;
+use crate::engine::{CAUSES, Cause};
 
-/// CRC-32 of Ethernet and zlib, reflected: polynomial.
-pub const CRC_POLYNOMIAL: u32 = 0xedb8_8320;
-/// What its register holds, not yet inverted, after a frame and its CRC.
-pub const CRC_RESIDUE: u32 = 0xdebb_20e3;
-/// Bytes of a CRC.
-pub const CRC_BYTES: usize = 4;
+/// A number that both sides must know; generated into the clients' languages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Constant {
+    /// Its name.
+    pub name: &'static str,
+    /// Its type, in Rust's words: `u8`, `u32` or `usize`.
+    pub kind: &'static str,
+    /// What it is.
+    pub value: u64,
+    /// What it means.
+    pub what: &'static str,
+}
 
-/// Set in an address: the frame writes.
-pub const WRITE: u8 = 0x80;
-/// Sequence and address.
-pub const REQUEST_HEAD: usize = 2;
-/// Words of a segment, the commit included.
-pub const SEGMENT_FRAME_WORDS: usize = 8;
-/// The longest request, without END and ESC.
-pub const LONGEST_REQUEST: usize = REQUEST_HEAD + 4 * SEGMENT_FRAME_WORDS + CRC_BYTES;
-/// An answer, without END and ESC.
-pub const ANSWER_BYTES: usize = 15;
+/// Declares each constant once: itself, and its row of the table.
+macro_rules! constants {
+    ($($name:ident: $kind:ident = $value:expr, $what:literal;)*) => {
+        $(#[doc = $what] pub const $name: $kind = $value;)*
 
-/// Frames by which a repeated one may lie behind the next; so many may be on their way.
-pub const WINDOW: u8 = 127;
+        /// The constants above, for the generator.
+        pub const CONSTANTS: &[$crate::link::Constant] = &[$($crate::link::Constant {
+            name: stringify!($name),
+            kind: stringify!($kind),
+            value: $name as u64,
+            what: $what,
+        }),*];
+    };
+}
+pub(crate) use constants;
+
+constants! {
+    END: u8 = 0xc0, "Ends a frame, and begins one.";
+    ESC: u8 = 0xdb, "Says that the next byte stands for another.";
+    ESC_END: u8 = 0xdc, "After ESC: END.";
+    ESC_ESC: u8 = 0xdd, "After ESC: ESC.";
+    CRC_POLYNOMIAL: u32 = 0xedb8_8320, "CRC-32 of Ethernet and zlib, reflected: polynomial.";
+    CRC_RESIDUE: u32 = 0xdebb_20e3, "What its register holds, not yet inverted, after a frame and its CRC.";
+    CRC_BYTES: usize = 4, "Bytes of a CRC.";
+    WRITE: u8 = 0x80, "Set in an address: the frame writes.";
+    REQUEST_HEAD: usize = 2, "Sequence and address.";
+    SEGMENT_FRAME_WORDS: usize = 8, "Words of a segment, the commit included.";
+    LONGEST_REQUEST: usize = REQUEST_HEAD + 4 * SEGMENT_FRAME_WORDS + CRC_BYTES, "The longest request, without END and ESC.";
+    ANSWER_BYTES: usize = 15, "An answer, without END and ESC.";
+    ANSWER_DATA: usize = 7, "First byte of an answer's data.";
+    WINDOW: u8 = 127, "Frames by which a repeated one may lie behind the next; so many may be on their way.";
+}
 
 /// A place in a byte of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,5 +95,13 @@ pub const ANSWER: [Field; 13] = [
     field("homing", 6, 0, 8, "axes that still wait for their limit"),
 ];
 
-/// First byte of an answer's data.
-pub const ANSWER_DATA: usize = 7;
+/// The name of a cause, in documentation and messages, by its number.
+///
+/// ```
+/// use carrystep_spec::{engine::Cause, link::CAUSE_NAMES};
+/// assert_eq!(CAUSE_NAMES[Cause::Limit as usize], "limit");
+/// ```
+pub const CAUSE_NAMES: [&str; CAUSES.len()] =
+    ["e-stop", "overrun", "protocol", "watchdog", "overspeed", "limit", "underrun", "stop"];
+
+const _: () = assert!(Cause::EStop as usize == 0 && Cause::Stop as usize == CAUSES.len() - 1);

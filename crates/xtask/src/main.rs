@@ -38,7 +38,7 @@ enum Chore {
         #[arg(long)]
         json: bool,
     },
-    /// Write `hdl-out/` anew from the Rust-HDL modules.
+    /// Write `hdl-out/` anew from the Rust-HDL modules, and the register map for its clients.
     Generate,
     /// Write the README's table and pictures anew from the demo (the waveform needs gtkwave and xvfb).
     Readme,

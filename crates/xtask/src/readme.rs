@@ -13,11 +13,12 @@ const WAVEFORM: &str = "docs/pictures/demo-waveform.png";
 const GRAB: &str =
     "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File docs/pictures/demo-waveform.png\nexit\n";
 
-/// Writes `hdl-out/` anew.
+/// Writes `hdl-out/` and what is made from the register map anew.
 pub fn generate() -> Done {
     shell::run("cargo", &["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core"])?;
     let engine = ["run", "--quiet", "--release", "-p", "carrystep-export", "--example", "engine", "--"];
-    shell::run("cargo", &[engine.as_slice(), &["sim/engine.toml", "hdl-out/core"]].concat())
+    shell::run("cargo", &[engine.as_slice(), &["sim/engine.toml", "hdl-out/core"]].concat())?;
+    shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-export", "--example", "registers"])
 }
 
 /// Fails where the README or the committed plot is not what the demo gives now.

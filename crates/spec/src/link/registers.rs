@@ -6,6 +6,8 @@
 //! 0x40 .. 0x7f   eight words for each axis: 0x40 + 8 axis + word
 //! ```
 
+use crate::engine::{MAX_AXES, QUEUE};
+
 /// Who may do what with a register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
@@ -31,11 +33,6 @@ pub struct Register {
     /// What it holds, with its unit.
     pub what: &'static str,
 }
-
-/// First address of the axes.
-pub const AXES_AT: u8 = 0x40;
-/// Addresses of each axis.
-pub const PER_AXIS: u8 = 8;
 
 /// Declares each register once: a constant with its address, and its row of the table.
 macro_rules! registers {
@@ -75,15 +72,16 @@ registers! {
     SEGMENT      = 0x40 WriteSegment "ticks - 1, V, A, J (low half first, 2^-64 step per tick^1, 2, 3), then 1 where it is the last of its move";
 }
 
-/// `"CSTP"`.
-pub const IDENTITY_VALUE: u32 = u32::from_le_bytes(*b"CSTP");
-/// The version of the protocol that this map belongs to.
-pub const PROTOCOL_VERSION: u32 = 1;
-
-/// In [`CONTROL`]: power the drivers.
-pub const CONTROL_ENABLE: u32 = 1 << 0;
-/// In [`CONTROL`]: stop all axes.
-pub const CONTROL_STOP: u32 = 1 << 1;
+super::constants! {
+    IDENTITY_VALUE: u32 = u32::from_le_bytes(*b"CSTP"), "What IDENTITY holds.";
+    PROTOCOL_VERSION: u32 = 1, "The version of the protocol that this map belongs to.";
+    CONTROL_ENABLE: u32 = 1 << 0, "In CONTROL: power the drivers.";
+    CONTROL_STOP: u32 = 1 << 1, "In CONTROL: stop all axes.";
+    AXES_AT: u8 = 0x40, "First address of the axes.";
+    PER_AXIS: u8 = 8, "Addresses of each axis.";
+    MOST_AXES: u8 = MAX_AXES as u8, "Most axes of a build.";
+    QUEUE_SEGMENTS: u8 = QUEUE as u8, "Segments that can wait for an axis, beside the one that runs.";
+}
 
 /// The address of an axis' register.
 ///
@@ -98,7 +96,6 @@ pub const fn of_axis(register: u8, axis: u8) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::MAX_AXES;
 
     #[test]
     fn no_two_registers_share_an_address_for_the_same_access() {
