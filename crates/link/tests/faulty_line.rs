@@ -46,8 +46,8 @@ fn a_clean_line_repeats_nothing_and_keeps_the_queues_full() {
 }
 
 fn faults() -> impl Strategy<Value = Faults> {
-    (0..8000_u32, 0..8000_u32, 0..8000_u32, 0..60_000_u32, 0..200_000_u32)
-        .prop_map(|(flip, drop, double, cut, delay)| Faults { flip, drop, double, cut, delay })
+    (0..8000_u32, 0..8000_u32, 0..8000_u32, 0..60_000_u32, 0..60_000_u32, 0..200_000_u32)
+        .prop_map(|(flip, drop, double, again, cut, delay)| Faults { flip, drop, double, again, cut, delay })
 }
 
 proptest! {

@@ -139,6 +139,16 @@ static void send_all(uint32_t now)
     }
 }
 
+/* The first words of a program behind a loaded one begin a new one. */
+static command *add(void)
+{
+    if (loaded) {
+        count = 0;
+        loaded = false;
+    }
+    return &commands[count < MOST ? count++ : MOST - 1];
+}
+
 static const char *yes(bool done)
 {
     return done ? "yes" : "no";
@@ -164,16 +174,17 @@ static void obey(char *words)
     } else if (strcmp(verb, "write") == 0) {
         sscanf(rest, "%lx %lx", &a[0], &a[1]);
         put(yes(carrystep_write(&session, (uint8_t)a[0], (uint32_t)a[1])));
-    } else if (strcmp(verb, "segment") == 0 && count < MOST) {
-        command *c = &commands[count++];
+    } else if (strcmp(verb, "segment") == 0) {
+        command *c = add();
         unsigned last = 0;
         c->is_start = false;
         sscanf(rest, "%" SCNu8 " %" SCNu32 " %" SCNd64 " %" SCNd64 " %" SCNd64 " %u", &c->axis, &c->segment.ticks,
                &c->segment.v, &c->segment.a, &c->segment.j, &last);
         c->segment.last = last == 1;
-    } else if (strcmp(verb, "start") == 0 && count < MOST) {
-        commands[count].is_start = true;
-        commands[count++].axis = (uint8_t)strtoul(rest, NULL, 16);
+    } else if (strcmp(verb, "start") == 0) {
+        command *c = add();
+        c->is_start = true;
+        c->axis = (uint8_t)strtoul(rest, NULL, 16);
     } else if (strcmp(verb, "load") == 0) {
         carrystep_source source = {take_segment, take_start, NULL};
         memset(next_segment, 0, sizeof next_segment);

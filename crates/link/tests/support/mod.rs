@@ -3,6 +3,7 @@
 
 pub mod c_library;
 pub mod client;
+pub mod conversation;
 pub mod device;
 pub mod random;
 pub mod soak;

@@ -10,6 +10,9 @@ use std::collections::VecDeque;
 /// Ticks of the device in a millisecond.
 pub const TICKS: u32 = 500;
 
+/// Milliseconds without progress after which a talk is called dead.
+const STALLED: u32 = 4000;
+
 /// How a program is run.
 #[derive(Debug, Clone, Copy)]
 pub struct Soak {
@@ -38,7 +41,8 @@ pub struct Outcome {
 pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result<Outcome, String> {
     let Soak { faults, seed, axes, bugs } = soak;
     let first = seed as u8;
-    let mut device = Device { bugs, ..Device::new(axes, first) };
+    let mut device = Device::new(axes, first);
+    device.bugs = bugs;
     let (mut there, mut back) = (Wire::new(faults, seed), Wire::new(faults, !seed));
     client.say("begin 12 2");
     client.say(&format!("adopt {first:02x} {axes}"));
@@ -54,8 +58,13 @@ pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result
     }
     client.say("load");
     let mut sent: VecDeque<Vec<u8>> = VecDeque::new();
-    let budget = 10_000 + commands.len() as u32 * 400;
-    for now in 0..budget {
+    let (mut done, mut since) = (0, 0);
+    for now in 0.. {
+        if device.log.len() > done {
+            (done, since) = (device.log.len(), now);
+        } else if now - since > STALLED {
+            break;
+        }
         let said = client.say(&format!("step {now} {}", hex(&back.receive(now))));
         let parts: Vec<&str> = said.split(" | ").collect();
         let [answers, fed, bytes] = parts.as_slice() else { return Err(format!("{said:?}")) };
@@ -87,7 +96,7 @@ pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result
             return Ok(Outcome { milliseconds: now, frames, damaged, repeated, out_of_turn, harmed, fault });
         }
     }
-    Err(format!("not over after {budget} ms, {} of {} done", device.log.len(), commands.len()))
+    Err(format!("nothing more is done after {since} ms, {done} of {}", commands.len()))
 }
 
 /// An answer that the client took is one that the device gave, and none older than one that it took before.

@@ -3,12 +3,14 @@
 use super::random::Random;
 use std::collections::VecDeque;
 
-/// How often, in a million: each byte, but for `cut` and `delay`, which are for each piece that is sent.
+/// How often, in a million: each byte, but for `again`, `cut` and `delay`, which are for each piece that is sent.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Faults {
     pub flip: u32,
     pub drop: u32,
     pub double: u32,
+    /// The whole piece comes twice.
+    pub again: u32,
     /// The rest of the piece is lost.
     pub cut: u32,
     /// Some milliseconds more.
@@ -17,7 +19,7 @@ pub struct Faults {
 
 impl Faults {
     /// A line that no one would accept: every twentieth frame suffers.
-    pub const BAD: Self = Self { flip: 800, drop: 400, double: 400, cut: 10_000, delay: 20_000 };
+    pub const BAD: Self = Self { flip: 800, drop: 400, double: 400, again: 5000, cut: 10_000, delay: 20_000 };
 }
 
 #[derive(Debug)]
@@ -36,13 +38,15 @@ impl Wire {
     }
 
     pub fn send(&mut self, now: u32, piece: &[u8]) {
-        let Faults { flip, drop, double, cut, delay } = self.faults;
+        let Faults { flip, drop, double, again, cut, delay } = self.faults;
         let late = if self.random.happens(delay) { 1 + self.random.below(25) as u32 } else { 0 };
         self.due = self.due.max(now + late);
         let end =
             if self.random.happens(cut) { self.random.below(piece.len() as u64 + 1) as usize } else { piece.len() };
         self.harmed += u64::from(end < piece.len());
-        for &byte in &piece[..end] {
+        let twice = self.random.happens(again);
+        self.harmed += u64::from(twice);
+        for &byte in [&piece[..end]].repeat(1 + usize::from(twice)).into_iter().flatten() {
             let flipped = self.random.happens(flip);
             let byte = if flipped { byte ^ 1 << self.random.below(8) } else { byte };
             let times = if self.random.happens(drop) { 0 } else { 1 + usize::from(self.random.happens(double)) };
