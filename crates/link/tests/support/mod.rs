@@ -1,6 +1,7 @@
 //! A gateware in miniature, a line with faults, and clients in Rust and in C that are told the same words.
 #![allow(dead_code)]
 
+pub mod bench_line;
 pub mod c_library;
 pub mod client;
 pub mod conversation;
