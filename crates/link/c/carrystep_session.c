@@ -321,7 +321,7 @@ static started start(carrystep_session *session, carrystep_feeder *feeder)
         }
     }
     for (int axis = 0; axis < (int)CARRYSTEP_MOST_AXES; axis++) {
-        feeder->axes[axis].waiting -= feeder->start >> axis & 1u;
+        feeder->axes[axis].waiting -= (uint32_t)(feeder->start >> axis & 1);
     }
     feeder->has_start = false;
     return carrystep_write(session, CARRYSTEP_START, feeder->start) ? STARTED : WRONG;

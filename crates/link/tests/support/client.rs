@@ -17,7 +17,7 @@
 //! ```
 
 use super::{hex, unhex};
-use carrystep_link::{Answer, Body, Command, Facts, Feeder, Program, Refusal, Segment, Session, Timing, slip};
+use carrystep_link::{Answer, Body, Command, Facts, Feeder, Refusal, Segment, Session, Timing, slip};
 
 pub trait Client {
     fn say(&mut self, words: &str) -> String;
@@ -50,13 +50,17 @@ impl carrystep_link::Source for Owned {
 }
 
 impl Owned {
+    /// Not through `Program`, which would refuse what a source may get wrong.
     fn new(commands: &[Command]) -> Self {
-        // Through the crate's own Program: it is what hosts use.
-        let mut program = Program::new(commands, 8).unwrap_or_else(|_| unreachable!("checked by the caller"));
-        use carrystep_link::Source as _;
-        let segments = (0..8).map(|axis| std::iter::from_fn(|| program.segment(axis)).collect()).collect();
-        let starts = std::iter::from_fn(|| program.start()).collect();
-        Self { segments, starts }
+        let own = |axis: u8| {
+            commands.iter().filter_map(move |command| match *command {
+                Command::Segment { axis: other, segment } if other == axis => Some(segment),
+                _ => None,
+            })
+        };
+        let segments = (0..8).map(|axis| own(axis).collect()).collect();
+        let start = |command: &Command| if let Command::Start { mask } = *command { Some(mask) } else { None };
+        Self { segments, starts: commands.iter().filter_map(start).collect() }
     }
 }
 
