@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_export::{
-    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, engine_verilog, register_files, six_axis_verilog, write_core,
-    write_engine,
+    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, engine_verilog, register_files,
+    six_axis_verilog, write_core, write_engine,
 };
 use carrystep_spec::engine::{Guard, Limits};
 use carrystep_spec::ports::{Direction, SIX_AXIS_PORTS};

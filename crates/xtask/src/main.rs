@@ -32,6 +32,8 @@ enum Chore {
     Arrows,
     /// Formatting and lints, without a warning.
     Lint,
+    /// Check that the link's core needs no `std`, on a bare microcontroller.
+    Bare,
     /// Time the fast model beside every other level, and the writers beside Verilator's.
     Bench {
         /// One JSON document instead of the table.
@@ -61,6 +63,7 @@ fn main() -> ExitCode {
         Chore::Lockstep => ladder::lockstep(),
         Chore::Arrows => arrows::check(),
         Chore::Lint => ladder::lint(),
+        Chore::Bare => ladder::bare(),
         Chore::Bench { json } => bench(json),
         Chore::Generate => readme::generate(),
         Chore::Readme => readme::write(),

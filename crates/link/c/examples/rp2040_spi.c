@@ -6,7 +6,7 @@
  *     Pico GP19 (SPI0 TX)  -> MOSI
  *
  * All of it that knows the RP2040 is setup(), exchange() and now(): on another microcontroller write those three.
- * The numbers of a move come from `carrystep plan --json MOVE.toml`. */
+ * The numbers of a move come from a planner on a PC, or from integers as below. */
 #include "carrystep_session.h"
 
 #include "hardware/gpio.h"
@@ -17,7 +17,7 @@
 #define CHIP_SELECT 17u
 #define AXES 6u
 
-/* The build that the move was planned for, as `carrystep verilog` prints it. */
+/* The gateware that the move was planned for: its registers BUILD_HIGH and BUILD_LOW. */
 #ifndef BUILD_ID
 #define BUILD_ID UINT64_C(0x0123456789abcdef)
 #endif

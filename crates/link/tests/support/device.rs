@@ -8,7 +8,7 @@ pub fn crc(bytes: &[u8]) -> u32 {
     for byte in bytes {
         for bit in 0..8 {
             let feedback = (crc ^ u32::from(byte >> bit)) & 1;
-            crc = crc >> 1 ^ feedback * 0xedb8_8320;
+            crc = (crc >> 1) ^ (feedback * 0xedb8_8320);
         }
     }
     !crc
