@@ -3,6 +3,8 @@
  * Generated from crates/spec/src/link by `cargo xtask generate`: change that, not this. */
 #ifndef CARRYSTEP_REGISTERS_H
 #define CARRYSTEP_REGISTERS_H
+
+#include <stdint.h>
 {% for row in constants %}
 /* {{ row.what }} */
 #define CARRYSTEP_{{ row.name }} {{ row.c }}

@@ -4,6 +4,8 @@
 #ifndef CARRYSTEP_REGISTERS_H
 #define CARRYSTEP_REGISTERS_H
 
+#include <stdint.h>
+
 /* Ends a frame, and begins one. */
 #define CARRYSTEP_END 0xc0u
 /* Says that the next byte stands for another. */

@@ -217,9 +217,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// # Errors
     /// [`HostError`].
     pub fn stop(&mut self) -> Result<Status, HostError<L::Error>> {
-        let enable = if self.powered { map::CONTROL_ENABLE } else { 0 };
         self.session.withdraw();
-        self.write(map::CONTROL, enable | map::CONTROL_STOP)?;
+        self.write(map::CONTROL, self.power() | map::CONTROL_STOP)?;
         self.wait("the stop", |answer| answer.fault && answer.halted)?;
         self.look()
     }
@@ -232,8 +231,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let begin = self.clock.milliseconds();
         self.look()?;
         if self.status.answer.fault {
-            let enable = if self.powered { map::CONTROL_ENABLE } else { 0 };
-            self.write(map::CONTROL, enable)?;
+            self.write(map::CONTROL, self.power())?;
             self.wait("the stop", |answer| answer.halted)?;
         }
         while self.status.answer.fault {
@@ -245,6 +243,23 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             }
         }
         Ok(())
+    }
+
+    /// Stops and clears a machine that another host left in the middle of something; one at rest stays as it is.
+    ///
+    /// # Errors
+    /// As [`Self::stop`] and [`Self::clear`].
+    pub fn settle(&mut self) -> Result<(), HostError<L::Error>> {
+        let Answer { idle, fault, .. } = self.look()?.answer;
+        if !idle && !fault {
+            self.stop()?;
+        }
+        self.clear()
+    }
+
+    /// The drivers keep the power that they have, whoever gave it.
+    const fn power(&self) -> u32 {
+        if self.powered || self.status.answer.ready { map::CONTROL_ENABLE } else { 0 }
     }
 
     /// Looks at the machine until it is as wished.

@@ -175,6 +175,40 @@ fn a_restarted_gateware_is_noticed() {
 }
 
 #[test]
+fn what_a_dead_host_has_left_is_not_started() {
+    for faults in [Faults::default(), Faults::BAD] {
+        let (end, mut host) = ready(faults, 15);
+        let commands = moves(15, 300);
+        let mut looks = 0;
+        let die = end.clone();
+        let error = host.stream(Program::new(&commands, 6).unwrap(), |_| {
+            looks += 1;
+            if looks == 12 {
+                die.0.borrow_mut().peer = Peer::Nobody;
+                die.0.borrow_mut().device.freeze_time = true;
+            }
+            Wish::GoOn
+        });
+        assert!(matches!(error, Err(HostError::Silence { .. })), "{error:?}");
+        drop(host);
+        end.0.borrow_mut().peer = Peer::Gateware;
+        let mut host = connect(&end, Some(BUILD)).unwrap();
+        assert!(!host.status().answer.idle && !host.status().answer.fault);
+        let one = one_move(0, 700);
+        let program = || Program::new(&one, 6).unwrap();
+        assert_eq!(host.stream(program(), go_on), Err(HostError::NotIdle));
+        host.settle().unwrap();
+        end.0.borrow_mut().device.freeze_time = false;
+        let before = host.status().positions;
+        assert_eq!(host.stream(program(), go_on), Ok(Ended::Done));
+        let mut after = before;
+        after[0] += 700;
+        assert_eq!(host.status().positions, after);
+        assert!(host.status().answer.ready, "the drivers kept their power");
+    }
+}
+
+#[test]
 fn nobody_answers_any_more() {
     let (end, mut host) = ready(Faults::default(), 11);
     end.0.borrow_mut().peer = Peer::Nobody;

@@ -98,7 +98,7 @@ static bool connect(void)
         return false;
     }
     carrystep_adopt(&session, high.next, AXES);
-    return true;
+    return high.idle; /* otherwise a host before this one has left something in the queues */
 }
 
 /* Axis 0: half a second up to 5000 steps/s, half a second down, at a tick of 2 us: 2500 steps, exactly. */

@@ -35,6 +35,9 @@ pub enum HostError<E> {
     /// The gateware has forgotten that the drivers are powered.
     #[error("the gateware was restarted: power, position and queue are lost; connect again, and home")]
     Restarted,
+    /// A program for a machine that is not at rest.
+    #[error("the machine moves, or another host has left segments in its queues: stop and clear it first")]
+    NotIdle,
     /// The program cannot be sent.
     #[error(transparent)]
     Program(#[from] ProgramError),

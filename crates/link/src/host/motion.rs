@@ -3,7 +3,7 @@
 use super::{Clock, Host, HostError, Status};
 use crate::command::{Program, ProgramError, Segment};
 use crate::feeder::{Feeder, Source};
-use crate::frame::of_axis;
+use crate::frame::{Answer, of_axis};
 use crate::line::Line;
 use crate::registers::{HOME, LATCHED, MOST_AXES, POSITION, QUEUE_SEGMENTS};
 
@@ -52,7 +52,7 @@ impl Source for Jog<'_> {
 }
 
 impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
-    /// Streams a program and waits for its end. `watch` is called after each exchange with the line.
+    /// Streams a program to a machine at rest and waits for its end. `watch` is called after each exchange with the line.
     ///
     /// # Errors
     /// [`HostError::Fault`] where the machine stops by itself: all axes rest by then, and the positions are true. Others.
@@ -61,7 +61,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         source: impl Source,
         mut watch: impl FnMut(&Progress<'_>) -> Wish,
     ) -> Result<Ended, HostError<L::Error>> {
-        self.look()?;
+        let Answer { idle, fault, .. } = self.look()?.answer;
+        if !idle && !fault {
+            return Err(HostError::NotIdle);
+        }
         let mut feeder = Feeder::new(source);
         let mut looked = self.clock.milliseconds();
         loop {

@@ -56,6 +56,8 @@ pub struct Device {
     pub latched: [i32; 8],
     /// The e-stop is pressed: a clear changes nothing.
     pub pressed: bool,
+    /// No tick comes.
+    pub freeze_time: bool,
     pub frames: u64,
     pub damaged: u64,
     pub repeated: u64,
@@ -219,7 +221,7 @@ impl Device {
 
     /// Time passes: starts, segments, ends, dry queues. A segment's V of so many steps a tick moves the position.
     pub fn elapse(&mut self, mut ticks: u32) {
-        while ticks > 0 && self.fault.is_none() {
+        while ticks > 0 && self.fault.is_none() && !self.freeze_time {
             if let Some(mask) = self.armed {
                 let masked = |axis: &usize| mask >> axis & 1 == 1;
                 if (0..8).filter(masked).all(|axis| self.running[axis].is_none() && !self.queues[axis].is_empty()) {
