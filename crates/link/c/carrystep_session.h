@@ -1,5 +1,5 @@
-/* One host's talk with one gateware: writes that are executed once and in order, questions that are asked again, the
- * segments of a program as the queues have room. Bytes and milliseconds come from outside:
+/* One host's talk with one gateware: writes that are executed once and in order, questions that are asked again. Bytes
+ * and milliseconds come from outside:
  *
  *     static carrystep_session link;
  *     static carrystep_feeder program;
@@ -26,29 +26,6 @@ extern "C" {
 #ifndef CARRYSTEP_SLOTS
 #define CARRYSTEP_SLOTS 16
 #endif
-
-/* Where segments come from. Each is asked for once; false means that there are no more. */
-typedef struct {
-    bool (*segment)(void *context, uint8_t axis, carrystep_segment *segment);
-    bool (*start)(void *context, uint8_t *mask);
-    void *context;
-} carrystep_source;
-
-/* A program on its way into the queues; carrystep_load makes one. */
-typedef struct {
-    carrystep_source source;
-    struct {
-        carrystep_segment ahead; /* the next one, where `has` */
-        bool has;
-        bool dry;         /* the source has no more */
-        bool open;        /* in the middle of a move */
-        uint32_t waiting; /* moves that were begun and not started */
-        uint64_t ticks;   /* of all segments that were sent */
-    } axes[CARRYSTEP_MOST_AXES];
-    uint8_t start;
-    bool has_start;
-    bool last_start;
-} carrystep_feeder;
 
 /* All fields belong to the functions below. */
 typedef struct {
@@ -91,12 +68,6 @@ typedef enum {
 } carrystep_event;
 
 typedef enum {
-    CARRYSTEP_FEEDING,   /* there is more */
-    CARRYSTEP_FED,       /* all was handed over */
-    CARRYSTEP_BAD_SOURCE /* a segment of no ticks, or a start without a move: what was queued will run dry, so stop */
-} carrystep_fed;
-
-typedef enum {
     CARRYSTEP_FINE,
     CARRYSTEP_OTHER_DEVICE,   /* it is not carrystep */
     CARRYSTEP_OTHER_PROTOCOL, /* another version */
@@ -119,18 +90,16 @@ bool carrystep_read(carrystep_session *session, uint8_t address);
 /* Writes a register. False: no room, or not adopted yet. */
 bool carrystep_write(carrystep_session *session, uint8_t address, uint32_t word);
 
+/* Puts a segment into the queue of an axis; mind session->room. False: no room on the way, no such axis, no ticks, or not
+ * adopted yet. carrystep_feed does it for whole programs. */
+bool carrystep_put(carrystep_session *session, uint8_t axis, const carrystep_segment *segment);
+
 /* Whether an answer is still to come; whether writes were not seen executed yet. */
 bool carrystep_waiting(const carrystep_session *session);
 bool carrystep_writing(const carrystep_session *session);
 
 /* Takes back the writes that were never sent, so that the next one, a stop, goes out at once. */
 void carrystep_withdraw(carrystep_session *session);
-
-/* A program from its beginning. */
-void carrystep_load(carrystep_feeder *feeder, carrystep_source source);
-
-/* Hands over as much of the program as there is room for. */
-carrystep_fed carrystep_feed(carrystep_session *session, carrystep_feeder *feeder);
 
 /* Puts the next request on `line` (CARRYSTEP_LINE_BYTES): how many bytes, 0 where there is nothing to send now. */
 size_t carrystep_transmit(carrystep_session *session, uint32_t now, uint8_t *line);

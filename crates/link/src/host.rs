@@ -2,61 +2,21 @@
 
 mod error;
 mod motion;
+mod time;
 
 pub use error::HostError;
 pub use motion::{Ended, Progress, Wish};
+#[cfg(feature = "std")]
+pub use time::SystemClock;
+pub use time::{Clock, Patience};
 
 use crate::facts::Facts;
 use crate::frame::{Answer, Body, of_axis};
 use crate::line::Line;
 use crate::registers as map;
 use crate::registers::{LONGEST_REQUEST, MOST_AXES};
-use crate::session::{Session, Timing};
+use crate::session::Session;
 use crate::slip;
-
-/// Where time comes from.
-pub trait Clock {
-    /// Milliseconds since any moment; wraps.
-    fn milliseconds(&mut self) -> u32;
-}
-
-/// The system's clock.
-#[cfg(feature = "std")]
-#[derive(Debug, Clone, Copy)]
-pub struct SystemClock(std::time::Instant);
-
-#[cfg(feature = "std")]
-impl Default for SystemClock {
-    fn default() -> Self {
-        Self(std::time::Instant::now())
-    }
-}
-
-#[cfg(feature = "std")]
-impl Clock for SystemClock {
-    fn milliseconds(&mut self) -> u32 {
-        self.0.elapsed().as_millis() as u32
-    }
-}
-
-/// How a host waits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Patience {
-    /// For single answers.
-    pub timing: Timing,
-    /// Without any answer, until the gateware is given up, ms.
-    pub silence: u32,
-    /// For what takes its time: power, a stop by ramps, a clear; ms.
-    pub change: u32,
-    /// From one look at the machine to the next while there is nothing to send, ms; less than the watchdog's time.
-    pub look: u32,
-}
-
-impl Default for Patience {
-    fn default() -> Self {
-        Self { timing: Timing::default(), silence: 500, change: 5000, look: 20 }
-    }
-}
 
 /// What a machine does, as of the last answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

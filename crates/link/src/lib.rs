@@ -39,10 +39,12 @@ pub use session::{Session, Timing};
 pub use window::OutOfStep;
 
 /// The files of the C library: name and text. They go together into any project.
-pub const C_LIBRARY: [(&str, &str); 5] = [
+pub const C_LIBRARY: [(&str, &str); 7] = [
     ("carrystep_registers.h", include_str!("../c/carrystep_registers.h")),
     ("carrystep_frame.h", include_str!("../c/carrystep_frame.h")),
     ("carrystep_frame.c", include_str!("../c/carrystep_frame.c")),
     ("carrystep_session.h", include_str!("../c/carrystep_session.h")),
     ("carrystep_session.c", include_str!("../c/carrystep_session.c")),
+    ("carrystep_feeder.h", include_str!("../c/carrystep_feeder.h")),
+    ("carrystep_feeder.c", include_str!("../c/carrystep_feeder.c")),
 ];

@@ -1,13 +1,13 @@
 /* An RP2040 (Raspberry Pi Pico) drives the gateware over SPI: connects, powers the drivers, makes one move, stops.
  *
- *     Pico GP16 (SPI0 RX)  <- MISO        CMakeLists.txt: add_executable(move rp2040_spi.c carrystep_frame.c carrystep_session.c)
- *     Pico GP17            -> CS                          target_link_libraries(move pico_stdlib hardware_spi)
- *     Pico GP18 (SPI0 SCK) -> SCK
+ *     Pico GP16 (SPI0 RX)  <- MISO        CMakeLists.txt:
+ *     Pico GP17            -> CS              add_executable(move rp2040_spi.c carrystep_frame.c carrystep_session.c carrystep_feeder.c)
+ *     Pico GP18 (SPI0 SCK) -> SCK             target_link_libraries(move pico_stdlib hardware_spi)
  *     Pico GP19 (SPI0 TX)  -> MOSI
  *
  * All of it that knows the RP2040 is setup(), exchange() and now(): on another microcontroller write those three.
  * The numbers of a move come from a planner on a PC, or from integers as below. */
-#include "carrystep_session.h"
+#include "carrystep_feeder.h"
 
 #include "hardware/gpio.h"
 #include "hardware/spi.h"

@@ -1,5 +1,5 @@
 /* The C client behind the words of tests/support/client.rs: a line in, a line out. */
-#include "carrystep_session.h"
+#include "carrystep_feeder.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -45,7 +45,7 @@ fn build(arguments: &[&str], change: impl Fn(&str, &str) -> String) -> (Folder, 
     let folder = Folder::new(change);
     folder.write("link_bench.c", include_str!("../bench/link_bench.c"));
     let slots = format!("-DCARRYSTEP_SLOTS={SLOTS}");
-    let files = ["link_bench.c", "carrystep_session.c", "carrystep_frame.c", slots.as_str()];
+    let files = ["link_bench.c", "carrystep_feeder.c", "carrystep_session.c", "carrystep_frame.c", slots.as_str()];
     let program = folder.compile(&[&files, arguments].concat()).unwrap_or_else(|words| panic!("{words}"));
     (folder, program)
 }
