@@ -4,7 +4,6 @@ use crate::ExportError;
 use crate::module::module_text;
 use crate::names::split_index;
 use crate::netlist::{self, Module};
-use crate::registers::register_files;
 use carrystep_hdl::{Engine, HdlError, SixAxis};
 use carrystep_spec::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use rust_hdl::prelude::{Block, check_all};
@@ -109,38 +108,22 @@ pub fn write_engine(dir: &Path, build: &EngineBuild, description: &str) -> Resul
     write_files(dir, ENGINE_NAME, &engine_verilog(build, description)?, ENGINE_WAIVERS)
 }
 
-/// Writes every file that is made from the register map to its place under the workspace's `root`; otherwise as
-/// [`write_core`].
-///
-/// # Errors
-/// [`ExportError`] where a file cannot be made or written.
-pub fn write_register_files(root: &Path) -> Result<(), ExportError> {
-    let files = register_files()?;
-    files.iter().try_for_each(|(path, text)| write_file(&root.join(path), text))
-}
-
 fn write_files(dir: &Path, name: &str, verilog: &str, waivers: &str) -> Result<Vec<PathBuf>, ExportError> {
-    [("v", verilog), ("vlt", waivers)]
-        .into_iter()
-        .map(|(extension, text)| {
-            let path = dir.join(name).with_extension(extension);
-            write_file(&path, text)?;
-            Ok(path)
-        })
-        .collect()
-}
-
-/// Whole or not at all; its folder is made where there is none.
-fn write_file(path: &Path, text: &str) -> Result<(), ExportError> {
-    let dir = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(dir).map_err(|source| ExportError::Io { path: dir.to_owned(), source: folder(source) })?;
-    let write = || {
+    let write = |path: &Path, text: &str| {
         let mut file = new_file(dir)?;
         file.write_all(text.as_bytes())?;
         file.persist(path)?;
         Ok(())
     };
-    write().map_err(|source| ExportError::Io { path: path.to_owned(), source })
+    [("v", verilog), ("vlt", waivers)]
+        .into_iter()
+        .map(|(extension, text)| {
+            let path = dir.join(name).with_extension(extension);
+            write(&path, text).map_err(|source| ExportError::Io { path: path.clone(), source })?;
+            Ok(path)
+        })
+        .collect()
 }
 
 /// A file in the folder's place is told as what it is; the system says only that something exists.
@@ -149,7 +132,7 @@ fn folder(error: std::io::Error) -> std::io::Error {
 }
 
 /// A file without a name yet, with the permissions of any other new file (a temporary one is its owner's only).
-fn new_file(dir: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+pub(crate) fn new_file(dir: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

@@ -20,9 +20,8 @@ mod tests;
 
 pub use crate::core::{
     CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, engine_verilog, six_axis_verilog, write_core, write_engine,
-    write_register_files,
 };
-pub use crate::registers::register_files;
+pub use crate::registers::{register_files, write_register_files};
 
 use carrystep_hdl::HdlError;
 use std::path::PathBuf;
