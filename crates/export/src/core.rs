@@ -139,7 +139,7 @@ fn folder(error: std::io::Error) -> std::io::Error {
 }
 
 /// A file without a name yet, with the permissions of any other new file (a temporary one is its owner's only).
-fn new_file(dir: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+pub(crate) fn new_file(dir: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

@@ -1,4 +1,4 @@
-//! Rust-HDL modules as readable Verilog.
+//! Rust-HDL modules as readable Verilog, and the register map for its clients.
 //!
 //! Rust-HDL's own output calls every module after its place in the tree and makes a module of every
 //! flip-flop. This crate reads the same checked tree and the same kernels, and writes what a person would:
@@ -15,12 +15,14 @@ mod kernel;
 mod module;
 mod names;
 mod netlist;
+mod registers;
 #[cfg(test)]
 mod tests;
 
 pub use crate::core::{
     CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, engine_verilog, six_axis_verilog, write_core, write_engine,
 };
+pub use crate::registers::{register_files, write_register_files};
 
 use carrystep_hdl::HdlError;
 use std::path::PathBuf;
@@ -43,6 +45,9 @@ pub enum ExportError {
     /// Two modules that differ want one name.
     #[error("two different modules would be called {0}")]
     SameName(String),
+    /// A template asks for what there is not.
+    #[error("a template of the register map: {0}")]
+    Template(#[from] minijinja::Error),
     /// A file could not be written.
     #[error("cannot write {}: {source}", path.display())]
     Io {

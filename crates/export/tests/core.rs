@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_export::{
-    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, engine_verilog, six_axis_verilog, write_core,
-    write_engine,
+    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, engine_verilog, register_files,
+    six_axis_verilog, write_core, write_engine,
 };
 use carrystep_spec::engine::{Guard, Limits};
 use carrystep_spec::ports::{Direction, SIX_AXIS_PORTS};
@@ -243,5 +243,13 @@ fn the_committed_cores_are_fresh() {
         let how = "run `cargo xtask generate`";
         assert!(read("v") == (core.of_machine)(&machine, core.machine).unwrap(), "{}: {how}", core.name);
         assert!(read("vlt") == core.waivers, "{}: {how}", core.name);
+    }
+}
+
+#[test]
+fn what_is_made_from_the_register_map_is_fresh() {
+    for (path, text) in register_files().unwrap() {
+        let committed = std::fs::read_to_string(Path::new(ROOT).join(path)).unwrap();
+        assert!(committed == text, "{path}: run `cargo xtask generate`");
     }
 }

@@ -10,6 +10,7 @@ pub mod engine;
 pub mod error;
 pub mod fault;
 pub mod fixed;
+pub mod link;
 pub mod machine;
 pub mod move_file;
 mod number;

@@ -4,7 +4,7 @@ use crate::shell::{self, Done};
 use std::collections::BTreeSet;
 
 /// Each crate and all crates of the house that it may reach, directly or through others.
-const ALLOWED: [(&str, &[&str]); 14] = [
+const ALLOWED: [(&str, &[&str]); 15] = [
     ("spec", &[]),
     ("profile", &["spec"]),
     ("table", &["spec", "profile"]),
@@ -14,6 +14,7 @@ const ALLOWED: [(&str, &[&str]); 14] = [
     ("hdl", &["spec"]),
     ("export", &["spec", "hdl"]),
     ("trace", &["spec", "profile"]),
+    ("link", &["spec"]),
     ("levels", &["spec", "profile", "model", "hdl", "export", "trace"]),
     ("sweep", &["spec"]),
     ("cli", &["spec", "profile", "table", "reference", "plan", "model", "hdl", "export", "trace", "levels", "sweep"]),

@@ -11,6 +11,7 @@ pub fn climb() -> Done {
     tools::install()?;
     arrows::check()?;
     lint()?;
+    bare()?;
     shell::run_with(&[SEED], "cargo", &["test", "--release", "--workspace"])?;
     readme::check()?;
     accuracy::check()?;
@@ -23,6 +24,20 @@ pub fn prove() -> Done {
     tools::install()?;
     let rung = ["test", "--release", "-p", "carrystep-tests", "--test", "rung_7_promises_are_proved"];
     shell::run("cargo", &[&rung[..], &["--", "--nocapture"]].concat())
+}
+
+/// A microcontroller without atomics, and without anything of `std`.
+const BARE: &str = "thumbv6m-none-eabi";
+
+/// The link's core on a bare microcontroller; where its target cannot be had, on this machine without `std`.
+pub fn bare() -> Done {
+    let check = ["check", "--quiet", "-p", "carrystep-link", "--no-default-features", "--features", "spi"];
+    let there = shell::is_there("rustup") && shell::run("rustup", &["target", "add", BARE]).is_ok();
+    if !there {
+        shell::say(&format!("no target {BARE}: checked for this machine, without std"));
+    }
+    let target: &[&str] = if there { &["--target", BARE] } else { &[] };
+    shell::run("cargo", &[&check[..], target].concat())
 }
 
 /// Formatting and lints.

@@ -32,13 +32,15 @@ enum Chore {
     Arrows,
     /// Formatting and lints, without a warning.
     Lint,
+    /// Check that the link's core needs no `std`, on a bare microcontroller.
+    Bare,
     /// Time the fast model beside every other level, and the writers beside Verilator's.
     Bench {
         /// One JSON document instead of the table.
         #[arg(long)]
         json: bool,
     },
-    /// Write `hdl-out/` anew from the Rust-HDL modules.
+    /// Write `hdl-out/` anew from the Rust-HDL modules, and the register map for its clients.
     Generate,
     /// Write the README's table and pictures anew from the demo (the waveform needs gtkwave and xvfb).
     Readme,
@@ -61,6 +63,7 @@ fn main() -> ExitCode {
         Chore::Lockstep => ladder::lockstep(),
         Chore::Arrows => arrows::check(),
         Chore::Lint => ladder::lint(),
+        Chore::Bare => ladder::bare(),
         Chore::Bench { json } => bench(json),
         Chore::Generate => readme::generate(),
         Chore::Readme => readme::write(),

@@ -3,11 +3,13 @@
 use crate::shell::{self, Done};
 
 /// Program, and the Debian package that brings it.
-const NEEDED: [(&str, &str); 9] = [
+const NEEDED: [(&str, &str); 11] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
     ("g++", "g++"),
+    ("gcc", "gcc"),
+    ("nm", "binutils"),
     ("make", "make"),
     ("yosys", "yosys"),
     ("yosys-smtbmc", "yosys"),

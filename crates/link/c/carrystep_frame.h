@@ -1,0 +1,87 @@
+/* Requests to the gateware and its answers as bytes on the line (docs/protocol.md).
+ *
+ * C99; no allocation, no floating point, no division. */
+#ifndef CARRYSTEP_FRAME_H
+#define CARRYSTEP_FRAME_H
+
+#include "carrystep_registers.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Most bytes of a request on the line, END and ESC included. */
+#define CARRYSTEP_LINE_BYTES (2u * CARRYSTEP_LONGEST_REQUEST + 2u)
+
+/* A stretch of whole ticks over which one axis follows a cubic. */
+typedef struct {
+    uint32_t ticks; /* 1 or more */
+    int64_t v;      /* 2^-64 step per tick */
+    int64_t a;      /* 2^-64 step per tick^2 */
+    int64_t j;      /* 2^-64 step per tick^3 */
+    bool last;      /* the axis stops when it is over */
+} carrystep_segment;
+
+/* What is asked of the gateware: a read (address below CARRYSTEP_WRITE), a write of one word, or a segment
+ * (address CARRYSTEP_WRITE | CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis)). */
+typedef struct {
+    uint8_t address;
+    uint32_t word;             /* of a write */
+    carrystep_segment segment; /* of a segment */
+} carrystep_request;
+
+/* What the gateware says to a request; meanings in carrystep_registers.h. */
+typedef struct {
+    uint8_t sequence;
+    uint8_t address;
+    uint8_t next;
+    bool fault;
+    bool halted;
+    bool idle;
+    bool ready;
+    bool armed;
+    uint8_t cause;
+    uint8_t free;
+    bool refused;
+    uint8_t culprits;
+    uint8_t homing;
+    uint32_t data;
+} carrystep_answer;
+
+/* Takes answers from the line. Zeros are a fresh one. */
+typedef struct {
+    uint8_t bytes[CARRYSTEP_ANSWER_BYTES];
+    uint8_t length;
+    bool escaped;
+    bool broken;
+} carrystep_decoder;
+
+typedef enum {
+    CARRYSTEP_NOTHING, /* no frame has ended */
+    CARRYSTEP_ANSWERED,
+    CARRYSTEP_BROKEN /* a damaged frame: nothing was taken from it */
+} carrystep_received;
+
+/* CRC-32 of Ethernet, zip and zlib. */
+uint32_t carrystep_crc(const uint8_t *bytes, size_t length);
+
+/* Whether this address writes a segment; whether it names an axis, and which. */
+bool carrystep_is_segment(uint8_t address);
+bool carrystep_names_axis(uint8_t address);
+uint8_t carrystep_axis_of(uint8_t address);
+
+/* Puts a request on `line` (CARRYSTEP_LINE_BYTES): how many bytes it takes there. */
+size_t carrystep_encode(uint8_t *line, uint8_t sequence, const carrystep_request *request);
+
+/* The next byte from the line; *answer is set where it completes one. */
+carrystep_received carrystep_decode(carrystep_decoder *decoder, uint8_t byte, carrystep_answer *answer);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,186 @@
+/* An RP2040 (Raspberry Pi Pico) drives the gateware over SPI: connects, powers the drivers, makes one move, stops.
+ *
+ *     Pico GP16 (SPI0 RX)  <- MISO        CMakeLists.txt:
+ *     Pico GP17            -> CS              add_executable(move rp2040_spi.c carrystep_frame.c carrystep_session.c carrystep_feeder.c)
+ *     Pico GP18 (SPI0 SCK) -> SCK             target_link_libraries(move pico_stdlib hardware_spi)
+ *     Pico GP19 (SPI0 TX)  -> MOSI
+ *
+ * All of it that knows the RP2040 is setup(), exchange() and now(): on another microcontroller write those three.
+ * The numbers of a move come from a planner on a PC, or from integers as below. */
+#include "carrystep_feeder.h"
+
+#include "hardware/gpio.h"
+#include "hardware/spi.h"
+#include "pico/stdlib.h"
+
+#define BAUD (5u * 1000u * 1000u) /* at most a fifth of the gateware's clock */
+#define CHIP_SELECT 17u
+#define AXES 6u
+
+/* The gateware that the move was planned for: its registers BUILD_HIGH and BUILD_LOW. */
+#ifndef BUILD_ID
+#define BUILD_ID UINT64_C(0x0123456789abcdef)
+#endif
+
+static carrystep_session session;
+static carrystep_feeder program;
+
+/* ---- what knows the microcontroller ---- */
+
+static void setup(void)
+{
+    spi_init(spi0, BAUD);
+    spi_set_format(spi0, 8, SPI_CPOL_0, SPI_CPHA_0, SPI_MSB_FIRST);
+    gpio_set_function(16u, GPIO_FUNC_SPI);
+    gpio_set_function(18u, GPIO_FUNC_SPI);
+    gpio_set_function(19u, GPIO_FUNC_SPI);
+    gpio_init(CHIP_SELECT);
+    gpio_set_dir(CHIP_SELECT, GPIO_OUT);
+    gpio_put(CHIP_SELECT, false); /* low for good */
+}
+
+/* Bytes go both ways at once. */
+static void exchange(const uint8_t *out, uint8_t *in, size_t length)
+{
+    spi_write_read_blocking(spi0, out, in, length);
+}
+
+static uint32_t now(void)
+{
+    return to_ms_since_boot(get_absolute_time());
+}
+
+/* ---- what does not ---- */
+
+/* One exchange: the next request, or END while there is none. True: *answer is new. */
+static bool turn(carrystep_answer *answer)
+{
+    uint8_t out[CARRYSTEP_LINE_BYTES];
+    uint8_t in[CARRYSTEP_LINE_BYTES];
+    size_t length = carrystep_transmit(&session, now(), out);
+    bool heard = false;
+    while (length < 16u) {
+        out[length++] = CARRYSTEP_END;
+    }
+    exchange(out, in, length);
+    for (size_t at = 0; at < length; at++) {
+        heard = carrystep_receive(&session, in[at], now(), answer) == CARRYSTEP_HEARD || heard;
+    }
+    return heard;
+}
+
+/* Reads a register; false: nobody answers. */
+static bool ask(uint8_t address, carrystep_answer *answer)
+{
+    uint32_t begin = now();
+    if (!carrystep_read(&session, address)) {
+        return false;
+    }
+    while (now() - begin < 500u) {
+        if (turn(answer) && answer->address == address) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Who is there? False: not the gateware that this program was made for; nothing has been written to it. */
+static bool connect(void)
+{
+    carrystep_answer identity, protocol, low, high;
+    carrystep_begin(&session, 5u, 1u);
+    if (!ask(CARRYSTEP_IDENTITY, &identity) || !ask(CARRYSTEP_PROTOCOL, &protocol) || !ask(CARRYSTEP_BUILD_LOW, &low) ||
+        !ask(CARRYSTEP_BUILD_HIGH, &high)) {
+        return false;
+    }
+    if (carrystep_check(identity.data, protocol.data, (uint64_t)high.data << 32 | low.data, BUILD_ID) !=
+        CARRYSTEP_FINE) {
+        return false;
+    }
+    carrystep_adopt(&session, high.next, AXES);
+    return high.idle; /* otherwise a host before this one has left something in the queues */
+}
+
+/* Axis 0: half a second up to 5000 steps/s, half a second down, at a tick of 2 us: 2500 steps, exactly. */
+static const carrystep_segment move[] = {
+    {250000u, INT64_C(368934881474), INT64_C(737869762948), 0, false},
+    {40000u, INT64_C(184467071802214043), INT64_C(-737869762948), 0, false},
+    {210000u, INT64_C(154952281284294042), INT64_C(-737869762948), 0, true},
+};
+
+typedef struct {
+    unsigned segment;
+    bool started;
+} place;
+
+static bool next_segment(void *context, uint8_t axis, carrystep_segment *next)
+{
+    place *at = context;
+    if (axis != 0 || at->segment == sizeof move / sizeof move[0]) {
+        return false;
+    }
+    *next = move[at->segment++];
+    return true;
+}
+
+static bool next_start(void *context, uint8_t *mask)
+{
+    place *at = context;
+    bool first = !at->started;
+    at->started = true;
+    *mask = 1u;
+    return first;
+}
+
+/* True: the move is done. False: it could not begin, or a fault has stopped it. */
+static bool run(void)
+{
+    place at = {0, false};
+    carrystep_source source = {next_segment, next_start, &at};
+    carrystep_answer answer;
+    carrystep_fed fed = CARRYSTEP_FEEDING;
+    uint32_t looked = now();
+    carrystep_load(&program, source);
+    for (;;) {
+        bool over = fed == CARRYSTEP_FED && !carrystep_writing(&session);
+        bool heard = turn(&answer);
+        if (heard && answer.fault) {
+            return false; /* answer.cause says why; all axes go down by themselves */
+        }
+        if (heard && over && answer.idle) {
+            return true;
+        }
+        fed = carrystep_feed(&session, &program);
+        if (fed == CARRYSTEP_BAD_SOURCE) {
+            return false;
+        }
+        /* A look now and then: it keeps the watchdog quiet and tells the position. */
+        if (now() - looked >= 10u) {
+            looked = now();
+            carrystep_read(&session, CARRYSTEP_POSITION);
+        }
+    }
+}
+
+int main(void)
+{
+    carrystep_answer answer;
+    setup();
+    if (!connect()) {
+        return 1;
+    }
+    carrystep_write(&session, CARRYSTEP_CONTROL, CARRYSTEP_CONTROL_ENABLE);
+    do {
+        if (!ask(CARRYSTEP_POSITION, &answer)) {
+            return 1;
+        }
+    } while (!answer.ready);
+    if (!run()) {
+        return 1;
+    }
+    carrystep_write(&session, CARRYSTEP_CONTROL, 0);
+    while (carrystep_writing(&session)) {
+        turn(&answer);
+    }
+    return 0;
+}

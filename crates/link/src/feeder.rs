@@ -1,0 +1,114 @@
+//! The segments of a program in the order in which the queues have room, and each start as soon as it may be sent.
+
+use crate::command::{ProgramError, Segment};
+use crate::frame::Body;
+use crate::registers::{MOST_AXES, START};
+
+/// Where segments come from: memory, a file, a planner that runs along.
+pub trait Source {
+    /// The next segment of an axis; none when there are no more.
+    fn segment(&mut self, axis: u8) -> Option<Segment>;
+    /// The axes of the next start; none when there are no more.
+    fn start(&mut self) -> Option<u8>;
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Axis {
+    /// The next segment, taken from the source already.
+    ahead: Option<Segment>,
+    /// The source has no more.
+    dry: bool,
+    /// In the middle of a move.
+    open: bool,
+    /// Moves whose first segment was sent, less those that were started.
+    waiting: u32,
+    /// Ticks of all segments that were sent.
+    ticks: u64,
+}
+
+/// Sends a program: of the axes that have room, the one that is supplied for the shortest time comes first; a start
+/// comes when each of its axes has its first segment, no other start waits, and no segment could be sent instead.
+#[derive(Debug, Clone)]
+pub struct Feeder<S> {
+    source: S,
+    axes: [Axis; MOST_AXES as usize],
+    start: Option<u8>,
+    last_start: bool,
+}
+
+impl<S: Source> Feeder<S> {
+    /// Nothing sent yet.
+    pub fn new(source: S) -> Self {
+        Self { source, axes: [Axis::default(); MOST_AXES as usize], start: None, last_start: false }
+    }
+
+    /// Takes the next segment of each axis, and the next start, from the source.
+    fn look_ahead(&mut self, axes: u8) {
+        for (number, axis) in (0..axes).zip(&mut self.axes) {
+            if axis.ahead.is_none() && !axis.dry {
+                axis.ahead = self.source.segment(number);
+                axis.dry = axis.ahead.is_none();
+            }
+        }
+        if self.start.is_none() && !self.last_start {
+            self.start = self.source.start();
+            self.last_start = self.start.is_none();
+        }
+    }
+
+    /// What to send next to a build of so many axes, where the queue of each has this much room.
+    ///
+    /// # Errors
+    /// [`ProgramError`] where the source gives what no gateware takes.
+    pub fn next(&mut self, axes: u8, room: &[u8], may_start: bool) -> Result<Option<Body>, ProgramError> {
+        self.look_ahead(axes);
+        let able = |(axis, room): &(&mut Axis, &u8)| axis.ahead.is_some() && **room > 0;
+        let hungriest = (0..axes).zip(self.axes.iter_mut().zip(room)).filter(|(_, pair)| able(pair));
+        if let Some((number, (axis, _))) = hungriest.min_by_key(|(_, (axis, _))| axis.ticks)
+            && let Some(segment) = axis.ahead.take()
+        {
+            if segment.ticks == 0 {
+                return Err(ProgramError::NoTicks { axis: number });
+            }
+            axis.waiting += u32::from(!axis.open);
+            axis.open = !segment.last;
+            axis.ticks += u64::from(segment.ticks);
+            return Ok(Some(Body::Segment { axis: number, segment }));
+        }
+        match self.start {
+            Some(mask) if may_start => self.start_of(axes, mask),
+            _ => Ok(None),
+        }
+    }
+
+    fn start_of(&mut self, axes: u8, mask: u8) -> Result<Option<Body>, ProgramError> {
+        for (number, axis) in (0..MOST_AXES).zip(&self.axes).filter(|(number, _)| mask >> number & 1 == 1) {
+            if number >= axes {
+                return Err(ProgramError::Axis { axis: number, axes });
+            }
+            if axis.waiting == 0 {
+                return if axis.dry { Err(ProgramError::NoMove { axis: number, mask }) } else { Ok(None) };
+            }
+        }
+        for (_, axis) in self.axes.iter_mut().enumerate().filter(|(number, _)| mask >> number & 1 == 1) {
+            axis.waiting -= 1;
+        }
+        self.start = None;
+        Ok(Some(Body::Write { address: START, word: mask.into() }))
+    }
+
+    /// Whether an axis has a segment that could not be sent yet.
+    pub fn wants(&self, axis: u8) -> bool {
+        self.axes.get(usize::from(axis)).is_some_and(|axis| axis.ahead.is_some())
+    }
+
+    /// Whether a start is still to be sent.
+    pub const fn wants_start(&self) -> bool {
+        self.start.is_some()
+    }
+
+    /// Whether everything was handed over.
+    pub fn is_done(&self, axes: u8) -> bool {
+        self.last_start && self.start.is_none() && self.axes.iter().take(axes.into()).all(|axis| axis.dry)
+    }
+}

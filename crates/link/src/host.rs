@@ -1,0 +1,291 @@
+//! The driver: one gateware on one line, from connecting to a clean stop. Each call returns when it is done.
+
+mod error;
+mod motion;
+mod time;
+
+pub use error::HostError;
+pub use motion::{Ended, Progress, Wish};
+#[cfg(feature = "std")]
+pub use time::SystemClock;
+pub use time::{Clock, Patience};
+
+use crate::facts::Facts;
+use crate::frame::{Answer, Body, of_axis};
+use crate::line::Line;
+use crate::registers as map;
+use crate::registers::{LONGEST_REQUEST, MOST_AXES};
+use crate::session::Session;
+use crate::slip;
+
+/// What a machine does, as of the last answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Status {
+    /// The last answer; its state is the machine's.
+    pub answer: Answer,
+    /// Steps forward less steps back, of each axis.
+    pub positions: [i32; MOST_AXES as usize],
+}
+
+/// A connected gateware. `N` writes may be on their way, at most 127.
+#[derive(Debug)]
+pub struct Host<L, C, const N: usize = 64> {
+    line: L,
+    clock: C,
+    patience: Patience,
+    session: Session<N>,
+    facts: Facts,
+    status: Status,
+    /// The drivers were seen powered: they stay so until this host says otherwise.
+    powered: bool,
+    /// Bytes on their way to the line.
+    out: [u8; 256],
+    queued: usize,
+    heard: u32,
+    noise: u32,
+}
+
+impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
+    /// Finds out who is there, and whether this driver was made for it: for build `wanted`, or for any.
+    /// Nothing is written.
+    ///
+    /// # Errors
+    /// [`HostError::Silence`], [`HostError::Noise`] or [`HostError::Refused`]: nothing answers, something else does, or
+    /// another gateware.
+    pub fn connect(line: L, clock: C, wanted: Option<u64>, patience: Patience) -> Result<Self, HostError<L::Error>> {
+        let mut host = Self {
+            line,
+            clock,
+            patience,
+            session: Session::new(patience.timing),
+            facts: Facts::default(),
+            status: Status::default(),
+            powered: false,
+            out: [0; 256],
+            queued: 0,
+            heard: 0,
+            noise: 0,
+        };
+        let [identity] = host.registers([map::IDENTITY])?;
+        host.facts.identity = identity;
+        if identity == map::IDENTITY_VALUE {
+            let first = [map::PROTOCOL, map::BUILD_LOW, map::BUILD_HIGH, map::AXIS_COUNT];
+            let [protocol, low, high, axes] = host.registers(first)?;
+            let rest = [map::CLOCK_HZ, map::TICK_NS, map::PHASES, map::WATCHDOG_TICKS];
+            let [clock_hz, tick_ns, phases, watchdog_ticks] = host.registers(rest)?;
+            let build = u64::from(high) << 32 | u64::from(low);
+            host.facts = Facts { identity, protocol, build, axes, clock_hz, tick_ns, phases, watchdog_ticks };
+        }
+        host.facts.check(wanted)?;
+        let axes = host.facts.axes.min(MOST_AXES.into()) as u8;
+        host.session.adopt(host.status.answer.next, axes);
+        host.look()?;
+        Ok(host)
+    }
+
+    /// What the gateware said of itself.
+    pub const fn facts(&self) -> &Facts {
+        &self.facts
+    }
+
+    /// The machine as of the last answers; [`Self::look`] asks anew.
+    pub const fn status(&self) -> &Status {
+        &self.status
+    }
+
+    /// The line again.
+    pub fn free(self) -> L {
+        self.line
+    }
+
+    /// Asks for the state and all positions.
+    ///
+    /// # Errors
+    /// [`HostError`].
+    pub fn look(&mut self) -> Result<Status, HostError<L::Error>> {
+        for axis in 0..self.session.axes() {
+            self.register(of_axis(map::POSITION, axis))?;
+        }
+        Ok(self.status)
+    }
+
+    /// Reads a register.
+    ///
+    /// # Errors
+    /// [`HostError`].
+    pub fn register(&mut self, address: u8) -> Result<u32, HostError<L::Error>> {
+        self.registers([address]).map(|[word]| word)
+    }
+
+    fn registers<const K: usize>(&mut self, addresses: [u8; K]) -> Result<[u32; K], HostError<L::Error>> {
+        let mut words = [None; K];
+        self.listen();
+        for address in addresses {
+            // At most eight at once, and no other questions are open: there is room.
+            let _ = self.session.read(address);
+        }
+        while words.iter().any(Option::is_none) {
+            self.pump(|answer| {
+                for (word, address) in words.iter_mut().zip(addresses) {
+                    if answer.address == address {
+                        *word = Some(answer.data);
+                    }
+                }
+            })?;
+        }
+        Ok(words.map(Option::unwrap_or_default))
+    }
+
+    /// Writes a register and waits until that is done.
+    ///
+    /// # Errors
+    /// [`HostError`].
+    pub fn write(&mut self, address: u8, word: u32) -> Result<(), HostError<L::Error>> {
+        self.listen();
+        let body = Body::Write { address, word };
+        while self.session.write(body).is_err() {
+            self.pump(|_| ())?;
+        }
+        while self.session.writing() {
+            self.pump(|_| ())?;
+        }
+        Ok(())
+    }
+
+    /// Powers the drivers, and waits until starts are taken.
+    ///
+    /// # Errors
+    /// [`HostError::TooLong`] where that does not come; others.
+    pub fn enable(&mut self) -> Result<(), HostError<L::Error>> {
+        self.write(map::CONTROL, map::CONTROL_ENABLE)?;
+        self.wait("the drivers' power", |answer| answer.ready)?;
+        self.powered = true;
+        Ok(())
+    }
+
+    /// Takes the drivers' power away, as soon as all axes are done.
+    ///
+    /// # Errors
+    /// [`HostError`].
+    pub fn disable(&mut self) -> Result<(), HostError<L::Error>> {
+        self.powered = false;
+        self.write(map::CONTROL, 0)
+    }
+
+    /// Stops all axes by their ramps, and waits until they rest. What was queued is gone; [`Self::clear`] resumes.
+    ///
+    /// # Errors
+    /// [`HostError`].
+    pub fn stop(&mut self) -> Result<Status, HostError<L::Error>> {
+        self.session.withdraw();
+        self.write(map::CONTROL, self.power() | map::CONTROL_STOP)?;
+        self.wait("the stop", |answer| answer.fault && answer.halted)?;
+        self.look()
+    }
+
+    /// Resumes after a stop of any cause; queues are empty then. Does nothing where there was none.
+    ///
+    /// # Errors
+    /// [`HostError::TooLong`] where the cause is still there, an e-stop still pressed for one.
+    pub fn clear(&mut self) -> Result<(), HostError<L::Error>> {
+        let begin = self.clock.milliseconds();
+        self.look()?;
+        if self.status.answer.fault {
+            self.write(map::CONTROL, self.power())?;
+            self.wait("the stop", |answer| answer.halted)?;
+        }
+        while self.status.answer.fault {
+            self.write(map::CLEAR, 0)?;
+            self.look()?;
+            if self.clock.milliseconds().wrapping_sub(begin) > self.patience.change {
+                let cause = self.status.answer.cause_name();
+                return Err(HostError::TooLong { what: "the clear", cause, ms: self.patience.change });
+            }
+        }
+        Ok(())
+    }
+
+    /// Stops and clears a machine that another host left in the middle of something; one at rest stays as it is.
+    ///
+    /// # Errors
+    /// As [`Self::stop`] and [`Self::clear`].
+    pub fn settle(&mut self) -> Result<(), HostError<L::Error>> {
+        let Answer { idle, fault, .. } = self.look()?.answer;
+        if !idle && !fault {
+            self.stop()?;
+        }
+        self.clear()
+    }
+
+    /// The drivers keep the power that they have, whoever gave it.
+    const fn power(&self) -> u32 {
+        if self.powered || self.status.answer.ready { map::CONTROL_ENABLE } else { 0 }
+    }
+
+    /// Looks at the machine until it is as wished.
+    fn wait(&mut self, what: &'static str, wish: impl Fn(&Answer) -> bool) -> Result<(), HostError<L::Error>> {
+        let begin = self.clock.milliseconds();
+        while !wish(&self.status.answer) {
+            self.register(of_axis(map::POSITION, 0))?;
+            if self.clock.milliseconds().wrapping_sub(begin) > self.patience.change {
+                let cause = self.status.answer.cause_name();
+                return Err(HostError::TooLong { what, cause, ms: self.patience.change });
+            }
+        }
+        Ok(())
+    }
+
+    /// Silence counts from here, where nothing was asked before.
+    fn listen(&mut self) {
+        if !self.session.waiting() {
+            (self.heard, self.noise) = (self.clock.milliseconds(), 0);
+        }
+    }
+
+    /// One exchange with the line; `seen` gets each answer.
+    fn pump(&mut self, mut seen: impl FnMut(&Answer)) -> Result<(), HostError<L::Error>> {
+        let mut now = self.clock.milliseconds();
+        while self.queued + slip::line_bytes(LONGEST_REQUEST) <= self.out.len() {
+            let Some(request) = self.session.transmit(now) else { break };
+            for byte in slip::encode(request.to_bytes().as_slice()) {
+                self.out.get_mut(self.queued).into_iter().for_each(|place| *place = byte);
+                self.queued += 1;
+            }
+        }
+        let mut came = [0; 256];
+        let out = self.out.get(..self.queued).unwrap_or_default();
+        let done = self.line.exchange(out, &mut came).map_err(HostError::Line)?;
+        let sent = done.sent.min(self.queued);
+        self.out.copy_within(sent..self.queued, 0);
+        self.queued -= sent;
+        now = self.clock.milliseconds();
+        for &byte in came.iter().take(done.received) {
+            self.noise += u32::from(byte != map::END);
+            let Some(answer) = self.session.receive(byte, now)? else { continue };
+            (self.heard, self.noise) = (now, 0);
+            if self.powered && !answer.ready && !answer.fault {
+                return Err(HostError::Restarted);
+            }
+            self.status.answer = answer;
+            if let Some(axis) = axis_with_position(&answer)
+                && let Some(position) = self.status.positions.get_mut(usize::from(axis))
+            {
+                *position = answer.data.cast_signed();
+            }
+            seen(&answer);
+        }
+        let silence = now.wrapping_sub(self.heard);
+        match (self.session.waiting() && silence > self.patience.silence, self.noise) {
+            (false, _) => Ok(()),
+            (true, 0) => Err(HostError::Silence { ms: silence }),
+            (true, bytes) => Err(HostError::Noise { bytes }),
+        }
+    }
+}
+
+/// The axis whose position is in this answer: where it was read, and after every segment.
+fn axis_with_position(answer: &Answer) -> Option<u8> {
+    let axis = crate::frame::axis_of(answer.address)?;
+    let position = of_axis(map::POSITION, axis);
+    (answer.address == position || answer.address & map::WRITE != 0).then_some(axis)
+}

@@ -1,0 +1,68 @@
+//! What goes wrong between a host and a gateware, by its cause.
+
+use crate::command::ProgramError;
+use crate::facts::Refusal;
+use crate::registers::CAUSES;
+use crate::window::OutOfStep;
+use thiserror::Error;
+
+/// Why the driver could not do what was asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum HostError<E> {
+    /// The line itself: unplugged, for one.
+    #[error("the line to the board is gone")]
+    Line(E),
+    /// Not a byte came.
+    #[error(
+        "nothing has answered for {ms} ms: is the board powered, flashed with the gateware, and is this its port and baud rate?"
+    )]
+    Silence {
+        /// For so long.
+        ms: u32,
+    },
+    /// Bytes came, and no frame.
+    #[error("something answers ({bytes} bytes), but not in this protocol: another device, or another baud rate")]
+    Noise {
+        /// So many.
+        bytes: u32,
+    },
+    /// Someone answers whom this driver was not made for.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// The gateware lost count.
+    #[error(transparent)]
+    OutOfStep(#[from] OutOfStep),
+    /// The gateware has forgotten that the drivers are powered.
+    #[error("the gateware was restarted: power, position and queue are lost; connect again, and home")]
+    Restarted,
+    /// A program for a machine that is not at rest.
+    #[error("the machine moves, or another host has left segments in its queues: stop and clear it first")]
+    NotIdle,
+    /// The program cannot be sent.
+    #[error(transparent)]
+    Program(#[from] ProgramError),
+    /// The machine stopped.
+    #[error("the machine has stopped: {} (axes {culprits:#04x}); clear resumes", CAUSES.get(usize::from(*cause)).unwrap_or(&"?"))]
+    Fault {
+        /// Why: a place in [`CAUSES`].
+        cause: u8,
+        /// The axes that it came from, a bit each.
+        culprits: u8,
+    },
+    /// What was waited for did not come.
+    #[error("{what} has not come in {ms} ms{}{}", if cause.is_some() { "; the machine stands because of: " } else { "" }, cause.unwrap_or(""))]
+    TooLong {
+        /// What.
+        what: &'static str,
+        /// Why the machine stands, where it does.
+        cause: Option<&'static str>,
+        /// For so long.
+        ms: u32,
+    },
+    /// A homing move ended before its limits came.
+    #[error("the homing move is over, and axes {axes:#04x} have not met their limits")]
+    NoLimit {
+        /// The axes, a bit each.
+        axes: u8,
+    },
+}

@@ -1,0 +1,50 @@
+//! The host's side of the link (docs/protocol.md): `no_std`, without allocation.
+//!
+//! ```text
+//! Host      connect, enable, stream, stop, clear, home        blocking; needs a Line and a Clock
+//!   Session   what to send next, what an answer means         no time, no line of its own
+//!     Window    writes on their way, sent again from the first that is missing
+//!     Reads     questions on their way
+//!     Feeder    the segments of a program, as the queues have room
+//!   frame, slip   requests and answers as bytes
+//! Line      a serial port (feature `serial`) or SPI (feature `spi`)
+//! ```
+//!
+//! The same in C99 is in `c/`; both pass the same tests.
+#![no_std]
+
+#[cfg(feature = "std")]
+extern crate std;
+
+pub mod command;
+pub mod facts;
+pub mod feeder;
+pub mod frame;
+pub mod host;
+pub mod line;
+pub mod reads;
+#[rustfmt::skip]
+pub mod registers;
+pub mod session;
+pub mod slip;
+pub mod window;
+
+pub use command::{Command, Program, ProgramError, Segment};
+pub use facts::{Facts, Refusal};
+pub use feeder::{Feeder, Source};
+pub use frame::{Answer, Body, FrameError, Request};
+pub use host::{Clock, Ended, Host, HostError, Patience, Progress, Status, Wish};
+pub use line::{Exchanged, Line};
+pub use session::{Session, Timing};
+pub use window::OutOfStep;
+
+/// The files of the C library: name and text. They go together into any project.
+pub const C_LIBRARY: [(&str, &str); 7] = [
+    ("carrystep_registers.h", include_str!("../c/carrystep_registers.h")),
+    ("carrystep_frame.h", include_str!("../c/carrystep_frame.h")),
+    ("carrystep_frame.c", include_str!("../c/carrystep_frame.c")),
+    ("carrystep_session.h", include_str!("../c/carrystep_session.h")),
+    ("carrystep_session.c", include_str!("../c/carrystep_session.c")),
+    ("carrystep_feeder.h", include_str!("../c/carrystep_feeder.h")),
+    ("carrystep_feeder.c", include_str!("../c/carrystep_feeder.c")),
+];

@@ -1,0 +1,123 @@
+//! A serial port of the system, and why it cannot be opened.
+
+use super::{Exchanged, Line};
+use serialport::{ErrorKind, SerialPort};
+use std::borrow::ToOwned;
+use std::boxed::Box;
+use std::format;
+use std::io;
+use std::string::{String, ToString};
+use std::time::Duration;
+use thiserror::Error;
+
+/// So long a read waits where nothing was sent.
+const WAIT: Duration = Duration::from_millis(1);
+
+/// Why a port cannot be opened.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum OpenError {
+    /// There is none of this name.
+    #[error("there is no serial port {port}: is the board plugged in?{others}")]
+    Absent {
+        /// The name.
+        port: String,
+        /// The ports that there are, as a sentence.
+        others: String,
+    },
+    /// Another program has it.
+    #[error("serial port {port} is in use by another program: close that first")]
+    Busy {
+        /// The name.
+        port: String,
+    },
+    /// The system does not allow it.
+    #[error(
+        "serial port {port} may not be opened by this user: on Linux, add yourself to its group (`sudo usermod -aG dialout $USER`) and log in again"
+    )]
+    NotPermitted {
+        /// The name.
+        port: String,
+    },
+    /// It is there but is no serial port, or cannot be set to this baud rate.
+    #[error("serial port {port} cannot be used at {baud} baud: {why}")]
+    Unusable {
+        /// The name.
+        port: String,
+        /// The baud rate.
+        baud: u32,
+        /// What the system says.
+        why: String,
+    },
+}
+
+/// An open serial port: 8 data bits, no parity, one stop bit, of this program alone.
+pub struct SerialLine {
+    port: Box<dyn SerialPort>,
+}
+
+impl SerialLine {
+    /// Opens a port by its name and throws away what has come before.
+    ///
+    /// # Errors
+    /// [`OpenError`] names the cause.
+    pub fn open(port: &str, baud: u32) -> Result<Self, OpenError> {
+        let opened = serialport::new(port, baud).timeout(WAIT).open().map_err(|error| refusal(port, baud, &error))?;
+        // Old answers do no harm, so a port that cannot be emptied is as good.
+        let _ = opened.clear(serialport::ClearBuffer::Input);
+        Ok(Self { port: opened })
+    }
+
+    /// A port that is open already.
+    pub fn from_port(port: Box<dyn SerialPort>) -> Self {
+        Self { port }
+    }
+}
+
+fn refusal(port: &str, baud: u32, error: &serialport::Error) -> OpenError {
+    let name = || port.to_owned();
+    let exists = || std::path::Path::new(port).exists();
+    match error.kind() {
+        ErrorKind::Io(io::ErrorKind::PermissionDenied) => OpenError::NotPermitted { port: name() },
+        ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Absent { port: name(), others: others() },
+        // What is there and cannot be locked, another has locked.
+        ErrorKind::NoDevice if exists() => OpenError::Busy { port: name() },
+        ErrorKind::NoDevice => OpenError::Absent { port: name(), others: others() },
+        _ => OpenError::Unusable { port: name(), baud, why: error.to_string() },
+    }
+}
+
+fn others() -> String {
+    let ports = serialport::available_ports().unwrap_or_default();
+    let mut names = ports.iter().map(|port| port.port_name.as_str());
+    match names.next() {
+        None => String::new(),
+        Some(first) => names.fold(format!(" There is {first}"), |list, name| list + ", " + name) + ".",
+    }
+}
+
+impl Line for SerialLine {
+    type Error = io::Error;
+
+    fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> io::Result<Exchanged> {
+        let sent = if out.is_empty() { 0 } else { nothing_yet(self.port.write(out))? };
+        if sent > 0 && self.port.bytes_to_read()? == 0 {
+            return Ok(Exchanged { sent, received: 0 });
+        }
+        Ok(Exchanged { sent, received: nothing_yet(self.port.read(into))? })
+    }
+}
+
+/// No byte in time is no error.
+fn nothing_yet(done: io::Result<usize>) -> io::Result<usize> {
+    match done {
+        Err(error)
+            if matches!(
+                error.kind(),
+                io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted
+            ) =>
+        {
+            Ok(0)
+        }
+        other => other,
+    }
+}

@@ -1,0 +1,67 @@
+//! Bytes are flipped, dropped, doubled, cut off and delayed, both ways: no damaged frame is taken, no segment is lost or
+//! executed twice, and the order stays. Clients in Rust and in C, against a gateware in miniature.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use proptest::prelude::*;
+use support::c_library::CClient;
+use support::client::{Client, RustClient};
+use support::device::Bugs;
+use support::random::{Random, program};
+use support::soak::{Outcome, Soak, TICKS, soak};
+use support::wire::Faults;
+
+const AXES: u8 = 6;
+
+/// Segments long enough that the queue outlasts what the line does.
+fn run(client: &mut dyn Client, segments: usize, seed: u64, faults: Faults) -> Outcome {
+    let commands = program(&mut Random(seed), AXES, segments, 20 * TICKS);
+    let outcome = soak(client, &commands, Soak { faults, seed, axes: AXES, bugs: Bugs::default() });
+    outcome.unwrap_or_else(|words| panic!("seed {seed}: {words}"))
+}
+
+#[test]
+fn a_hundred_thousand_frames_from_rust() {
+    let outcome = run(&mut RustClient::default(), 100_000, 1, Faults::BAD);
+    println!("{outcome:?}");
+    assert_eq!(outcome.fault, None);
+    assert!(outcome.frames >= 100_000 && outcome.damaged > 3000 && outcome.repeated > 1000, "{outcome:?}");
+}
+
+#[test]
+fn ten_thousand_frames_from_c() {
+    let outcome = run(&mut CClient::shared(), 10_000, 2, Faults::BAD);
+    println!("{outcome:?}");
+    assert_eq!(outcome.fault, None);
+    assert!(outcome.frames >= 10_000 && outcome.damaged > 300 && outcome.repeated > 100, "{outcome:?}");
+}
+
+#[test]
+fn a_clean_line_repeats_nothing_and_keeps_the_queues_full() {
+    for client in [&mut RustClient::default() as &mut dyn Client, &mut CClient::shared()] {
+        let outcome = run(client, 2000, 3, Faults::default());
+        assert_eq!((outcome.fault, outcome.damaged, outcome.repeated, outcome.out_of_turn), (None, 0, 0, 0));
+    }
+}
+
+fn faults() -> impl Strategy<Value = Faults> {
+    (0..8000_u32, 0..8000_u32, 0..8000_u32, 0..60_000_u32, 0..60_000_u32, 0..200_000_u32)
+        .prop_map(|(flip, drop, double, again, cut, delay)| Faults { flip, drop, double, again, cut, delay })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// However bad: all is executed once and in order, or the motion stopped because a queue ran dry, and what was executed
+    /// is the beginning of what was sent. Both clients say the same, byte for byte.
+    #[test]
+    fn any_line(faults in faults(), seed: u64, axes in 1..=8_u8, segments in 1..120_usize) {
+        let commands = program(&mut Random(seed), axes, segments, 20 * TICKS);
+        let how = Soak { faults, seed, axes, bugs: Bugs::default() };
+        let rust = soak(&mut RustClient::default(), &commands, how).map_err(TestCaseError::fail)?;
+        prop_assert!(matches!(rust.fault, None | Some(6)), "{rust:?}");
+        let c = soak(&mut CClient::shared(), &commands, how).map_err(TestCaseError::fail)?;
+        prop_assert_eq!((rust.milliseconds, rust.frames, rust.harmed), (c.milliseconds, c.frames, c.harmed));
+    }
+}

@@ -1,0 +1,84 @@
+//! Frames as bytes: there and back, against an implementation of the CRC and the escapes of its own, and never a panic.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use carrystep_link::slip::{self, Decoder, Received};
+use carrystep_link::{Answer, Body, FrameError, Request, Segment};
+use proptest::prelude::*;
+use support::device::on_the_line;
+
+fn request() -> impl Strategy<Value = Request> {
+    let segment = (0..8_u8, 1..=u32::MAX, any::<[i64; 3]>(), any::<bool>())
+        .prop_map(|(axis, ticks, [v, a, j], last)| Body::Segment { axis, segment: Segment { ticks, v, a, j, last } });
+    let body = prop_oneof![
+        (0..0x80_u8).prop_map(|address| Body::Read { address }),
+        (0..0x40_u8, any::<u32>()).prop_map(|(address, word)| Body::Write { address, word }),
+        segment,
+    ];
+    (any::<u8>(), body).prop_map(|(sequence, body)| Request { sequence, body })
+}
+
+/// Likes END, ESC and their companions.
+fn byte() -> impl Strategy<Value = u8> {
+    prop_oneof![any::<u8>(), prop::sample::select(vec![0xc0, 0xdb, 0xdc, 0xdd])]
+}
+
+/// The frames and the broken ones in these bytes.
+fn received<const N: usize>(line: &[u8]) -> Vec<Option<Vec<u8>>> {
+    let mut decoder = Decoder::<N>::default();
+    let frame = |byte: &u8| match decoder.push(*byte) {
+        Received::Nothing => None,
+        Received::Frame(frame) => Some(Some(frame.to_vec())),
+        Received::Broken => Some(None),
+    };
+    line.iter().filter_map(frame).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_request_comes_back(request in request()) {
+        let bytes = request.to_bytes();
+        prop_assert_eq!(Request::from_bytes(bytes.as_slice()), Ok(request));
+        let (content, _) = bytes.as_slice().split_last_chunk::<4>().unwrap();
+        let line: Vec<u8> = slip::encode(bytes.as_slice()).collect();
+        prop_assert!(line.len() <= slip::line_bytes(bytes.as_slice().len()));
+        prop_assert_eq!(&line, &on_the_line(content));
+        prop_assert_eq!(received::<38>(&line), [Some(bytes.as_slice().to_vec())]);
+    }
+
+    #[test]
+    fn any_frame_comes_back_after_any_noise(noise in prop::collection::vec(byte(), 0..100), frame in prop::collection::vec(byte(), 1..38)) {
+        let line: Vec<u8> = noise.into_iter().chain(slip::encode(&frame)).collect();
+        prop_assert_eq!(received::<38>(&line).pop(), Some(Some(frame)));
+    }
+
+    #[test]
+    fn no_bytes_panic_and_a_changed_bit_is_seen(request in request(), bit: u16, bytes in prop::collection::vec(byte(), 0..60)) {
+        let _ = Request::from_bytes(&bytes);
+        let _ = Answer::from_bytes(&bytes);
+        let mut changed = request.to_bytes().as_slice().to_vec();
+        let place = usize::from(bit >> 3) % changed.len();
+        changed[place] ^= 1 << (bit & 7);
+        prop_assert!(Request::from_bytes(&changed).is_err());
+    }
+}
+
+#[test]
+fn what_no_address_asks_for_is_refused() {
+    let with = |content: &[u8]| {
+        let line = on_the_line(content);
+        Request::from_bytes(&received::<60>(&line)[0].clone().unwrap()).unwrap_err()
+    };
+    assert_eq!(with(&[0; 3]), FrameError::Length(7));
+    assert_eq!(with(&[0, 0x42, 0, 0, 0, 0]), FrameError::Length(10));
+    assert_eq!(with(&[0, 0x80]), FrameError::Length(6));
+    assert_eq!(with(&[0, 0xc0, 0, 0, 0, 0]), FrameError::Length(10));
+    let mut segment = [0; 34];
+    segment[1] = 0xc1;
+    assert_eq!(with(&segment), FrameError::Address(0xc1));
+    assert_eq!(Request::from_bytes(&[]), Err(FrameError::Length(0)));
+    assert_eq!(Answer::from_bytes(&[0; 15]), Err(FrameError::Crc));
+}

@@ -1,0 +1,93 @@
+//! The clients' library and the gateware in miniature with one line wrong: each must fail a test that the right ones pass.
+
+mod support;
+
+use support::c_library::CClient;
+use support::client::{Client, RustClient};
+use support::conversation::{converse, scripts};
+use support::device::Bugs;
+use support::random::{Random, program};
+use support::soak::{Soak, TICKS, soak};
+use support::wire::Faults;
+
+/// Name, right text (it stands once in its file), wrong text; in the C library.
+const IN_C: [(&str, &str, &str); 20] = [
+    ("CRC is not looked at", "|| carrystep_crc(frame, content) != word_at(frame, content)", ""),
+    ("length is not looked at", "length != CARRYSTEP_ANSWER_BYTES || ", ""),
+    ("END is not escaped", "if (frame[at] == CARRYSTEP_END) {", "if (false) {"),
+    ("ESC is not escaped", "} else if (frame[at] == CARRYSTEP_ESC) {", "} else if (false) {"),
+    ("a wrong escape is taken", "decoder->broken = true;\n        }\n    }", "}\n    }"),
+    ("an unfinished escape is taken", "decoder->broken || decoder->escaped", "decoder->broken"),
+    (
+        "a long frame is cut to size",
+        "} else {\n        decoder->broken = true;\n    }\n    return CARRYSTEP_NOTHING;",
+        "}\n    return CARRYSTEP_NOTHING;",
+    ),
+    ("ticks are not less one", "segment->ticks - 1u", "segment->ticks"),
+    ("the count of others is believed", "advance > session->reached", "false && advance > session->reached"),
+    ("what was never sent may be executed", "advance > session->reached", "advance > session->length"),
+    ("every refusal begins a new round", "!session->has_refused || behind <= session->refused", "true"),
+    (
+        "no refusal begins a new round after the first",
+        "!session->has_refused || behind <= session->refused",
+        "!session->has_refused",
+    ),
+    ("a busy start is sent again at once", "session->busy = behind == 0;", ""),
+    ("nothing is sent again by time", "waited >= session->resend)", "false && waited >= session->resend)"),
+    ("a question is answered by any answer", " && session->reads[index].sequence == answer->sequence", ""),
+    (
+        "segments on their way are not counted",
+        "answer->free > under_way ? answer->free - under_way : 0",
+        "answer->free",
+    ),
+    ("a start does not wait for the other", "!session->starting && !session->armed", "true"),
+    ("a start does not wait for its segments", "feeder->axes[axis].waiting == 0", "false"),
+    ("only axis 0 is fed first", "feeder->axes[axis].ticks < feeder->axes[found].ticks", "false"),
+    ("a withdrawn segment stays on its way", "settle(session, &session->slots[slot(session, session->length)]);", ""),
+];
+
+fn verdict(client: &mut dyn Client) -> Result<(), String> {
+    for (name, text) in scripts() {
+        converse(client, &text).map_err(|words| format!("{name}: {words}"))?;
+    }
+    run(client, Bugs::default())
+}
+
+fn run(client: &mut dyn Client, bugs: Bugs) -> Result<(), String> {
+    let commands = program(&mut Random(7), 6, 800, 20 * TICKS);
+    let outcome = soak(client, &commands, Soak { faults: Faults::BAD, seed: 7, axes: 6, bugs })?;
+    outcome.fault.map_or(Ok(()), |cause| Err(format!("the machine stopped: {cause}")))
+}
+
+#[test]
+fn in_the_client() {
+    assert_eq!(verdict(&mut CClient::shared()), Ok(()));
+    for (bug, right, wrong) in IN_C {
+        let planted = std::cell::Cell::new(0);
+        let arguments = ["-Wno-error", "-w"];
+        let mut client = CClient::with(&arguments, |_, text| {
+            planted.set(planted.get() + text.matches(right).count());
+            text.replace(right, wrong)
+        });
+        assert_eq!(planted.get(), 1, "{bug}: {right}");
+        let caught = verdict(&mut client);
+        println!("{bug}: {caught:?}");
+        assert!(caught.is_err(), "{bug} is not caught");
+    }
+}
+
+#[test]
+fn in_the_gateware() {
+    assert_eq!(run(&mut RustClient::default(), Bugs::default()), Ok(()));
+    let bugs = [
+        Bugs { no_crc: true, ..Bugs::default() },
+        Bugs { executes_again: true, ..Bugs::default() },
+        Bugs { skips_the_missing: true, ..Bugs::default() },
+        Bugs { no_escape: true, ..Bugs::default() },
+    ];
+    for bug in bugs {
+        let caught = run(&mut RustClient::default(), bug);
+        println!("{bug:?}: {caught:?}");
+        assert!(caught.is_err(), "{bug:?} is not caught");
+    }
+}

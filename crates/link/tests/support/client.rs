@@ -1,0 +1,200 @@
+//! A client that is told what to do, a line at a time, and says what came of it. The one in C
+//! (`tests/bench/link_bench.c`) understands the same words.
+//!
+//! ```text
+//! begin RESEND PAUSE          a new session
+//! adopt NEXT AXES
+//! read ADDRESS                yes or no                     addresses, words and masks in hex
+//! write ADDRESS WORD          yes or no
+//! segment AXIS TICKS V A J LAST     of the program; start MASK likewise; load: the program is whole
+//! feed                        feeding, fed or bad
+//! withdraw
+//! send NOW                    bytes of one request, or -
+//! take NOW BYTES              one word for each frame: the answer's fields, `damaged` or `step`
+//! step NOW BYTES              take, feed, and send until there is nothing to send; answers | feed | bytes
+//! check IDENTITY PROTOCOL BUILD WANTED      fine, device, protocol or build
+//! busy                        which of `waiting` and `writing` it is
+//! ```
+
+use super::{hex, unhex};
+use carrystep_link::{Answer, Body, Command, Facts, Feeder, Refusal, Segment, Session, Timing, slip};
+
+pub trait Client {
+    fn say(&mut self, words: &str) -> String;
+}
+
+/// Writes on their way, as in the C bench.
+pub const SLOTS: usize = 64;
+
+pub struct RustClient {
+    session: Session<SLOTS>,
+    axes: u8,
+    commands: Vec<Command>,
+    feeder: Option<Feeder<Owned>>,
+}
+
+/// The program, by value.
+struct Owned {
+    segments: Vec<std::collections::VecDeque<Segment>>,
+    starts: std::collections::VecDeque<u8>,
+}
+
+impl carrystep_link::Source for Owned {
+    fn segment(&mut self, axis: u8) -> Option<Segment> {
+        self.segments.get_mut(usize::from(axis))?.pop_front()
+    }
+
+    fn start(&mut self) -> Option<u8> {
+        self.starts.pop_front()
+    }
+}
+
+impl Owned {
+    /// Not through `Program`, which would refuse what a source may get wrong.
+    fn new(commands: &[Command]) -> Self {
+        let own = |axis: u8| {
+            commands.iter().filter_map(move |command| match *command {
+                Command::Segment { axis: other, segment } if other == axis => Some(segment),
+                _ => None,
+            })
+        };
+        let segments = (0..8).map(|axis| own(axis).collect()).collect();
+        let start = |command: &Command| if let Command::Start { mask } = *command { Some(mask) } else { None };
+        Self { segments, starts: commands.iter().filter_map(start).collect() }
+    }
+}
+
+impl Default for RustClient {
+    fn default() -> Self {
+        Self { session: Session::new(Timing::default()), axes: 0, commands: Vec::new(), feeder: None }
+    }
+}
+
+fn number(word: &str) -> u32 {
+    word.parse().unwrap_or_else(|_| panic!("{word:?} is no number"))
+}
+
+fn long(word: &str) -> i64 {
+    word.parse().unwrap_or_else(|_| panic!("{word:?} is no number"))
+}
+
+fn hexadecimal(word: &str) -> u64 {
+    u64::from_str_radix(word, 16).unwrap_or_else(|_| panic!("{word:?} is no number"))
+}
+
+fn fields(answer: &Answer) -> String {
+    let Answer { sequence, address, next, cause, free, culprits, homing, data, .. } = *answer;
+    let flags = [
+        (answer.fault, 'f'),
+        (answer.halted, 'h'),
+        (answer.idle, 'i'),
+        (answer.ready, 'r'),
+        (answer.armed, 'a'),
+        (answer.refused, 'x'),
+    ];
+    let flags: String = flags.iter().map(|&(on, letter)| if on { letter } else { '.' }).collect();
+    format!("{sequence:02x}:{address:02x}:{next:02x}:{flags}:{cause}:{free}:{culprits:02x}:{homing:02x}:{data:08x}")
+}
+
+impl RustClient {
+    fn send(&mut self, now: u32) -> Vec<u8> {
+        self.session.transmit(now).map_or(Vec::new(), |request| slip::encode(request.to_bytes().as_slice()).collect())
+    }
+
+    fn take(&mut self, now: u32, bytes: &[u8]) -> String {
+        let mut said = Vec::new();
+        for &byte in bytes {
+            let before = self.session.broken();
+            match self.session.receive(byte, now) {
+                Ok(Some(answer)) => said.push(fields(&answer)),
+                Ok(None) if self.session.broken() > before => said.push("damaged".to_owned()),
+                Ok(None) => {}
+                Err(_) => said.push("step".to_owned()),
+            }
+        }
+        if said.is_empty() { "-".to_owned() } else { said.join(" ") }
+    }
+
+    fn feed(&mut self) -> &'static str {
+        let Some(feeder) = &mut self.feeder else { return "fed" };
+        match self.session.feed(feeder) {
+            Ok(true) => "fed",
+            Ok(false) => "feeding",
+            Err(_) => "bad",
+        }
+    }
+}
+
+impl Client for RustClient {
+    fn say(&mut self, words: &str) -> String {
+        let yes = |done: bool| if done { "yes" } else { "no" }.to_owned();
+        let (verb, rest) = words.split_once(' ').unwrap_or((words, ""));
+        let parts: Vec<&str> = rest.split_whitespace().collect();
+        let nothing = String::new();
+        match (verb, parts.as_slice()) {
+            ("begin", [resend, pause]) => {
+                *self = Self::default();
+                self.session = Session::new(Timing { resend: number(resend), pause: number(pause) });
+                nothing
+            }
+            ("adopt", [next, axes]) => {
+                self.axes = number(axes) as u8;
+                self.session.adopt(hexadecimal(next) as u8, self.axes);
+                nothing
+            }
+            ("read", [address]) => yes(self.session.read(hexadecimal(address) as u8).is_ok()),
+            ("write", [address, word]) => {
+                let body = Body::Write { address: hexadecimal(address) as u8, word: hexadecimal(word) as u32 };
+                yes(self.session.write(body).is_ok())
+            }
+            ("segment", [axis, ticks, v, a, j, last]) => {
+                let segment =
+                    Segment { ticks: number(ticks), v: long(v), a: long(a), j: long(j), last: number(last) == 1 };
+                self.commands.push(Command::Segment { axis: number(axis) as u8, segment });
+                nothing
+            }
+            ("start", [mask]) => {
+                self.commands.push(Command::Start { mask: hexadecimal(mask) as u8 });
+                nothing
+            }
+            ("load", []) => {
+                self.feeder = Some(Feeder::new(Owned::new(&std::mem::take(&mut self.commands))));
+                nothing
+            }
+            ("feed", []) => self.feed().to_owned(),
+            ("withdraw", []) => {
+                self.session.withdraw();
+                nothing
+            }
+            ("send", [now]) => hex(&self.send(number(now))),
+            ("take", [now, ..]) => self.take(number(now), &unhex(&parts[1..].join(" "))),
+            ("step", [now, ..]) => {
+                let now = number(now);
+                let said = self.take(now, &unhex(&parts[1..].join(" ")));
+                let fed = self.feed();
+                let mut bytes = Vec::new();
+                loop {
+                    match self.send(now) {
+                        piece if piece.is_empty() => break,
+                        piece => bytes.extend(piece),
+                    }
+                }
+                format!("{said} | {fed} | {}", hex(&bytes))
+            }
+            ("check", [identity, protocol, build, wanted]) => {
+                let word = |word| hexadecimal(word) as u32;
+                let (identity, protocol) = (word(identity), word(protocol));
+                let facts = Facts { identity, protocol, build: hexadecimal(build), ..Facts::default() };
+                match facts.check(Some(hexadecimal(wanted))) {
+                    Ok(()) => "fine",
+                    Err(Refusal::Identity(_)) => "device",
+                    Err(Refusal::Protocol { .. }) => "protocol",
+                    Err(Refusal::Build { .. }) => "build",
+                }
+                .to_owned()
+            }
+            ("busy", []) => format!("{} {}", yes(self.session.waiting()), yes(self.session.writing())),
+            _ => panic!("no such words: {words}"),
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! The gateware's side of the link in miniature, written from docs/protocol.md and from nothing of this crate.
+
+use std::collections::VecDeque;
+
+/// CRC-32 bit by bit.
+pub fn crc(bytes: &[u8]) -> u32 {
+    let mut crc = u32::MAX;
+    for byte in bytes {
+        for bit in 0..8 {
+            let feedback = (crc ^ u32::from(byte >> bit)) & 1;
+            crc = (crc >> 1) ^ (feedback * 0xedb8_8320);
+        }
+    }
+    !crc
+}
+
+/// Escapes a frame whose CRC is still missing.
+pub fn on_the_line(frame: &[u8]) -> Vec<u8> {
+    let mut line = vec![0xc0];
+    for byte in frame.iter().copied().chain(crc(frame).to_le_bytes()) {
+        match byte {
+            0xc0 => line.extend([0xdb, 0xdc]),
+            0xdb => line.extend([0xdb, 0xdd]),
+            _ => line.push(byte),
+        }
+    }
+    line.push(0xc0);
+    line
+}
+
+/// What a write did, in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Done {
+    Write(u8, u32),
+    Segment(u8, [u32; 8]),
+}
+
+/// Bugs to be planted.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Bugs {
+    pub no_crc: bool,
+    pub executes_again: bool,
+    pub skips_the_missing: bool,
+    pub no_escape: bool,
+}
+
+#[derive(Debug, Default)]
+pub struct Device {
+    pub axes: u8,
+    pub bugs: Bugs,
+    pub facts: [u32; 9],
+    pub log: Vec<Done>,
+    pub fault: Option<u8>,
+    pub homing: u8,
+    pub position: [i32; 8],
+    pub latched: [i32; 8],
+    /// The e-stop is pressed: a clear changes nothing.
+    pub pressed: bool,
+    /// No tick comes.
+    pub freeze_time: bool,
+    pub frames: u64,
+    pub damaged: u64,
+    pub repeated: u64,
+    pub out_of_turn: u64,
+    bytes: Vec<u8>,
+    escaped: bool,
+    broken: bool,
+    next: u8,
+    powered: bool,
+    armed: Option<u8>,
+    queues: [VecDeque<(u32, bool)>; 8],
+    running: [Option<(u32, bool)>; 8],
+}
+
+impl Device {
+    pub fn new(axes: u8, next: u8) -> Self {
+        let facts = [0x5054_5343, 1, 0x89ab_cdef, 0x0123_4567, axes.into(), 48_000_000, 2000, 16, 50_000];
+        Self { axes, next, facts, ..Self::default() }
+    }
+
+    /// A byte from the host; the answer that it brings.
+    pub fn byte(&mut self, byte: u8) -> Vec<u8> {
+        if byte != 0xc0 {
+            match (self.escaped, byte) {
+                (false, 0xdb) if !self.bugs.no_escape => self.escaped = true,
+                (true, 0xdc | 0xdd) => {
+                    self.bytes.push(if byte == 0xdc { 0xc0 } else { 0xdb });
+                    self.escaped = false;
+                }
+                (true, _) => self.broken = true,
+                (false, _) => self.bytes.push(byte),
+            }
+            return Vec::new();
+        }
+        let frame = std::mem::take(&mut self.bytes);
+        let broken = std::mem::take(&mut self.broken) | std::mem::take(&mut self.escaped);
+        if frame.is_empty() && !broken {
+            return Vec::new();
+        }
+        match frame.split_last_chunk::<4>() {
+            Some((content, sum)) if !broken && (self.bugs.no_crc || crc(content).to_le_bytes() == *sum) => {
+                self.request(content)
+            }
+            _ => {
+                self.damaged += 1;
+                Vec::new()
+            }
+        }
+    }
+
+    fn request(&mut self, content: &[u8]) -> Vec<u8> {
+        let [sequence, address, words @ ..] = content else { return Vec::new() };
+        let (sequence, address) = (*sequence, *address);
+        let expected = [0, 0, 1, 8][usize::from(address >> 6)];
+        if words.len() != 4 * expected {
+            self.damaged += 1;
+            return Vec::new();
+        }
+        self.frames += 1;
+        let mut refused = false;
+        if address >= 0x80 {
+            let words: Vec<u32> = words.chunks(4).map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])).collect();
+            match self.next.wrapping_sub(sequence) {
+                0 => refused = !self.execute(address & 0x7f, &words),
+                1..=127 if self.bugs.executes_again => {
+                    self.execute(address & 0x7f, &words);
+                }
+                1..=127 => self.repeated += 1,
+                _ if self.bugs.skips_the_missing => {
+                    self.next = sequence;
+                    self.execute(address & 0x7f, &words);
+                }
+                _ => refused = true,
+            }
+            self.out_of_turn += u64::from(refused);
+        }
+        self.answer(sequence, address, refused)
+    }
+
+    /// False: busy.
+    fn execute(&mut self, address: u8, words: &[u32]) -> bool {
+        let axis = usize::from(address >> 3 & 7);
+        if address == 0x21 && self.armed.is_some() {
+            return false;
+        }
+        self.next = self.next.wrapping_add(1);
+        if let Ok(words) = <[u32; 8]>::try_from(words) {
+            self.log.push(Done::Segment(axis as u8, words));
+            match self.fault {
+                Some(_) => {}
+                None if axis >= self.axes.into() || self.queues[axis].len() == 7 => self.fault = Some(2),
+                None => self.queues[axis].push_back((words[0].wrapping_add(1), words[7] & 1 == 1)),
+            }
+            return true;
+        }
+        self.log.push(Done::Write(address, words[0]));
+        let mask = words[0] as u8;
+        match address {
+            0x20 => {
+                self.powered = words[0] & 1 == 1;
+                if words[0] & 2 != 0 {
+                    self.stop(7);
+                }
+            }
+            0x21 if self.fault.is_none() => {
+                if (0..8).any(|axis| mask >> axis & 1 == 1 && self.queues[axis].is_empty()) {
+                    self.stop(2);
+                } else {
+                    self.armed = Some(mask);
+                }
+            }
+            0x22 if self.fault.is_some() && !self.pressed => {
+                self.fault = None;
+                self.queues.iter_mut().for_each(VecDeque::clear);
+            }
+            0x23 => self.homing = mask,
+            _ => {}
+        }
+        true
+    }
+
+    /// Ramps are over at once.
+    pub fn stop(&mut self, cause: u8) {
+        self.fault.get_or_insert(cause);
+        self.armed = None;
+        self.running = [None; 8];
+    }
+
+    /// The limit of an axis is reached.
+    pub fn limit(&mut self, axis: usize) {
+        if self.homing >> axis & 1 == 1 {
+            self.homing &= !(1 << axis);
+            self.latched[axis] = self.position[axis];
+            self.running[axis] = None;
+            self.queues[axis].clear();
+        } else {
+            self.stop(5);
+        }
+    }
+
+    fn answer(&self, sequence: u8, address: u8, refused: bool) -> Vec<u8> {
+        let plain = address & 0x7f;
+        let axis = if plain >= 0x40 { usize::from(plain >> 3 & 7) } else { 0 };
+        let data = match (address, plain & 7) {
+            (0..0x20, _) => self.facts.get(usize::from(plain)).copied().unwrap_or(0),
+            (0x40..0x80, 4) => self.latched[axis] as u32,
+            _ => self.position[axis] as u32,
+        };
+        let halted = self.fault.is_some();
+        let state = [halted, halted, self.idle(), self.powered, self.armed.is_some()];
+        let bits = state.iter().rev().fold(0, |bits, &on| bits << 1 | u8::from(on)) | self.fault.unwrap_or(0) << 5;
+        let free = 7 - self.queues[axis].len() as u8;
+        let mut frame = vec![sequence, address, self.next, bits, free | u8::from(refused) << 3, 0, self.homing];
+        frame.extend(data.to_le_bytes());
+        on_the_line(&frame)
+    }
+
+    pub fn idle(&self) -> bool {
+        self.armed.is_none() && self.running.iter().all(Option::is_none) && self.queues.iter().all(VecDeque::is_empty)
+    }
+
+    /// Time passes: starts, segments, ends, dry queues. A segment's V of so many steps a tick moves the position.
+    pub fn elapse(&mut self, mut ticks: u32) {
+        while ticks > 0 && self.fault.is_none() && !self.freeze_time {
+            if let Some(mask) = self.armed {
+                let masked = |axis: &usize| mask >> axis & 1 == 1;
+                if (0..8).filter(masked).all(|axis| self.running[axis].is_none() && !self.queues[axis].is_empty()) {
+                    self.armed = None;
+                    (0..8).filter(masked).for_each(|axis| self.running[axis] = self.queues[axis].pop_front());
+                }
+            }
+            let Some(step) = self.running.iter().flatten().map(|(left, _)| *left).min().map(|least| least.min(ticks))
+            else {
+                return;
+            };
+            ticks -= step;
+            for axis in 0..8 {
+                let Some((left, last)) = self.running[axis] else { continue };
+                self.position[axis] = self.position[axis].wrapping_add(step as i32);
+                self.running[axis] = match (left - step, last) {
+                    (0, true) => None,
+                    (0, false) => match self.queues[axis].pop_front() {
+                        None => return self.stop(6),
+                        follower => follower,
+                    },
+                    (left, last) => Some((left, last)),
+                };
+            }
+        }
+    }
+}

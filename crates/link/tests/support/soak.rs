@@ -1,0 +1,167 @@
+//! A client, a faulty line each way and a gateware: a whole program, to its end.
+
+use super::client::Client;
+use super::device::{Bugs, Device, Done};
+use super::wire::{Faults, Wire};
+use super::{hex, unhex};
+use carrystep_link::Command;
+use std::collections::VecDeque;
+
+/// Ticks of the device in a millisecond.
+pub const TICKS: u32 = 500;
+
+/// Milliseconds without progress after which a talk is called dead.
+const STALLED: u32 = 4000;
+
+/// How a program is run.
+#[derive(Debug, Clone, Copy)]
+pub struct Soak {
+    pub faults: Faults,
+    pub seed: u64,
+    pub axes: u8,
+    pub bugs: Bugs,
+}
+
+/// What came of it.
+#[derive(Debug)]
+pub struct Outcome {
+    pub milliseconds: u32,
+    /// Requests that the device took, damaged ones, and those that it had executed before.
+    pub frames: u64,
+    pub damaged: u64,
+    pub repeated: u64,
+    pub out_of_turn: u64,
+    /// Pieces and bytes that the line harmed, both ways.
+    pub harmed: u64,
+    /// The motion stopped, with this cause.
+    pub fault: Option<u8>,
+}
+
+/// Runs a program; what is wrong where something is.
+pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result<Outcome, String> {
+    let Soak { faults, seed, axes, bugs } = soak;
+    let first = seed as u8;
+    let mut device = Device::new(axes, first);
+    device.bugs = bugs;
+    let (mut there, mut back) = (Wire::new(faults, seed), Wire::new(faults, !seed));
+    client.say("begin 12 2");
+    client.say(&format!("adopt {first:02x} {axes}"));
+    for command in commands {
+        match command {
+            Command::Segment { axis, segment: s } => {
+                client.say(&format!("segment {axis} {} {} {} {} {}", s.ticks, s.v, s.a, s.j, u8::from(s.last)));
+            }
+            Command::Start { mask } => {
+                client.say(&format!("start {mask:02x}"));
+            }
+        }
+    }
+    client.say("load");
+    let mut sent: VecDeque<Vec<u8>> = VecDeque::new();
+    let (mut done, mut since) = (0, 0);
+    for now in 0.. {
+        if device.log.len() > done {
+            (done, since) = (device.log.len(), now);
+        } else if now - since > STALLED {
+            break;
+        }
+        let said = client.say(&format!("step {now} {}", hex(&back.receive(now))));
+        let parts: Vec<&str> = said.split(" | ").collect();
+        let [answers, fed, bytes] = parts.as_slice() else { return Err(format!("{said:?}")) };
+        for answer in answers.split(' ').filter(|&word| word != "-" && word != "damaged") {
+            if answer == "step" {
+                return Err(format!("out of step after {now} ms"));
+            }
+            check_answer(answer, &mut sent)?;
+        }
+        for piece in unhex(bytes).split_inclusive(|&byte| byte == 0xc0) {
+            there.send(now, piece);
+        }
+        for byte in there.receive(now) {
+            let answer = device.byte(byte);
+            if !answer.is_empty() {
+                back.send(now, &answer);
+                sent.push_back(answer);
+            }
+        }
+        device.elapse(TICKS);
+        if *fed == "bad" {
+            return Err("the source was called bad".to_owned());
+        }
+        let over = *fed == "fed" && device.idle() && client.say("busy") == "no no";
+        if over || device.fault.is_some() {
+            compare(&device, commands)?;
+            let Device { frames, damaged, repeated, out_of_turn, fault, .. } = device;
+            let harmed = there.harmed + back.harmed;
+            return Ok(Outcome { milliseconds: now, frames, damaged, repeated, out_of_turn, harmed, fault });
+        }
+    }
+    Err(format!("nothing more is done after {since} ms, {done} of {}", commands.len()))
+}
+
+/// An answer that the client took is one that the device gave, and none older than one that it took before.
+fn check_answer(answer: &str, sent: &mut VecDeque<Vec<u8>>) -> Result<(), String> {
+    let bytes = |text: &str| {
+        let parts: Vec<&str> = text.split(':').collect();
+        [parts[0], parts[1], parts[2], parts[8]].map(str::to_owned)
+    };
+    let wanted = bytes(answer);
+    let same = |line: &Vec<u8>| {
+        let mut frame = Vec::new();
+        let mut escaped = false;
+        for &byte in &line[1..line.len() - 1] {
+            match (escaped, byte) {
+                (false, 0xdb) => escaped = true,
+                (true, _) => {
+                    frame.push(if byte == 0xdc { 0xc0 } else { 0xdb });
+                    escaped = false;
+                }
+                _ => frame.push(byte),
+            }
+        }
+        let data = u32::from_le_bytes([frame[7], frame[8], frame[9], frame[10]]);
+        [format!("{:02x}", frame[0]), format!("{:02x}", frame[1]), format!("{:02x}", frame[2]), format!("{data:08x}")]
+            == wanted
+    };
+    match sent.iter().position(same) {
+        // It stays, for the line may double it.
+        Some(place) => {
+            sent.drain(..place);
+            Ok(())
+        }
+        None => Err(format!("the client took an answer that was never given: {answer}")),
+    }
+}
+
+/// Every segment and start was executed once, those of an axis in their order; all, or none after a fault.
+fn compare(device: &Device, commands: &[Command]) -> Result<(), String> {
+    let wanted = |axis: u8| {
+        commands.iter().filter_map(move |command| match *command {
+            Command::Segment { axis: own, segment: s } if own == axis => {
+                let halves = [s.v, s.a, s.j].map(|long| [long as u32, (long >> 32) as u32]);
+                let [[v0, v1], [a0, a1], [j0, j1]] = halves;
+                Some(Done::Segment(axis, [s.ticks - 1, v0, v1, a0, a1, j0, j1, u32::from(s.last)]))
+            }
+            _ => None,
+        })
+    };
+    let starts = |command: &Command| match *command {
+        Command::Start { mask } => Some(Done::Write(0x21, mask.into())),
+        Command::Segment { .. } => None,
+    };
+    let whole = device.fault.is_none();
+    let same = |what: &str, found: Vec<Done>, wanted: Vec<Done>| {
+        let enough = if whole { found.len() == wanted.len() } else { found.len() <= wanted.len() };
+        match found.iter().zip(&wanted).position(|(one, other)| one != other) {
+            Some(place) => Err(format!("{what} {place} is {:x?}, not {:x?}", found[place], wanted[place])),
+            None if enough => Ok(()),
+            None => Err(format!("{} of {what}, {} were sent", found.len(), wanted.len())),
+        }
+    };
+    for axis in 0..8 {
+        let found = device.log.iter().copied().filter(|done| matches!(done, Done::Segment(own, _) if *own == axis));
+        same(&format!("segment of axis {axis}"), found.collect(), wanted(axis).collect())?;
+    }
+    let found = device.log.iter().copied().filter(|done| matches!(done, Done::Write(..))).collect();
+    same("start", found, commands.iter().filter_map(starts).collect())
+}

@@ -1,0 +1,66 @@
+//! One direction of a line that flips, drops, doubles, cuts and delays bytes; what comes out stays in order.
+
+use super::random::Random;
+use std::collections::VecDeque;
+
+/// How often, in a million: each byte, but for `again`, `cut` and `delay`, which are for each piece that is sent.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Faults {
+    pub flip: u32,
+    pub drop: u32,
+    pub double: u32,
+    /// The whole piece comes twice.
+    pub again: u32,
+    /// The rest of the piece is lost.
+    pub cut: u32,
+    /// Some milliseconds more.
+    pub delay: u32,
+}
+
+impl Faults {
+    /// A line that no one would accept: every twentieth frame suffers.
+    pub const BAD: Self = Self { flip: 800, drop: 400, double: 400, again: 5000, cut: 10_000, delay: 20_000 };
+}
+
+#[derive(Debug)]
+pub struct Wire {
+    faults: Faults,
+    random: Random,
+    bytes: VecDeque<(u32, u8)>,
+    due: u32,
+    /// Bytes or pieces that were changed in any way but delayed.
+    pub harmed: u64,
+}
+
+impl Wire {
+    pub fn new(faults: Faults, seed: u64) -> Self {
+        Self { faults, random: Random(seed), bytes: VecDeque::new(), due: 0, harmed: 0 }
+    }
+
+    pub fn send(&mut self, now: u32, piece: &[u8]) {
+        let Faults { flip, drop, double, again, cut, delay } = self.faults;
+        let late = if self.random.happens(delay) { 1 + self.random.below(25) as u32 } else { 0 };
+        self.due = self.due.max(now + late);
+        let end =
+            if self.random.happens(cut) { self.random.below(piece.len() as u64 + 1) as usize } else { piece.len() };
+        self.harmed += u64::from(end < piece.len());
+        let twice = self.random.happens(again);
+        self.harmed += u64::from(twice);
+        for &byte in [&piece[..end]].repeat(1 + usize::from(twice)).into_iter().flatten() {
+            let flipped = self.random.happens(flip);
+            let byte = if flipped { byte ^ 1 << self.random.below(8) } else { byte };
+            let times = if self.random.happens(drop) { 0 } else { 1 + usize::from(self.random.happens(double)) };
+            self.harmed += u64::from(flipped || times != 1);
+            self.bytes.extend([(self.due, byte)].repeat(times));
+        }
+    }
+
+    pub fn receive(&mut self, now: u32) -> Vec<u8> {
+        let come = self.bytes.iter().take_while(|(due, _)| *due <= now).count();
+        self.bytes.drain(..come).map(|(_, byte)| byte).collect()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.bytes.is_empty()
+    }
+}
