@@ -45,5 +45,5 @@ fn all_stages_of_the_exported_verilog_do_the_same_in_every_clock() {
 /// Icarus knows what is undefined: nothing that is may reach a pin.
 #[test]
 fn nothing_undefined_reaches_the_pins() {
-    assert_same(stages::hurried(), Level::Icarus, 20_000);
+    assert_same(stages::hurried(), Level::Icarus, 10_000);
 }

@@ -7,28 +7,44 @@ use carrystep_spec::{Command, Segment};
 use carrystep_synthesis::equivalence::{self, Verdict};
 use carrystep_synthesis::{SynthesisError, ice40};
 use carrystep_tests::effort;
+use std::ops::Range;
 
-/// The text with the first `from` after `place` changed.
-fn planted(text: &str, place: &str, from: &str, to: &str) -> String {
-    let at = text.find(place).unwrap_or_else(|| panic!("no {place}"));
-    assert!(text[at..].contains(from), "no {from}");
-    text[..at].to_owned() + &text[at..].replacen(from, to, 1)
+/// Where the cells of a type stand in a netlist.
+fn cells(netlist: &str, cell: &str) -> Vec<Range<usize>> {
+    let name = format!("\n  {cell} ");
+    let begins = netlist.match_indices(&name).map(|(begin, _)| begin + 1);
+    begins.map(|begin| begin..begin + netlist[begin..].find(");\n").expect("the cell's end")).collect()
+}
+
+/// What is in the brackets behind a name.
+fn inside<'a>(text: &'a str, name: &str) -> &'a str {
+    let begin = text.find(&format!("{name}(")).expect("a name") + name.len() + 1;
+    &text[begin..begin + text[begin..].find(')').expect("a bracket")]
+}
+
+/// The netlist with one cell changed.
+fn changed(netlist: &str, cell: &Range<usize>, change: impl Fn(&str) -> String) -> String {
+    let text = change(&netlist[cell.clone()]);
+    assert_ne!(text, netlist[cell.clone()]);
+    format!("{}{text}{}", &netlist[..cell.start], &netlist[cell.end..])
 }
 
 #[test]
 fn faults_in_the_netlist_are_caught() {
     let stages = stages::shipped();
     let netlist = &stages.netlist.verilog;
-    // The LUT of an adder's bit, and one that feeds a flip-flop of the guard.
-    let lut = ") \\adder.r_SB_DFFSR_Q_10_D_SB_LUT4_O  (";
-    let begin = netlist[..netlist.find(lut).expect("an adder's bit")].rfind("16'h").expect("its function");
-    let function = u16::from_str_radix(&netlist[begin + 4..begin + 8], 16).expect("a number");
-    let changed = format!("{}{:04x}{}", &netlist[..begin + 4], function ^ 0x0100, &netlist[begin + 8..]);
-    let swapped = planted(&planted(netlist, lut, ".I1(", ".I0_("), lut, ".I2(", ".I1(").replacen(".I0_(", ".I2(", 1);
-    let other_clock_enable = planted(netlist, "SB_DFFE \\adder.a_SB_DFFE_Q  (", ".E(", ".E(!");
-    for (fault, text) in [("a LUT's bit", changed), ("two wires swapped", swapped), ("an enable", other_clock_enable)] {
-        assert_ne!(text, *netlist);
+    let (luts, flip_flops) = (cells(netlist, "SB_LUT4"), cells(netlist, "SB_DFFE"));
+    let inverted = changed(netlist, &luts[luts.len() / 2], |lut| {
+        let function = u16::from_str_radix(&inside(lut, ".LUT_INIT")[4..], 16).expect("a number");
+        lut.replace(inside(lut, ".LUT_INIT"), &format!("16'h{:04x}", !function))
+    });
+    let [one, other] = [&flip_flops[3], &flip_flops[4]];
+    let d_of_other = format!(".D({})", inside(&netlist[other.clone()], ".D"));
+    let crossed = changed(netlist, one, |cell| cell.replace(&format!(".D({})", inside(cell, ".D")), &d_of_other));
+    let disabled = changed(netlist, &flip_flops[40], |cell| cell.replace(".E(", ".E(!"));
+    for (fault, text) in [("a LUT inverted", inverted), ("a wire crossed", crossed), ("an enable inverted", disabled)] {
         let verdict = equivalence::verilog_and_netlist(&stages.verilog, &stages.netlist, &text).expect("a verdict");
+        effort::say(&format!("{fault}: {verdict:?}"));
         assert!(matches!(verdict, Verdict::Open(..)), "nobody catches {fault}: {verdict:?}");
     }
 }
@@ -36,8 +52,8 @@ fn faults_in_the_netlist_are_caught() {
 /// A bit of a tile, flipped.
 fn flipped(asc: &str, tile: &str, row: usize, column: usize) -> String {
     let mut lines: Vec<String> = asc.lines().map(str::to_owned).collect();
-    let at = lines.iter().position(|line| line == tile).unwrap_or_else(|| panic!("no {tile}")) + 1 + row;
-    let bit = if &lines[at][column..=column] == "1" { "0" } else { "1" };
+    let at = lines.iter().position(|line| line.strip_prefix('.') == Some(tile)).unwrap_or_else(|| panic!("no {tile}")) + 1 + row;
+    let bit = if &lines[at][column..=column] == "0" { "1" } else { "0" };
     lines[at].replace_range(column..=column, bit);
     lines.join("\n") + "\n"
 }
@@ -57,30 +73,32 @@ fn is_caught(stages: &Stages, asc: &str) -> bool {
     }
 }
 
-/// Bits that are set in logic tiles: tile, row, column. Each is there for a reason.
-fn set_bits(asc: &str) -> Vec<(&str, usize, usize)> {
-    let (mut tile, mut row) = ("", 0);
-    let mut bits = Vec::new();
-    for line in asc.lines() {
-        if line.starts_with('.') {
-            (tile, row) = (line, 0);
-        } else if tile.starts_with(".logic_tile") {
-            bits.extend(line.bytes().enumerate().filter(|(_, bit)| *bit == b'1').map(|(column, _)| (tile, row, column)));
-            row += 1;
-        }
+/// Tile, row and column of what is not 0 in the tiles of a kind, by tile.
+fn set<'a>(asc: &'a str, kind: &str) -> Vec<Vec<(&'a str, usize, usize)>> {
+    let mut tiles = Vec::new();
+    for part in asc.split("\n.").filter(|part| part.starts_with(kind)) {
+        let mut lines = part.lines();
+        let tile = lines.next().unwrap_or_default();
+        let bits = lines.enumerate().flat_map(|(row, line)| {
+            line.bytes().enumerate().filter(|(_, bit)| *bit != b'0').map(move |(column, _)| (tile, row, column))
+        });
+        tiles.push(bits.collect());
     }
-    bits
+    tiles
 }
+
+/// Bits of tiles that are full of logic: next to none of them is set for nothing.
+const BUSY: usize = 100;
 
 #[test]
 fn flipped_bits_in_the_bitstream_are_caught() {
     let stages = stages::shipped();
     let asc = &stages.placed.asc;
-    let bits = set_bits(asc);
+    let bits: Vec<_> = set(asc, "logic_tile").into_iter().filter(|bits| bits.len() >= BUSY).flatten().collect();
     let count = if effort::is_long() { 60 } else { 3 };
     let mut seen = 0;
-    for place in (0..count).map(|i| i * bits.len() / count + 101) {
-        let (tile, row, column) = bits[place % bits.len()];
+    for i in 0..count {
+        let (tile, row, column) = bits[(2 * i + 1) * bits.len() / (2 * count)];
         let caught = is_caught(stages, &flipped(asc, tile, row, column));
         effort::say(&format!("{tile} row {row} column {column}: {}", if caught { "caught" } else { "no change" }));
         seen += usize::from(caught);
@@ -93,16 +111,20 @@ fn flipped_bits_in_the_bitstream_are_caught() {
 fn a_flipped_bit_of_a_memory_is_caught_on_the_bench() {
     let stages = stages::shipped();
     let asc = &stages.placed.asc;
-    let tile = asc.lines().find(|line| line.starts_with(".ram_data")).expect("contents of a memory");
-    // Some memory holds where P starts and the stop accelerations: any set bit of them will do.
-    let (tile, row, column) = memory_bits(asc).next().unwrap_or((tile, 0, 0));
+    // Where P starts, and the stop accelerations of both ways: nothing else is there.
+    let contents: Vec<_> = set(asc, "ram_data").concat();
+    let (tile, row, column) = contents[contents.len() / 2];
     let read_back = stages.placed.read_back(&stages.netlist, &flipped(asc, tile, row, column)).expect("a bitstream");
     assert_ne!(equivalence::memories(&read_back), equivalence::memories(&stages.netlist.verilog));
 
-    // Every axis is asked for all that it keeps, and stopped by its ramp both ways.
-    let segment = |axis: u8| Segment { ticks: 400, v: if axis.is_multiple_of(2) { 1 << 60 } else { -1 << 60 }, a: 0, j: 0, last: false };
-    let mut program: Vec<Command> = (0..6).map(|axis| Command::Segment { axis, segment: segment(axis) }).collect();
-    program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 200_000 }, Command::Clear]);
+    // Every axis is stopped by its ramp both ways, because its queue runs dry, and asked for all that it keeps.
+    let mut program = Vec::new();
+    for v in [1 << 60, -1 << 60] {
+        let segment = Segment { ticks: 50, v, a: 0, j: 0, last: false };
+        program.extend((0..6).map(|axis| Command::Segment { axis, segment }));
+        program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 60_000 }]);
+        program.push(Command::Clear);
+    }
     let recording = Recording::new(&stages.build, &program, &Vec::new(), 600_000);
     let difference = |text: &str| {
         let text = ice40::simulated(text).expect("models of its memories");
@@ -110,18 +132,4 @@ fn a_flipped_bit_of_a_memory_is_caught_on_the_bench() {
     };
     assert_eq!(difference(&stages.read_back), None);
     assert!(difference(&read_back).is_some(), "the bench does not see {tile} row {row} column {column}");
-}
-
-fn memory_bits(asc: &str) -> impl Iterator<Item = (&str, usize, usize)> {
-    let (mut tile, mut row) = ("", 0);
-    asc.lines().filter_map(move |line| {
-        if line.starts_with('.') {
-            (tile, row) = (line, 0);
-            return None;
-        }
-        row += 1;
-        // Hexadecimal: a digit that is 1 becomes 0.
-        let column = line.find('1').filter(|_| tile.starts_with(".ram_data"))?;
-        Some((tile, row - 1, column))
-    })
 }

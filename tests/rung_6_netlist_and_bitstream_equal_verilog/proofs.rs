@@ -24,10 +24,18 @@ fn the_bitstream_is_proved_to_be_the_netlist() {
 #[test]
 fn the_memories_begin_as_they_should() {
     let stages = stages::shipped();
+    let verilog = equivalence::memories_of_verilog(&stages.verilog, carrystep_export::ENGINE_NAME).expect("memories");
     let [netlist, bitstream] = [&stages.netlist.verilog, &stages.read_back].map(|text| equivalence::memories(text));
-    assert_eq!(netlist.len(), 8);
-    assert!(netlist.values().all(|memory| memory.len() == 18));
+    assert_eq!(verilog.len(), 8);
+    assert!(verilog.values().all(|memory| memory.len() == 18));
+    assert_eq!(verilog, netlist);
     assert_eq!(netlist, bitstream);
+
+    // One digit of one memory.
+    let mut planted = stages.netlist.verilog.clone();
+    let digit = planted.find(".INIT_0(").and_then(|at| Some(at + planted[at..].find("),")?)).expect("contents") - 1;
+    planted.replace_range(digit..=digit, if &planted[digit..=digit] == "1" { "2" } else { "1" });
+    assert_ne!(equivalence::memories(&planted), verilog);
 }
 
 /// The induction knows nothing of beginnings.

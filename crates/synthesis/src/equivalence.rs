@@ -31,9 +31,10 @@ pub enum Verdict {
 pub fn verilog_and_netlist(core: &str, netlist: &Netlist, verilog: &str) -> Result<Verdict, SynthesisError> {
     let top = netlist.top();
     let gold = format!(
-        "read_verilog core.v; synth_ice40 -top {top} -run begin:map_ffram; opt_expr -mux_undef; {CUT}; \
+        "read_verilog core.v; {}; opt_expr -mux_undef; {CUT}; \
          simplemap t:* t:$dff t:$sdff t:$dffe t:$sdffe t:$sdffce %u %u %u %u %d; opt_expr; opt_merge; opt_expr; opt_clean; \
-         splitnets -ports {top}; select -set kept t:*dff* %co1:+[Q] x:* %u; select -set logic w:* @kept %d; rename -hide @logic"
+         splitnets -ports {top}; select -set kept t:*dff* %co1:+[Q] x:* %u; select -set logic w:* @kept %d; rename -hide @logic",
+        to_words(top)
     );
     prove(top, &gold, core, &with_inverses(verilog))
 }
@@ -47,8 +48,28 @@ pub fn netlist_and_bitstream(netlist: &Netlist, read_back: &str) -> Result<Verdi
     prove(top, &cells_in("core.v", top), &netlist.verilog, read_back)
 }
 
+/// The block RAMs that `synth_ice40` finds for the memories of Verilog, as [`memories`].
+///
+/// # Errors
+/// [`SynthesisError`]: yosys is missing or refuses the text.
+pub fn memories_of_verilog(core: &str, top: &str) -> Result<Memories, SynthesisError> {
+    let folder = tool::folder()?;
+    tool::write(folder.path(), "core.v", core)?;
+    let script = format!("read_verilog core.v; {}; write_verilog -noattr words.v", to_words(top));
+    tool::yosys(folder.path(), &script)?;
+    Ok(memories(&tool::read(folder.path(), "words.v")?))
+}
+
+/// As far as words and block RAMs; gates and LUTs come after it.
+fn to_words(top: &str) -> String {
+    format!("synth_ice40 -top {top} -run begin:map_ffram")
+}
+
+/// Parameters of block RAMs, by name.
+pub type Memories = BTreeMap<String, BTreeMap<String, String>>;
+
 /// Modes and first contents of a design's block RAMs, by name. What is never read (`x`) is 0 in a bitstream.
-pub fn memories(verilog: &str) -> BTreeMap<String, BTreeMap<String, String>> {
+pub fn memories(verilog: &str) -> Memories {
     let memory = pattern(r"(?s)SB_RAM40_4K #\((.*?)\n\s*\) *\\?(\S+) *\(");
     let parameter = pattern(r"\.(\w+)\((?:\d+'[hd])?(\w+)\)");
     let all = memory.captures_iter(verilog).map(|found| {

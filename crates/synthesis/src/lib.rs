@@ -13,7 +13,7 @@ pub mod equivalence;
 mod error;
 pub mod ice40;
 mod read_back;
-
+pub mod resources;
 mod tool;
 pub mod xilinx;
 

@@ -10,7 +10,7 @@ pub(crate) struct Tool {
     package: &'static str,
 }
 
-const ICESTORM: &str = "fpga-icestorm fpga-icestorm-chipdb";
+const ICESTORM: &str = "fpga-icestorm";
 
 pub(crate) const YOSYS: Tool = Tool { name: "yosys", package: "yosys" };
 pub(crate) const NEXTPNR: Tool = Tool { name: "nextpnr-ice40", package: "nextpnr-ice40" };

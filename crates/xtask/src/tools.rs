@@ -3,7 +3,7 @@
 use crate::shell::{self, Done};
 
 /// Program, and the Debian package that brings it.
-const NEEDED: [(&str, &str); 9] = [
+const NEEDED: [(&str, &str); 11] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
@@ -13,6 +13,8 @@ const NEEDED: [(&str, &str); 9] = [
     ("yosys-smtbmc", "yosys"),
     ("z3", "z3"),
     ("nextpnr-ice40", "nextpnr-ice40"),
+    ("icepack", "fpga-icestorm"),
+    ("icebox_vlog", "fpga-icestorm"),
 ];
 
 /// Installs what is missing, or says exactly what to install.
