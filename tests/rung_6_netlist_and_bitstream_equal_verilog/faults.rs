@@ -52,7 +52,9 @@ fn faults_in_the_netlist_are_caught() {
 /// A bit of a tile, flipped.
 fn flipped(asc: &str, tile: &str, row: usize, column: usize) -> String {
     let mut lines: Vec<String> = asc.lines().map(str::to_owned).collect();
-    let at = lines.iter().position(|line| line.strip_prefix('.') == Some(tile)).unwrap_or_else(|| panic!("no {tile}")) + 1 + row;
+    let at = lines.iter().position(|line| line.strip_prefix('.') == Some(tile)).unwrap_or_else(|| panic!("no {tile}"))
+        + 1
+        + row;
     let bit = if &lines[at][column..=column] == "0" { "1" } else { "0" };
     lines[at].replace_range(column..=column, bit);
     lines.join("\n") + "\n"

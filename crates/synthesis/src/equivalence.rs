@@ -9,10 +9,10 @@
 //! What is left to simulation: how yosys reads the Verilog, its word-level optimisation, and its choice of block RAMs for
 //! memories (`synth_ice40` up to `map_ffram`). All that is after it (gates, flip-flops, LUTs, carry) is proved.
 
+use crate::SynthesisError;
 use crate::cells::{self, pattern};
 use crate::ice40::Netlist;
 use crate::tool::{self, YOSYS};
-use crate::SynthesisError;
 use std::collections::BTreeMap;
 
 /// What a proof came to.
@@ -94,7 +94,8 @@ fn cells_in(file: &str, top: &str) -> String {
 fn with_inverses(netlist: &str) -> String {
     let inverse = pattern(r"(?m)^  wire \\?((\w+(?:\.\w+)*)_\$_NOT__Y_A) ?;$");
     let names = inverse.captures_iter(netlist).map(|found| (found[1].to_owned(), found[2].to_owned()));
-    let missing = names.filter(|(_, name)| !netlist.contains(&format!(" {name};")) && !netlist.contains(&format!("\\{name} ;")));
+    let missing =
+        names.filter(|(_, name)| !netlist.contains(&format!(" {name};")) && !netlist.contains(&format!("\\{name} ;")));
     let wires: String =
         missing.map(|(inverse, name)| format!("  (* keep *) wire \\{name} = ~\\{inverse} ;\n")).collect();
     netlist.replacen("endmodule", &format!("{wires}endmodule"), 1)
@@ -115,9 +116,9 @@ fn prove(top: &str, gold: &str, gold_text: &str, gate_text: &str) -> Result<Verd
     );
     tool::yosys(folder.path(), &script)?;
     let status = tool::read(folder.path(), "status.txt")?;
-    let counts = pattern(r"(\d+) are proven and (\d+) are unproven").captures(&status).and_then(|found| {
-        Some((found[1].parse().ok()?, found[2].parse().ok()?))
-    });
+    let counts = pattern(r"(\d+) are proven and (\d+) are unproven")
+        .captures(&status)
+        .and_then(|found| Some((found[1].parse().ok()?, found[2].parse().ok()?)));
     match counts {
         Some((proved, 0)) if proved > 0 => Ok(Verdict::Proved(proved)),
         Some((proved, open)) if open > 0 => Ok(Verdict::Open(open, proved + open)),

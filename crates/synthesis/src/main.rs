@@ -40,6 +40,8 @@ fn write() -> Result<(), String> {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     // Whole or not at all.
     let next = root.join(format!("{PAGE}.new"));
-    std::fs::write(&next, &text).and_then(|()| std::fs::rename(&next, root.join(PAGE))).map_err(|error| error.to_string())?;
+    std::fs::write(&next, &text)
+        .and_then(|()| std::fs::rename(&next, root.join(PAGE)))
+        .map_err(|error| error.to_string())?;
     resources::check(&text)
 }

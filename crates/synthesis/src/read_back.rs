@@ -17,7 +17,8 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
     let unread = |what: &str| SynthesisError::Unread { tool: ICEBOX_VLOG.name, what: what.to_owned() };
     let (head, body) = text.split_once(");").ok_or_else(|| unread("its ports"))?;
     let (body, _) = body.split_once("endmodule").ok_or_else(|| unread("its end"))?;
-    let inputs: Vec<&str> = head.split(',').filter_map(|port| port.trim().rsplit_once("input ")).map(|(_, io)| io).collect();
+    let inputs: Vec<&str> =
+        head.split(',').filter_map(|port| port.trim().rsplit_once("input ")).map(|(_, io)| io).collect();
     let places = Places::of(placement)?;
 
     let mut names = HashMap::new();
@@ -47,7 +48,11 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
         widest.2 = widest.2.max(bit);
         let wire = &names[io];
         // Writing to a string cannot fail.
-        let _ = if is_input { writeln!(wires, "assign {wire} = {port};") } else { writeln!(wires, "assign {port} = {wire};") };
+        let _ = if is_input {
+            writeln!(wires, "assign {wire} = {port};")
+        } else {
+            writeln!(wires, "assign {port} = {wire};")
+        };
     }
     let ports: Vec<String> = ports
         .into_iter()

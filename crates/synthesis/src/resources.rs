@@ -10,4 +10,4 @@ mod rows;
 
 pub use measure::{Measured, placed, verilog};
 pub use page::{PAGE, check, page};
-pub use rows::{Family, FAMILIES, ROWS, Row, SEEDS};
+pub use rows::{FAMILIES, Family, ROWS, Row, SEEDS};

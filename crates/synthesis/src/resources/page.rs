@@ -40,8 +40,7 @@ pub fn page(rows: &[Measured], families: &[Cells]) -> String {
     text
 }
 
-const ICE40: &str =
-    "| part | axes | tick | clock | clocks per tick: has, needs | logic cells (budget) | block RAM | Fmax, MHz (each seed) | clock reached |";
+const ICE40: &str = "| part | axes | tick | clock | clocks per tick: has, needs | logic cells (budget) | block RAM | Fmax, MHz (each seed) | clock reached |";
 
 /// What a row's line begins with.
 fn key(row: &Row) -> String {
@@ -64,7 +63,10 @@ fn is_met(row: &Row, found: &Measured) -> bool {
 
 fn cells_line(family: &Family, found: &Cells) -> String {
     let (luts, budget) = (found.luts, family.budget.luts);
-    format!("| {} | {luts} ({budget}) | {} | {} | {} |\n", family.name, found.flip_flops, found.carries, found.block_rams)
+    format!(
+        "| {} | {luts} ({budget}) | {} | {} | {} |\n",
+        family.name, found.flip_flops, found.carries, found.block_rams
+    )
 }
 
 /// Ours among the others, by size.
@@ -82,7 +84,10 @@ fn beside(rows: &[Measured]) -> String {
         let name = format!("**carrystep**, {} axes, {us} us, guard included", row.axes);
         let queue = format!("7 deep, in {} block RAMs", size.block_rams);
         let cells = size.logic_cells;
-        (cells, format!("| {name} | 3rd order | all four, owes one step | {queue} | {cells} | {:.0} |\n", found.median()))
+        (
+            cells,
+            format!("| {name} | 3rd order | all four, owes one step | {queue} | {cells} | {:.0} |\n", found.median()),
+        )
     }));
     lines.sort_by_key(|(cells, _)| *cells);
     lines.into_iter().map(|(_, line)| line).collect()

@@ -55,8 +55,7 @@ const TWO: Row = Row {
 };
 
 /// 1 us at 80 MHz.
-const ONE: Row =
-    Row { tick_ns: 1000, clock_hz: 80_000_000, budget: Size { logic_cells: 870, block_rams: 8 }, ..TWO };
+const ONE: Row = Row { tick_ns: 1000, clock_hz: 80_000_000, budget: Size { logic_cells: 870, block_rams: 8 }, ..TWO };
 
 /// All rows for iCE40.
 pub const ROWS: [Row; 7] = [
