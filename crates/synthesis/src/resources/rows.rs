@@ -7,6 +7,9 @@ use carrystep_spec::engine::clocks_of_turns;
 /// Placements are tried with these; the best counts.
 pub const SEEDS: [u32; 3] = [1, 2, 3];
 
+/// Phases of a tick in `sim/engine.toml`.
+const PHASES: u32 = 16;
+
 /// An engine on an iCE40.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Row {
@@ -30,6 +33,11 @@ impl Row {
     /// Clocks in a tick.
     pub const fn clocks_per_tick(&self) -> u64 {
         self.clock_hz * self.tick_ns / 1_000_000_000
+    }
+
+    /// The least clock in Hz whose tick holds the turns of its axes and divides into phases.
+    pub const fn clock_needed_hz(&self) -> u64 {
+        (self.clocks_needed().next_multiple_of(PHASES) as u64 * 1_000_000_000).div_ceil(self.tick_ns)
     }
 
     /// Clocks of a tick that the turns of its axes take.
