@@ -1,81 +1,71 @@
-//! The engine's size and speed, placed and routed by nextpnr: a change that goes over budget fails here.
-//! Size is that of the core alone; speed is that of the core between registers (budget_harness.v), the best of
-//! three fixed seeds.
+//! The engine's size and speed: a change that goes over budget fails here. The rows are those of `hdl-out/resources.md`, which
+//! `cargo xtask resources` measures as a whole; sizes are measured here for all of them, speed for those marked `always`.
 
-use carrystep_export::{ENGINE_NAME, write_engine};
-use carrystep_spec::Machine;
+use carrystep_export::ENGINE_NAME;
+use carrystep_synthesis::resources::{self, EIGHT_TO_SIX, FAMILIES, PAGE, ROWS, Row};
+use carrystep_synthesis::{ice40, xilinx};
 use carrystep_tests::effort;
-use std::path::Path;
-use std::process::Command;
 
-const HARNESS: &str = include_str!("budget_harness.v");
-
-/// A device and a build; what it may cost.
-struct Budget {
-    device: &'static str,
-    package: &'static str,
-    clock_hz: u64,
-    tick_ns: u64,
-    logic_cells: u32,
-    block_rams: u32,
-}
-
-const BUDGETS: [Budget; 3] = [
-    Budget { device: "hx8k", package: "ct256", clock_hz: 48_000_000, tick_ns: 2000, logic_cells: 850, block_rams: 8 },
-    Budget { device: "hx8k", package: "ct256", clock_hz: 80_000_000, tick_ns: 1000, logic_cells: 870, block_rams: 8 },
-    Budget { device: "hx1k", package: "tq144", clock_hz: 48_000_000, tick_ns: 2000, logic_cells: 850, block_rams: 8 },
-];
-
-fn run(folder: &Path, tool: &str, arguments: &[&str]) -> (bool, String) {
-    let output = Command::new(tool).args(arguments).current_dir(folder).output();
-    let output = output.unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
-    let text = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    (output.status.success(), text.into_owned())
-}
-
-/// The number behind a name in nextpnr's report of what it has packed.
-fn used(log: &str, name: &str) -> u32 {
-    let line = log.lines().find(|line| line.contains(name) && line.contains('%'));
-    let number = line.and_then(|line| line.split(name).nth(1)?.split('/').next()?.trim().parse().ok());
-    number.unwrap_or_else(|| panic!("no {name} in:\n{log}"))
-}
-
-fn synthesise(folder: &Path, files: &str, top: &str) {
-    let script = format!("read_verilog {files}; synth_ice40 -top {top} -json {top}.json");
-    let (ok, said) = run(folder, "yosys", &["-q", "-p", &script]);
-    assert!(ok, "{said}");
+#[test]
+fn every_row_is_small_enough() {
+    let mut netlists = Vec::new();
+    for row in &ROWS {
+        // Parts share what is synthesised for one clock and tick.
+        let build = (row.axes, row.clock_hz, row.tick_ns);
+        if !netlists.iter().any(|(other, _)| *other == build) {
+            let verilog = resources::verilog(row).expect("a fine engine");
+            netlists.push((build, ice40::synthesise(&verilog, ENGINE_NAME).expect("a netlist")));
+        }
+        let (_, netlist) = netlists.iter().find(|(other, _)| *other == build).expect("a netlist");
+        let found = netlist.size(row.part).expect("a size");
+        effort::say(&format!("{} at {} ns: {found:?}", row.part.device, row.tick_ns));
+        let fits = found.logic_cells <= row.budget.logic_cells && found.block_rams <= row.budget.block_rams;
+        assert!(fits, "{found:?} used of {row:?}");
+    }
 }
 
 #[test]
-fn the_engine_fits_its_budget() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sim/engine.toml");
-    let text = std::fs::read_to_string(file).expect("the machine file");
-    for budget in &BUDGETS {
-        let Budget { device, package, clock_hz, tick_ns, logic_cells, block_rams } = *budget;
-        let folder = tempfile::tempdir().expect("a folder");
-        let text = text.replace("48_000_000", &clock_hz.to_string()).replace("2000", &tick_ns.to_string());
-        std::fs::write(folder.path().join("machine.toml"), text).expect("a file");
-        let machine = Machine::load(&folder.path().join("machine.toml")).expect("a fine machine");
-        write_engine(folder.path(), &machine.engine(), "a test").expect("a fine engine");
-        std::fs::write(folder.path().join("harness.v"), HARNESS).expect("a file");
-        let core = format!("{ENGINE_NAME}.v");
-        synthesise(folder.path(), &core, ENGINE_NAME);
-        synthesise(folder.path(), &format!("{core} harness.v"), "budget_harness");
+fn eight_axes_cost_little_more_than_six() {
+    let (eight, six, most) = EIGHT_TO_SIX;
+    let [eight, six] = [eight, six].map(|row| {
+        let verilog = resources::verilog(&row).expect("a fine engine");
+        let netlist = ice40::synthesise(&verilog, ENGINE_NAME).expect("a netlist");
+        f64::from(netlist.size(row.part).expect("a size").logic_cells)
+    });
+    effort::say(&format!("eight axes {eight}, six {six} logic cells: {:.1} % more", (eight / six - 1.0) * 100.0));
+    assert!(eight <= six * most, "{eight} logic cells for eight axes, {six} for six");
+}
 
-        let place = |top: &str, more: &[&str]| {
-            let (device, json) = (format!("--{device}"), format!("{top}.json"));
-            let mhz = (clock_hz as f64 / 1e6).to_string();
-            let common = [&device, "--package", package, "--json", &json, "--freq", &mhz, "--pcf-allow-unconstrained"];
-            run(folder.path(), "nextpnr-ice40", &[common.as_slice(), more].concat())
-        };
-        let (_, log) = place(ENGINE_NAME, &["--pack-only"]);
-        let found = (used(&log, "ICESTORM_LC:"), used(&log, "ICESTORM_RAM:"));
-        let seed = ["1", "2", "3"].into_iter().find(|seed| place("budget_harness", &["--seed", seed]).0);
-        effort::say(&format!(
-            "{device} at {tick_ns} ns: {} logic cells, {} block RAMs, seed {seed:?}",
-            found.0, found.1
-        ));
-        assert!(found.0 <= logic_cells && found.1 <= block_rams, "{device} at {tick_ns} ns: {found:?} used");
-        assert!(seed.is_some(), "{device}: {clock_hz} Hz is not reached by three seeds");
+#[test]
+fn the_clock_is_reached() {
+    let reached = |row: &Row| {
+        let mut speeds = resources::placed(row).expect("a netlist").map(|mhz| mhz.expect("a placed design"));
+        speeds.find(|mhz| mhz * 1e6 >= row.clock_hz as f64)
+    };
+    for row in ROWS.iter().filter(|row| row.always) {
+        let mhz = reached(row);
+        effort::say(&format!("{} at {} ns: {mhz:?} MHz", row.part.device, row.tick_ns));
+        assert!(mhz.is_some(), "no seed reaches the clock of {row:?}");
     }
+}
+
+#[test]
+fn other_families_are_small_enough() {
+    for family in &FAMILIES {
+        let verilog = resources::verilog(&family.of).expect("a fine engine");
+        let found = xilinx::cells(&verilog, ENGINE_NAME, family.name).expect("cells");
+        effort::say(&format!("{}: {found:?}", family.name));
+        let budget = family.budget;
+        let fits = found.luts <= budget.luts
+            && found.flip_flops <= budget.flip_flops
+            && found.carries <= budget.carries
+            && found.block_rams <= budget.block_rams;
+        assert!(fits, "{found:?} used of {family:?}");
+    }
+}
+
+#[test]
+fn the_table_is_of_these_rows() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/..").to_owned() + "/" + PAGE;
+    assert_eq!(resources::check(&std::fs::read_to_string(file).expect("the table")), Ok(()));
 }

@@ -17,6 +17,7 @@ const ALLOWED: [(&str, &[&str]); 15] = [
     ("link", &["spec"]),
     ("levels", &["spec", "profile", "model", "hdl", "export", "trace"]),
     ("sweep", &["spec"]),
+    ("synthesis", &["spec", "hdl", "export"]),
     ("cli", &["spec", "profile", "table", "reference", "plan", "model", "hdl", "export", "trace", "levels", "sweep"]),
     ("bench", &["spec", "profile", "plan", "model", "hdl", "export", "trace", "levels"]),
     ("xtask", &[]),

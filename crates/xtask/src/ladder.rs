@@ -49,6 +49,10 @@ pub fn lint() -> Done {
 /// The long lock-step: what a test run does in part, it does whole.
 pub fn lockstep() -> Done {
     tools::install()?;
-    let test = ["test", "--release", "-p", "carrystep-tests", "--test", "engine_equals_model", "--", "--nocapture"];
-    shell::run_with(&[("CARRYSTEP_CLOCKS", "10000000")], "cargo", &test)
+    let run = |test| {
+        let arguments = ["test", "--release", "-p", "carrystep-tests", "--test", test, "--", "--nocapture"];
+        shell::run_with(&[("CARRYSTEP_CLOCKS", "10000000")], "cargo", &arguments)
+    };
+    run("engine_equals_model")?;
+    run("rung_6_netlist_and_bitstream_equal_verilog")
 }

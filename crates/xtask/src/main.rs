@@ -46,6 +46,8 @@ enum Chore {
     Readme,
     /// Write the table of `docs/accuracy.md` anew from the checker's figures.
     Accuracy,
+    /// Measure the engine on every part and write `hdl-out/resources.md` anew (some minutes).
+    Resources,
 }
 
 /// Times everything; what is printed is the bench's own.
@@ -53,6 +55,12 @@ fn bench(json: bool) -> shell::Done {
     tools::install()?;
     let arguments = ["run", "--quiet", "--release", "-p", "carrystep-bench", "--", "--json"];
     shell::run("cargo", &arguments[..arguments.len() - usize::from(!json)])
+}
+
+/// Size and speed of every row of the table.
+fn resources() -> shell::Done {
+    tools::install()?;
+    shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-synthesis"])
 }
 
 fn main() -> ExitCode {
@@ -68,6 +76,7 @@ fn main() -> ExitCode {
         Chore::Generate => readme::generate(),
         Chore::Readme => readme::write(),
         Chore::Accuracy => accuracy::write(),
+        Chore::Resources => resources(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

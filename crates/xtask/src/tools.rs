@@ -15,6 +15,8 @@ const NEEDED: [(&str, &str); 11] = [
     ("yosys-smtbmc", "yosys"),
     ("z3", "z3"),
     ("nextpnr-ice40", "nextpnr-ice40"),
+    ("icepack", "fpga-icestorm"),
+    ("icebox_vlog", "fpga-icestorm"),
 ];
 
 /// Installs what is missing, or says exactly what to install.

@@ -1,0 +1,43 @@
+//! What can go wrong with tools and their files.
+
+use thiserror::Error;
+
+/// Why a netlist, a bitstream or a measurement could not be made.
+#[derive(Debug, Error)]
+pub enum SynthesisError {
+    /// A program is not installed.
+    #[error("{tool} is not installed: `sudo apt-get install {package}` installs it")]
+    Missing {
+        /// Its name.
+        tool: &'static str,
+        /// The Debian packages that bring it.
+        package: &'static str,
+    },
+    /// A program failed.
+    #[error("{tool} failed: {message}")]
+    Tool {
+        /// Its name.
+        tool: &'static str,
+        /// The end of what it said.
+        message: String,
+    },
+    /// A program's output is not what it was with the versions that are known.
+    #[error("cannot read what {tool} says: {what}")]
+    Unread {
+        /// Its name.
+        tool: &'static str,
+        /// What was looked for.
+        what: String,
+    },
+    /// A file could not be read or written.
+    #[error("{context}: {source}")]
+    Io {
+        /// What was tried.
+        context: String,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+    /// The gateware for a row of the table cannot be made.
+    #[error("{0}")]
+    Gateware(String),
+}

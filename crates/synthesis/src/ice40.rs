@@ -1,0 +1,154 @@
+//! Verilog to an iCE40 bitstream by yosys, nextpnr and icepack; and what each stage says of it.
+
+use crate::tool::{self, ICEBOX_VLOG, ICEPACK, ICEUNPACK, NEXTPNR};
+use crate::{SynthesisError, cells, read_back};
+use serde_json::Value;
+
+/// A part: what nextpnr calls its device, and its package.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// `hx8k`, `up5k` and so on.
+    pub device: &'static str,
+    /// `ct256` and so on.
+    pub package: &'static str,
+}
+
+/// What a design takes of a part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Size {
+    /// Logic cells: a LUT, a flip-flop, a bit of carry, or all three.
+    pub logic_cells: u32,
+    /// Block RAMs of 4 kbit.
+    pub block_rams: u32,
+}
+
+/// A synthesised design.
+pub struct Netlist {
+    top: String,
+    /// What nextpnr places.
+    json: String,
+    /// The same as Verilog, of cells that simulators do not know: see [`Netlist::simulated`].
+    pub verilog: String,
+}
+
+/// A placed and routed design.
+pub struct Placed {
+    /// Configuration bits as text, one tile after the other.
+    pub asc: String,
+    /// The greatest clock at which every path between flip-flops and memories is in time, by nextpnr's models.
+    pub mhz: f64,
+    /// Where every cell is.
+    placement: Value,
+}
+
+/// Synthesises Verilog.
+///
+/// What `synth_ice40` does, but that names are given before logic is mapped as well: a register that starts at 1
+/// is stored inverted, and is known afterwards by `NAME_$_NOT__Y_A`, which [`crate::equivalence`] looks for.
+///
+/// # Errors
+/// [`SynthesisError`]: yosys is missing, refuses the text, or a file cannot be used.
+pub fn synthesise(verilog: &str, top: &str) -> Result<Netlist, SynthesisError> {
+    let folder = tool::folder()?;
+    tool::write(folder.path(), "core.v", verilog)?;
+    let script = format!(
+        "read_verilog core.v; synth_ice40 -top {top} -run begin:map_luts; autoname; \
+         synth_ice40 -top {top} -run map_luts: -json core.json; write_verilog -noattr netlist.v"
+    );
+    tool::yosys(folder.path(), &script)?;
+    let read = |name| tool::read(folder.path(), name);
+    Ok(Netlist { top: top.to_owned(), json: read("core.json")?, verilog: read("netlist.v")? })
+}
+
+impl Netlist {
+    /// The netlist with yosys' models of its cells, for simulators.
+    ///
+    /// # Errors
+    /// [`SynthesisError`]: yosys' models are not found.
+    pub fn simulated(&self) -> Result<String, SynthesisError> {
+        cells::with_models(&self.verilog)
+    }
+
+    /// What it takes, without placing it.
+    ///
+    /// # Errors
+    /// [`SynthesisError`]: nextpnr is missing or fails.
+    pub fn size(&self, part: Part) -> Result<Size, SynthesisError> {
+        let (_, log) = self.nextpnr(part, &["--pack-only"])?;
+        Ok(Size { logic_cells: used(&log, "ICESTORM_LC:")?, block_rams: used(&log, "ICESTORM_RAM:")? })
+    }
+
+    /// Places and routes it for a clock, whether that is reached or not; pins where nextpnr likes.
+    ///
+    /// # Errors
+    /// [`SynthesisError`]: nextpnr is missing, or the part is too small.
+    pub fn place(&self, part: Part, clock_hz: u64, seed: u32) -> Result<Placed, SynthesisError> {
+        let (mhz, seed) = ((clock_hz as f64 / 1e6).to_string(), seed.to_string());
+        let more = ["--freq", &mhz, "--seed", &seed, "--timing-allow-fail", "--asc", "placed.asc", "--write"];
+        let (folder, log) = self.nextpnr(part, &[&more[..], &["placed.json"]].concat())?;
+        let placement = serde_json::from_str(&tool::read(folder.path(), "placed.json")?);
+        Ok(Placed {
+            asc: tool::read(folder.path(), "placed.asc")?,
+            mhz: greatest_clock(&log)?,
+            placement: placement.map_err(|error| unread(format!("placed.json: {error}")))?,
+        })
+    }
+
+    /// Runs nextpnr; its folder and its log.
+    fn nextpnr(&self, part: Part, more: &[&str]) -> Result<(tempfile::TempDir, String), SynthesisError> {
+        let folder = tool::folder()?;
+        tool::write(folder.path(), "core.json", &self.json)?;
+        let device = format!("--{}", part.device);
+        let common = [&device, "--package", part.package, "--json", "core.json", "--pcf-allow-unconstrained"];
+        tool::run(&NEXTPNR, folder.path(), &[&common[..], &["--quiet", "--log", "log.txt"], more].concat())?;
+        let log = tool::read(folder.path(), "log.txt")?;
+        Ok((folder, log))
+    }
+
+    /// Name of its module.
+    pub(crate) fn top(&self) -> &str {
+        &self.top
+    }
+}
+
+impl Placed {
+    /// The bitstream of these configuration bits, read back as Verilog: the netlist's ports, the names of its
+    /// flip-flops and memories, and nothing else of it. `asc` is [`Placed::asc`], or that with a bit changed.
+    ///
+    /// # Errors
+    /// [`SynthesisError`]: a tool of icestorm is missing or fails.
+    pub fn read_back(&self, netlist: &Netlist, asc: &str) -> Result<String, SynthesisError> {
+        let folder = tool::folder()?;
+        tool::write(folder.path(), "placed.asc", asc)?;
+        tool::run(&ICEPACK, folder.path(), &["placed.asc", "core.bin"])?;
+        tool::run(&ICEUNPACK, folder.path(), &["core.bin", "back.asc"])?;
+        let text = tool::run(&ICEBOX_VLOG, folder.path(), &["-S", "back.asc"])?;
+        read_back::named(&text, &self.placement, netlist.top())
+    }
+}
+
+/// Read back Verilog with yosys' models of the memories, for simulators.
+///
+/// # Errors
+/// [`SynthesisError`]: yosys' models are not found.
+pub fn simulated(read_back: &str) -> Result<String, SynthesisError> {
+    cells::with_models(read_back)
+}
+
+fn unread(what: String) -> SynthesisError {
+    SynthesisError::Unread { tool: NEXTPNR.name, what }
+}
+
+/// The number behind a name in nextpnr's report of what it has packed.
+fn used(log: &str, name: &str) -> Result<u32, SynthesisError> {
+    let line = log.lines().find(|line| line.contains(name) && line.contains('%'));
+    let number = line.and_then(|line| line.split(name).nth(1)?.split('/').next()?.trim().parse().ok());
+    number.ok_or_else(|| unread(name.to_owned()))
+}
+
+/// The last clock that nextpnr reports is that of the routed design.
+fn greatest_clock(log: &str) -> Result<f64, SynthesisError> {
+    let line = log.lines().rfind(|line| line.contains("Max frequency for clock"));
+    let number = line.and_then(|line| line.split("': ").nth(1)?.split_whitespace().next()?.parse().ok());
+    number.ok_or_else(|| unread("Max frequency for clock".to_owned()))
+}

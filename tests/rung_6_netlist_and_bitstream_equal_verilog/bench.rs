@@ -1,0 +1,59 @@
+//! The same random programs, with all that may happen around them, on every stage: what the model does, in every clock.
+
+use crate::stages::{self, Stages};
+use carrystep_levels::Level;
+use carrystep_levels::engine::replay::{self, Recording};
+use carrystep_synthesis::ice40;
+use carrystep_tests::{effort, engine_programs};
+use proptest::strategy::{Strategy as _, ValueTree as _};
+use proptest::test_runner::{Config, TestRunner};
+
+/// Most clocks of a program, in Verilator and in Icarus, which is a hundred times slower.
+const LONG: u64 = 60_000;
+const SHORT: u64 = 5_000;
+
+/// Runs random programs, each for so many clocks at most, until they have taken so many clocks in all; edges and stops seen.
+fn assert_same(stages: &Stages, level: Level, most: u64, clocks: u64) -> (u32, u32) {
+    let netlist = stages.netlist.simulated().expect("models of its cells");
+    let bitstream = ice40::simulated(&stages.read_back).expect("models of its memories");
+    let texts = [("Verilog", &stages.verilog), ("netlist", &netlist), ("bitstream", &bitstream)];
+    let mut runner = TestRunner::new(Config::default());
+    let (mut run, mut edges, mut faults) = (0, 0, 0);
+    while run < clocks {
+        let (program, events) =
+            engine_programs::program(stages.build.axes()).new_tree(&mut runner).expect("a program").current();
+        let recording = Recording::new(&stages.build, &program, &events, most);
+        for (stage, text) in texts {
+            let difference = replay::difference(level, text, &recording).expect("the tools");
+            assert_eq!(difference, None, "the {stage} in {level} is not the model: {program:?} {events:?}");
+        }
+        run += recording.clocks;
+        for pair in recording.outputs.windows(2) {
+            edges += (pair[1].1.step & !pair[0].1.step).count_ones();
+            faults += u32::from(pair[1].1.fault.is_some() && pair[0].1.fault.is_none());
+        }
+    }
+    effort::say(&format!("three stages in {level}: {run} clocks, {edges} edges, {faults} stops"));
+    (edges, faults)
+}
+
+fn assert_same_in_verilator(stages: &Stages) {
+    let (edges, faults) = assert_same(stages, Level::Verilator, LONG, effort::clocks(1_000_000));
+    assert!(edges > 0 && faults > 0, "lock-step over nothing proves nothing");
+}
+
+#[test]
+fn all_stages_do_the_same_in_every_clock() {
+    assert_same_in_verilator(stages::hurried());
+}
+
+#[test]
+fn all_stages_of_the_exported_verilog_do_the_same_in_every_clock() {
+    assert_same_in_verilator(stages::shipped());
+}
+
+/// Icarus knows what is undefined: nothing that is may reach a pin.
+#[test]
+fn nothing_undefined_reaches_the_pins() {
+    assert_same(stages::hurried(), Level::Icarus, SHORT, 3 * SHORT);
+}

@@ -1,0 +1,137 @@
+//! What goes wrong in a netlist or a bitstream is caught.
+
+use crate::stages::{self, Stages};
+use carrystep_levels::Level;
+use carrystep_levels::engine::replay::{self, Recording};
+use carrystep_spec::{Command, Segment};
+use carrystep_synthesis::equivalence::{self, Verdict};
+use carrystep_synthesis::{SynthesisError, ice40};
+use carrystep_tests::effort;
+use std::ops::Range;
+
+/// Where the cells of a type stand in a netlist.
+fn cells(netlist: &str, cell: &str) -> Vec<Range<usize>> {
+    let name = format!("\n  {cell} ");
+    let begins = netlist.match_indices(&name).map(|(begin, _)| begin + 1);
+    begins.map(|begin| begin..begin + netlist[begin..].find(");\n").expect("the cell's end")).collect()
+}
+
+/// What is in the brackets behind a name.
+fn inside<'a>(text: &'a str, name: &str) -> &'a str {
+    let begin = text.find(&format!("{name}(")).expect("a name") + name.len() + 1;
+    &text[begin..begin + text[begin..].find(')').expect("a bracket")]
+}
+
+/// The netlist with one cell changed.
+fn changed(netlist: &str, cell: &Range<usize>, change: impl Fn(&str) -> String) -> String {
+    let text = change(&netlist[cell.clone()]);
+    assert_ne!(text, netlist[cell.clone()]);
+    format!("{}{text}{}", &netlist[..cell.start], &netlist[cell.end..])
+}
+
+#[test]
+fn faults_in_the_netlist_are_caught() {
+    let stages = stages::shipped();
+    let netlist = &stages.netlist.verilog;
+    let (luts, flip_flops) = (cells(netlist, "SB_LUT4"), cells(netlist, "SB_DFFE"));
+    let inverted = changed(netlist, &luts[luts.len() / 2], |lut| {
+        let function = u16::from_str_radix(&inside(lut, ".LUT_INIT")[4..], 16).expect("a number");
+        lut.replace(inside(lut, ".LUT_INIT"), &format!("16'h{:04x}", !function))
+    });
+    let [one, other] = [&flip_flops[3], &flip_flops[4]];
+    let d_of_other = format!(".D({})", inside(&netlist[other.clone()], ".D"));
+    let crossed = changed(netlist, one, |cell| cell.replace(&format!(".D({})", inside(cell, ".D")), &d_of_other));
+    let disabled = changed(netlist, &flip_flops[40], |cell| cell.replace(".E(", ".E(!"));
+    for (fault, text) in [("a LUT inverted", inverted), ("a wire crossed", crossed), ("an enable inverted", disabled)] {
+        let verdict = equivalence::verilog_and_netlist(&stages.verilog, &stages.netlist, &text).expect("a verdict");
+        effort::say(&format!("{fault}: {verdict:?}"));
+        assert!(matches!(verdict, Verdict::Open(..)), "nobody catches {fault}: {verdict:?}");
+    }
+}
+
+/// A bit of a tile, flipped.
+fn flipped(asc: &str, tile: &str, row: usize, column: usize) -> String {
+    let mut lines: Vec<String> = asc.lines().map(str::to_owned).collect();
+    let at = lines.iter().position(|line| line.strip_prefix('.') == Some(tile)).unwrap_or_else(|| panic!("no {tile}"))
+        + 1
+        + row;
+    let bit = if &lines[at][column..=column] == "0" { "1" } else { "0" };
+    lines[at].replace_range(column..=column, bit);
+    lines.join("\n") + "\n"
+}
+
+/// Whether proof or comparison sees that a bitstream is another.
+fn is_caught(stages: &Stages, asc: &str) -> bool {
+    let read_back = stages.placed.read_back(&stages.netlist, asc);
+    let verdict = read_back.and_then(|text| {
+        let same_memories = equivalence::memories(&stages.netlist.verilog) == equivalence::memories(&text);
+        equivalence::netlist_and_bitstream(&stages.netlist, &text).map(|verdict| (verdict, same_memories))
+    });
+    match verdict {
+        Ok((Verdict::Proved(_), same_memories)) => !same_memories,
+        // What cannot be read or has a loop is no engine.
+        Ok((Verdict::Open(..), _)) | Err(SynthesisError::Tool { .. } | SynthesisError::Unread { .. }) => true,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Tile, row and column of what is not 0 in the tiles of a kind, by tile.
+fn set<'a>(asc: &'a str, kind: &str) -> Vec<Vec<(&'a str, usize, usize)>> {
+    let mut tiles = Vec::new();
+    for part in asc.split("\n.").filter(|part| part.starts_with(kind)) {
+        let mut lines = part.lines();
+        let tile = lines.next().unwrap_or_default();
+        let bits = lines.enumerate().flat_map(|(row, line)| {
+            line.bytes().enumerate().filter(|(_, bit)| *bit != b'0').map(move |(column, _)| (tile, row, column))
+        });
+        tiles.push(bits.collect());
+    }
+    tiles
+}
+
+/// Bits of tiles that are full of logic: next to none of them is set for nothing.
+const BUSY: usize = 100;
+
+#[test]
+fn flipped_bits_in_the_bitstream_are_caught() {
+    let stages = stages::shipped();
+    let asc = &stages.placed.asc;
+    let bits: Vec<_> = set(asc, "logic_tile").into_iter().filter(|bits| bits.len() >= BUSY).flatten().collect();
+    let count = if effort::is_long() { 60 } else { 3 };
+    let mut seen = 0;
+    for i in 0..count {
+        let (tile, row, column) = bits[(2 * i + 1) * bits.len() / (2 * count)];
+        let caught = is_caught(stages, &flipped(asc, tile, row, column));
+        effort::say(&format!("{tile} row {row} column {column}: {}", if caught { "caught" } else { "no change" }));
+        seen += usize::from(caught);
+    }
+    // A LUT may have bits for inputs that never come together, or that stand for one wire.
+    assert!(seen * 10 >= count * 8, "{seen} of {count} flipped bits are seen");
+}
+
+#[test]
+fn a_flipped_bit_of_a_memory_is_caught_on_the_bench() {
+    let stages = stages::shipped();
+    let asc = &stages.placed.asc;
+    // Where P starts, and the stop accelerations of both ways: nothing else is there.
+    let contents: Vec<_> = set(asc, "ram_data").concat();
+    let (tile, row, column) = contents[contents.len() / 2];
+    let read_back = stages.placed.read_back(&stages.netlist, &flipped(asc, tile, row, column)).expect("a bitstream");
+    assert_ne!(equivalence::memories(&read_back), equivalence::memories(&stages.netlist.verilog));
+
+    // Every axis is stopped by its ramp both ways, because its queue runs dry, and asked for all that it keeps.
+    let mut program = Vec::new();
+    for v in [1 << 60, -1 << 60] {
+        let segment = Segment { ticks: 50, v, a: 0, j: 0, last: false };
+        program.extend((0..6).map(|axis| Command::Segment { axis, segment }));
+        program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 60_000 }]);
+        program.push(Command::Clear);
+    }
+    let recording = Recording::new(&stages.build, &program, &Vec::new(), 600_000);
+    let difference = |text: &str| {
+        let text = ice40::simulated(text).expect("models of its memories");
+        replay::difference(Level::Verilator, &text, &recording).expect("the tools")
+    };
+    assert_eq!(difference(&stages.read_back), None);
+    assert!(difference(&read_back).is_some(), "the bench does not see {tile} row {row} column {column}");
+}
