@@ -21,11 +21,11 @@ struct Budget {
 }
 
 const BUDGETS: [Budget; 5] = [
-    Budget { device: "hx8k", package: "ct256", clock_hz: 48_000_000, tick_ns: 2000, logic_cells: 843, block_rams: 8 },
-    Budget { device: "hx8k", package: "ct256", clock_hz: 80_000_000, tick_ns: 1000, logic_cells: 870, block_rams: 8 },
-    Budget { device: "hx1k", package: "tq144", clock_hz: 48_000_000, tick_ns: 2000, logic_cells: 843, block_rams: 8 },
-    Budget { device: "lp8k", package: "cm81", clock_hz: 48_000_000, tick_ns: 2000, logic_cells: 843, block_rams: 8 },
-    Budget { device: "up5k", package: "sg48", clock_hz: 40_000_000, tick_ns: 2000, logic_cells: 843, block_rams: 8 },
+    Budget { device: "hx8k", package: "ct256", clock_hz: 48_000_000, tick_ns: 2000, logic_cells: 850, block_rams: 8 },
+    Budget { device: "hx8k", package: "ct256", clock_hz: 80_000_000, tick_ns: 1000, logic_cells: 864, block_rams: 8 },
+    Budget { device: "hx1k", package: "tq144", clock_hz: 48_000_000, tick_ns: 2000, logic_cells: 850, block_rams: 8 },
+    Budget { device: "lp8k", package: "cm81", clock_hz: 48_000_000, tick_ns: 2000, logic_cells: 850, block_rams: 8 },
+    Budget { device: "up5k", package: "sg48", clock_hz: 40_000_000, tick_ns: 2000, logic_cells: 850, block_rams: 8 },
 ];
 
 fn run(folder: &Path, tool: &str, arguments: &[&str]) -> (bool, String) {
