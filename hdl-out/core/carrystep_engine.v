@@ -105,6 +105,7 @@ module carrystep_adder (
     localparam [31:0] NOTHING = 32'd0;
     localparam [31:0] ONES = 32'hffffffff;
     localparam [31:0] SIGN = 32'h80000000;
+    localparam [32:0] ABOVE = 33'h100000000;
     localparam BY_ONE = 1'b1;
     localparam [33:0] CARRY = 34'h1;
     localparam [33:0] NO_CARRY = 34'h0;
@@ -120,6 +121,7 @@ module carrystep_adder (
     reg over = 1'b0;
     reg unfit = 1'b0;
     reg sign_of_a = 1'b0;
+    reg sign_of_b = 1'b0;
     reg other = 1'b0;
     reg low_zero = 1'b0;
     reg minus = 1'b0;
@@ -133,6 +135,7 @@ module carrystep_adder (
     reg [31:0] x;
     reg carry_in;
     reg [33:0] low;
+    reg [32:0] extended;
 
     wire counting = beat[5] | beat[6];
     wire ones_in = (beat[5] & counts) | (beat[6] & !up);
@@ -141,10 +144,10 @@ module carrystep_adder (
     wire [31:0] half = (b >> BY_ONE) | (b & SIGN);
     wire halves_on = beat[12] | beat[13] | beat[14];
     wire crosses_now = top ^ crossed;
-    wire carry_due = (beat[5] & lost) | (beat[6] & !down) | (beat[8] & carry_2) | ((beat[9] | beat[10]) & carry_1);
+    wire carry_due = (beat[5] & lost) | (beat[6] & !down) | ((beat[8] | beat[9] | beat[10]) & carry_2);
     wire odd = halves_on & b[0];
     wire odd_beyond = odd & bisects & crosses_now;
-    wire [33:0] wide = (({2'b0, x} << BY_ONE) | CARRY) + (({2'b0, b} << BY_ONE) | low);
+    wire [33:0] wide = (({2'b0, x} << BY_ONE) | CARRY) + (({1'b0, extended} << BY_ONE) | low);
     wire wiping = wipe & (beat[5] | beat[11]);
     wire empty = (b & ~SIGN) == 32'd0;
 
@@ -182,6 +185,13 @@ module carrystep_adder (
         end
     end
 
+    always @(*) begin
+        extended = {1'b0, b};
+        if (b[31]) begin
+            extended = {1'b0, b} | ABOVE;
+        end
+    end
+
     always @(posedge clock) begin
         if (beat[1] | beat[4] | beat[5] | beat[6] | beat[8] | beat[10]) begin
             a <= word;
@@ -208,9 +218,10 @@ module carrystep_adder (
         if (wiping) begin
             r <= NOTHING;
         end
-        top <= wide[33] ^ b[31];
-        if (beat[3] | beat[4] | beat[5] | beat[9] | beat[10]) begin
-            carry_0 <= wide[33];
+        top <= wide[33];
+        sign_of_b <= b[31];
+        if (beat[4] | beat[5] | beat[6] | beat[8] | beat[9]) begin
+            carry_0 <= top ^ sign_of_b;
             carry_1 <= carry_0;
             carry_2 <= carry_1;
         end

@@ -175,13 +175,14 @@ fn an_engine_that_cannot_work_is_refused_by_name_and_nothing_is_written() {
         build.pins = vec![PinTiming::SHORTEST; 9];
         build.guard.stop = vec![1; 9];
     };
-    let refusals: [(&dyn Fn(&mut EngineBuild), &str); 6] = [
-        (&nine_axes, "9 axes: an engine has 1 to 8"),
-        (&|build| build.pins.clear(), "0 axes: an engine has 1 to 8"),
-        (&|build| build.guard.stop.truncate(4), "4 stop accelerations for 6 axes"),
-        (&phase_of_one_clock, "16 phases in the 16 clocks of a tick"),
-        (&|build| build.pins[5].width = 0, "axis 5: width is 0 clocks"),
-        (&|build| build.pins[1].setup = 65_537, "axis 1: setup is 65537 clocks: from 1 to 65536 can be counted"),
+    type Spoil = fn(&mut EngineBuild);
+    let refusals: [(Spoil, &str); 6] = [
+        (nine_axes, "9 axes: an engine has 1 to 8"),
+        (|build| build.pins.clear(), "0 axes: an engine has 1 to 8"),
+        (|build| build.guard.stop.truncate(4), "4 stop accelerations for 6 axes"),
+        (phase_of_one_clock, "16 phases in the 16 clocks of a tick"),
+        (|build| build.pins[5].width = 0, "axis 5: width is 0 clocks"),
+        (|build| build.pins[1].setup = 65_537, "axis 1: setup is 65537 clocks: from 1 to 65536 can be counted"),
     ];
     for (spoil, says) in refusals {
         let mut build = engine_of(6);

@@ -68,6 +68,7 @@ pub struct Adder {
     over: Register<Bit>,      // `ended`
     unfit: Register<Bit>,     // `overflow`
     sign_of_a: Register<Bit>, // a beat ago
+    sign_of_b: Register<Bit>, // likewise
     other: Register<Bit>,     // `turned`
     low_zero: Register<Bit>,
     minus: Register<Bit>,   // `back`
@@ -90,6 +91,7 @@ pub struct Adder {
     odd: Signal<Local, Bit>, // halving B loses its lowest bit
     odd_beyond: Signal<Local, Bit>,
     carry_in: Signal<Local, Bit>,
+    extended: Signal<Local, Word<33>>, // B with its sign once more
     low: Signal<Local, Word<34>>,
     wide: Signal<Local, Word<34>>,
     empty: Signal<Local, Bit>,
@@ -97,6 +99,7 @@ pub struct Adder {
     nothing: Literal<32, 0>,
     ones: Literal<32, 0xffff_ffff>,
     sign: Literal<32, 0x8000_0000>,
+    above: Literal<33, 0x1_0000_0000>,
     by_one: Literal<1, 1>,
     carry: Literal<34, 1>,
     no_carry: Literal<34, 0>,
@@ -106,7 +109,7 @@ pub struct Adder {
 impl Logic for Adder {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, a, b, r, top, carry_0, carry_1, carry_2, over, unfit);
+        dff_setup!(self, clock, a, b, r, top, sign_of_b, carry_0, carry_1, carry_2, over, unfit);
         dff_setup!(
             self,
             clock,
@@ -176,8 +179,8 @@ impl Logic for Adder {
         // The sum; a carry comes in as 1 + 1 below the lowest bit.
         self.carry_due.next = (self.beat.val().get_bit(5) & self.lost.val())
             | (self.beat.val().get_bit(6) & !self.down.val())
-            | (self.beat.val().get_bit(8) & self.carry_2.q.val())
-            | ((self.beat.val().get_bit(9) | self.beat.val().get_bit(10)) & self.carry_1.q.val());
+            | ((self.beat.val().get_bit(8) | self.beat.val().get_bit(9) | self.beat.val().get_bit(10))
+                & self.carry_2.q.val());
         self.odd.next = self.halves_on.val() & self.b.q.val().get_bit(0);
         self.odd_beyond.next = self.odd.val() & self.bisects.q.val() & self.crosses_now.val();
         self.carry_if_not.d.next = self.carry_due.val() | self.odd_beyond.val();
@@ -190,8 +193,12 @@ impl Logic for Adder {
         if self.carry_in.val() {
             self.low.next = self.carry.val();
         }
+        self.extended.next = bit_cast::<33, 32>(self.b.q.val());
+        if self.b.q.val().get_bit(31) {
+            self.extended.next = bit_cast::<33, 32>(self.b.q.val()) | self.above.val();
+        }
         self.wide.next = ((bit_cast::<34, 32>(self.x.val()) << self.by_one.val()) | self.carry.val())
-            + ((bit_cast::<34, 32>(self.b.q.val()) << self.by_one.val()) | self.low.val());
+            + ((bit_cast::<34, 33>(self.extended.val()) << self.by_one.val()) | self.low.val());
         self.wiping.next = self.wipe.val() & (self.beat.val().get_bit(5) | self.beat.val().get_bit(11));
         self.r.d.next = self.wide.val().get_bits::<32>(1);
         if self.beat.val().get_bit(8) {
@@ -200,14 +207,16 @@ impl Logic for Adder {
         if self.wiping.val() {
             self.r.d.next = self.nothing.val();
         }
-        self.top.d.next = self.wide.val().get_bit(33) ^ self.b.q.val().get_bit(31);
-        if self.beat.val().get_bit(3)
-            | self.beat.val().get_bit(4)
+        self.top.d.next = self.wide.val().get_bit(33);
+        // The carries of the low halves, a beat later: the sum's top bit without that of B. Then they come in, one a beat.
+        self.sign_of_b.d.next = self.b.q.val().get_bit(31);
+        if self.beat.val().get_bit(4)
             | self.beat.val().get_bit(5)
+            | self.beat.val().get_bit(6)
+            | self.beat.val().get_bit(8)
             | self.beat.val().get_bit(9)
-            | self.beat.val().get_bit(10)
         {
-            self.carry_0.d.next = self.wide.val().get_bit(33);
+            self.carry_0.d.next = self.top.q.val() ^ self.sign_of_b.q.val();
             self.carry_1.d.next = self.carry_0.q.val();
             self.carry_2.d.next = self.carry_1.q.val();
         }
