@@ -37,3 +37,11 @@ pub fn lockstep() -> Done {
     let test = ["test", "--release", "-p", "carrystep-tests", "--test", "engine_equals_model", "--", "--nocapture"];
     shell::run_with(&[("CARRYSTEP_CLOCKS", "10000000")], "cargo", &test)
 }
+
+/// All mutants of the engine, where a test run takes a few.
+pub fn mutants(write: bool) -> Done {
+    tools::install()?;
+    let test =
+        ["test", "--release", "-p", "carrystep-tests", "--test", "rung_8_mutants_are_caught", "--", "--nocapture"];
+    shell::run_with(&[("CARRYSTEP_MUTANTS", if write { "write" } else { "all" })], "cargo", &test)
+}

@@ -11,8 +11,9 @@ use carrystep_spec::engine::{EngineInputs, EngineOutputs};
 use carrystep_spec::{AXES, EngineBuild, Program};
 use std::fmt::Write as _;
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 const ICARUS_BENCH: &str = include_str!("../../bench/engine_bench.v");
 const VERILATOR_BENCH: &str = include_str!("../../bench/engine_bench.cpp");
@@ -115,24 +116,50 @@ pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<
             return Err(LevelError::Gateware(format!("the level {level} does not run Verilog")));
         }
     };
-    let output = simulation.output().map_err(tool::io(format!("cannot start the {level} simulation")))?;
-    let text = String::from_utf8_lossy(&output.stdout);
-    let mut found = text.lines();
+    first_difference(&mut simulation, recording)
+}
+
+/// The same in Verilator for Verilog of many mutants, of the one that `+mutant` chooses.
+///
+/// # Errors
+/// [`LevelError`]: a tool is missing or fails.
+pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording) -> Result<Option<String>, LevelError> {
+    let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+    write(folder.path(), &[("stimuli.txt", &recording.text())])?;
+    let mut simulation = Command::new(verilated(verilog)?);
+    simulation.arg(folder.path().join("stimuli.txt")).arg(format!("+mutant={mutant}"));
+    first_difference(&mut simulation, recording)
+}
+
+/// Runs a simulation as far as it agrees with a recording.
+fn first_difference(simulation: &mut Command, recording: &Recording) -> Result<Option<String>, LevelError> {
+    let mut running = simulation.stdout(Stdio::piped()).spawn().map_err(tool::io("cannot start the simulation"))?;
+    let lines = running.stdout.take().map(|output| BufReader::new(output).lines());
+    let mut found = lines.into_iter().flatten().map_while(Result::ok);
+    let difference = compare(&mut found, recording);
+    // It may have more to say than anyone reads, or be over by now.
+    let _ = running.kill();
+    running.wait().map_err(tool::io("cannot end the simulation"))?;
+    Ok(difference)
+}
+
+fn compare(found: &mut impl Iterator<Item = String>, recording: &Recording) -> Option<String> {
+    let mut next = || found.next().unwrap_or_else(|| "nothing".to_owned());
     for (cycle, outputs) in &recording.outputs {
-        let line = found.next().unwrap_or("nothing");
-        if parsed(line) != Some((*cycle, packed(outputs))) {
-            return Ok(Some(format!("expected in cycle {cycle} {outputs:?}: {:x}, found {line}", packed(outputs))));
+        let line = next();
+        if parsed(&line) != Some((*cycle, packed(outputs))) {
+            return Some(format!("expected in cycle {cycle} {outputs:?}: {:x}, found {line}", packed(outputs)));
         }
     }
     let rests = recording.outputs.last().is_some_and(|(_, outputs)| outputs.idle || outputs.halted);
     for expected in recording.kept.iter().flatten() {
-        let line = found.next().unwrap_or("nothing");
+        let line = next();
         let kept = line.strip_prefix("K ").and_then(|hex| u32::from_str_radix(hex, 16).ok());
         if rests && kept != Some(*expected) {
-            return Ok(Some(format!("expected to be kept: {:x?}, found {line}", recording.kept)));
+            return Some(format!("expected to be kept: {:x?}, found {line}", recording.kept));
         }
     }
-    Ok(found.next().map(|line| format!("expected nothing more, found {line}")))
+    found.next().map(|line| format!("expected nothing more, found {line}"))
 }
 
 /// A line of a bench: cycle and outputs.
