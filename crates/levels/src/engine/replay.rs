@@ -8,7 +8,7 @@ use crate::tool::{self, ICARUS, VERILATOR};
 use crate::{Level, LevelError};
 use carrystep_model::Engine;
 use carrystep_spec::engine::{EngineInputs, EngineOutputs};
-use carrystep_spec::{AXES, EngineBuild, Program};
+use carrystep_spec::{EngineBuild, Program};
 use std::fmt::Write as _;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{BufRead as _, BufReader};
@@ -17,10 +17,10 @@ use std::process::{Command, Stdio};
 
 const ICARUS_BENCH: &str = include_str!("../../bench/engine_bench.v");
 const VERILATOR_BENCH: &str = include_str!("../../bench/engine_bench.cpp");
-const OPTIONS: [&str; 9] = ["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "-Wno-fatal", "-CFLAGS", "-O2"];
+const OPTIONS: [&str; 7] = ["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "-Wno-fatal"];
 
 /// P low, P high, position and discarded steps of each axis.
-pub type Kept = [[u32; 4]; AXES];
+pub type Kept = Vec<[u32; 4]>;
 
 /// A run of the model: what went in, what came out.
 #[derive(Debug, Clone)]
@@ -58,11 +58,17 @@ impl Recording {
             quiet = if host.is_done() && (outputs.idle || outputs.halted) { quiet + 1 } else { 0 };
             EngineCore::clock(&mut model, &inputs);
         }
-        recording.kept = std::array::from_fn(|axis| {
+        let kept = |axis| {
             let (p, shaper) = (model.fraction(axis), model.shaper(axis));
             [p as u32, (p >> 32) as u32, shaper.position.cast_unsigned(), shaper.discarded]
-        });
+        };
+        recording.kept = (0..build.axes()).map(kept).collect();
         recording
+    }
+
+    /// How many axes the engine has.
+    fn axes(&self) -> usize {
+        self.kept.len()
     }
 
     fn add(&mut self, inputs: EngineInputs, outputs: EngineOutputs) {
@@ -85,8 +91,8 @@ impl Recording {
             let (put, start) = (u8::from(inputs.put.is_some()), u8::from(inputs.start.is_some()));
             let EngineInputs { clear, stop, kick, enable, estop, limit_min, limit_max, .. } = *inputs;
             let [clear, stop, kick, enable, estop] = [clear, stop, kick, enable, estop].map(u8::from);
-            let (mask, all) = (inputs.start.unwrap_or(0), (1 << AXES) - 1);
-            let (min, max) = (limit_min & all, limit_max & all);
+            let [mask, min, max] = [inputs.start.unwrap_or(0), limit_min, limit_max]
+                .map(|mask| u32::from(mask) & ((1 << self.axes()) - 1));
             let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear} {stop} {kick} {enable}");
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{count} {host} {estop} {min:x} {max:x}");
@@ -102,31 +108,27 @@ impl Recording {
 /// # Errors
 /// [`LevelError`]: a tool is missing or fails, or the level has no Verilog.
 pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<Option<String>, LevelError> {
-    let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
-    let stimuli = folder.path().join("stimuli.txt");
-    std::fs::write(&stimuli, recording.text()).map_err(tool::io("cannot write the stimuli"))?;
-    let mut simulation = match level {
-        Level::Icarus => icarus(folder.path(), verilog)?,
-        Level::Verilator => {
-            let mut simulation = Command::new(verilated(verilog)?);
-            simulation.arg(&stimuli);
-            simulation
+    match level {
+        Level::Icarus => {
+            let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+            write(folder.path(), &[("stimuli.txt", &recording.text())])?;
+            first_difference(&mut icarus(folder.path(), verilog, recording.axes())?, recording)
         }
+        Level::Verilator => difference_of_mutant(verilog, 0, recording),
         Level::Fast | Level::Model | Level::RustHdl => {
-            return Err(LevelError::Gateware(format!("the level {level} does not run Verilog")));
+            Err(LevelError::Gateware(format!("the level {level} does not run Verilog")))
         }
-    };
-    first_difference(&mut simulation, recording)
+    }
 }
 
-/// The same in Verilator for Verilog of many mutants, of the one that `+mutant` chooses.
+/// The same in Verilator; of Verilog that holds many mutants, for the one of this number, 0 being none.
 ///
 /// # Errors
 /// [`LevelError`]: a tool is missing or fails.
 pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording) -> Result<Option<String>, LevelError> {
     let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
     write(folder.path(), &[("stimuli.txt", &recording.text())])?;
-    let mut simulation = Command::new(verilated(verilog)?);
+    let mut simulation = Command::new(verilated(verilog, recording.axes())?);
     simulation.arg(folder.path().join("stimuli.txt")).arg(format!("+mutant={mutant}"));
     first_difference(&mut simulation, recording)
 }
@@ -147,8 +149,9 @@ fn compare(found: &mut impl Iterator<Item = String>, recording: &Recording) -> O
     let mut next = || found.next().unwrap_or_else(|| "nothing".to_owned());
     for (cycle, outputs) in &recording.outputs {
         let line = next();
-        if parsed(&line) != Some((*cycle, packed(outputs))) {
-            return Some(format!("expected in cycle {cycle} {outputs:?}: {:x}, found {line}", packed(outputs)));
+        let bits = packed(outputs, recording.axes());
+        if parsed(&line) != Some((*cycle, bits)) {
+            return Some(format!("expected in cycle {cycle} {outputs:?}: {bits:x}, found {line}"));
         }
     }
     let rests = recording.outputs.last().is_some_and(|(_, outputs)| outputs.idle || outputs.halted);
@@ -169,37 +172,39 @@ fn parsed(line: &str) -> Option<(u64, u64)> {
 }
 
 /// The outputs as the benches write them.
-fn packed(outputs: &EngineOutputs) -> u64 {
+fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
     let EngineOutputs { put_ready, start_ready, step, dir, enabled, idle, fault, halted, started } = *outputs;
     let (cause, culprits) = fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
     let flags = [put_ready, start_ready, idle, fault.is_some(), halted, started, enabled];
     let flags = flags.into_iter().fold(0, |all, flag| all << 1 | u64::from(flag));
-    [step, dir, culprits].into_iter().fold(flags << 3 | cause, |all, mask| all << AXES | u64::from(mask))
+    [step, dir, culprits].into_iter().fold(flags << 3 | cause, |all, mask| all << axes | u64::from(mask))
 }
 
-fn icarus(folder: &Path, verilog: &str) -> Result<Command, LevelError> {
+fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelError> {
     tool::find(&ICARUS)?;
     write(folder, &[("core.v", verilog), ("bench.v", ICARUS_BENCH)])?;
-    let files = ["-o", "bench.vvp", "bench.v", "core.v"];
-    tool::complete(&ICARUS, Command::new(ICARUS.name).arg("-g2005").args(files).current_dir(folder))?;
+    let parameter = format!("-Pengine_bench.AXES={axes}");
+    let arguments = ["-g2005", &parameter, "-o", "bench.vvp", "bench.v", "core.v"];
+    tool::complete(&ICARUS, Command::new(ICARUS.name).args(arguments).current_dir(folder))?;
     let mut simulation = Command::new("vvp");
     simulation.args(["-n", "bench.vvp", "+stimuli=stimuli.txt"]).current_dir(folder);
     Ok(simulation)
 }
 
 /// The compiled simulation of this Verilog, from the cache or made now.
-fn verilated(verilog: &str) -> Result<PathBuf, LevelError> {
+fn verilated(verilog: &str, axes: usize) -> Result<PathBuf, LevelError> {
     tool::find(&VERILATOR)?;
     let cache = std::env::temp_dir().join("carrystep-verilator");
     std::fs::create_dir_all(&cache).map_err(tool::io("cannot make the cache folder"))?;
     let mut hash = DefaultHasher::new();
-    (verilog, VERILATOR_BENCH, OPTIONS, env!("CARGO_PKG_VERSION")).hash(&mut hash);
+    (verilog, VERILATOR_BENCH, axes, OPTIONS, env!("CARGO_PKG_VERSION")).hash(&mut hash);
     let binary = cache.join(format!("engine_{:016x}", hash.finish()));
     if !binary.is_file() {
         let folder = tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
         write(folder.path(), &[("core.v", verilog), ("bench.cpp", VERILATOR_BENCH)])?;
         let mut command = Command::new(VERILATOR.name);
-        command.args(OPTIONS).args(["--top-module", "carrystep_engine", "-o", "bench", "core.v", "bench.cpp"]);
+        command.args(OPTIONS).args(["-CFLAGS", &format!("-O2 -DAXES={axes}")]);
+        command.args(["--top-module", "carrystep_engine", "-o", "bench", "core.v", "bench.cpp"]);
         tool::complete(&VERILATOR, command.current_dir(folder.path()))?;
         // Whole or not at all: another run may be looking for it.
         std::fs::rename(folder.path().join("obj_dir").join("bench"), &binary)
