@@ -9,6 +9,7 @@ pub mod draw;
 pub mod stimuli;
 pub mod survivors;
 
+use crate::effort;
 use carrystep_levels::engine::replay::difference_of_mutant;
 use draw::Sample;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -29,7 +30,9 @@ pub fn catchers<'a>(sample: &Sample, stimuli: &'a [Stimulus]) -> Vec<Option<&'a 
             let place = next.fetch_add(1, Ordering::Relaxed);
             let Some(mutant) = sample.mutants.get(place) else { return found };
             let mut fitting = stimuli.iter().filter(|stimulus| stimulus.is_for(&mutant.module));
-            found.push((place, fitting.find(|stimulus| differs(sample, place + 1, stimulus)).map(|s| s.name.as_str())));
+            let catcher = fitting.find(|stimulus| differs(sample, place + 1, stimulus)).map(|s| s.name.as_str());
+            effort::say(&format!("{} is caught by {}: {}", place + 1, catcher.unwrap_or("NOTHING"), mutant.name));
+            found.push((place, catcher));
         }
     };
     let mut found = std::thread::scope(|scope| {

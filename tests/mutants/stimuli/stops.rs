@@ -21,7 +21,10 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
         stop(build, "stop, then e-stop", &[(20_000, Event::EStop(true)), (24_000, Event::EStop(false))]),
     ];
     all.extend((0..AXES).map(|axis| overrun(build, axis)));
-    all.extend((0..AXES).flat_map(|axis| [false, true].map(|max| limit(build, axis, max))));
+    for axis in 0..AXES {
+        let ends = [(false, false), (false, true), (true, false), (true, true)];
+        all.extend(ends.map(|(max, others)| limit(build, axis, max, others)));
+    }
     all.extend([nonsense(build), dry(build)]);
     all.extend(coincidences(build));
     all.push(bounces(build));
@@ -81,16 +84,18 @@ fn overrun(build: &EngineBuild, axis: usize) -> Stimulus {
     Stimulus::new(build, format!("overrun of axis {axis}"), &program, &Events::new())
 }
 
-/// An axis runs onto a switch, from which it may go back.
-fn limit(build: &EngineBuild, axis: usize, max: bool) -> Stimulus {
-    let mut v = both_ways(1 << 54);
-    v[axis] = if max { 1 << 54 } else { -(1 << 54) };
+/// An axis runs onto a switch, from which it may go back; all others stand on theirs and go away, or have none.
+fn limit(build: &EngineBuild, axis: usize, max: bool, others: bool) -> Stimulus {
+    let on = if max { 1 << 54 } else { -(1 << 54) };
+    let mut v = if others { [-on; AXES] } else { both_ways(1 << 54) };
+    v[axis] = on;
     let program = [cruise(900, v), vec![Command::Wait { clocks: 62_000 }, Command::Clear]].concat();
-    let program = [program, cruise(70, v.map(|v| -v))].concat();
+    let back = if others { [-on; AXES] } else { v.map(|v| -v) };
+    let program = [program, cruise(70, back)].concat();
     let switch = |mask| if max { Event::LimitMax(mask) } else { Event::LimitMin(mask) };
-    let events = vec![(THEN, switch(1 << axis)), (THEN + 75_000, switch(0))];
-    let name = format!("limit of axis {axis} at its {} end", if max { "high" } else { "low" });
-    Stimulus::new(build, name, &program, &events).only_for(&GUARDS)
+    let events = vec![(THEN, switch(if others { 0x3f } else { 1 << axis })), (THEN + 75_000, switch(0))];
+    let (end, others) = (if max { "high" } else { "low" }, if others { ", the others' too" } else { "" });
+    Stimulus::new(build, format!("limit of axis {axis} at its {end} end{others}"), &program, &events).only_for(&GUARDS)
 }
 
 /// All switches bounce, for one look less than is believed; then they are there, and go, bouncing.
