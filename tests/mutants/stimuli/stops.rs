@@ -26,6 +26,7 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
         all.extend(ends.map(|(max, others)| limit(build, axis, max, others)));
     }
     all.extend([nonsense(build), dry(build)]);
+    all.extend(starts_that_stop(build));
     all.extend(coincidences(build));
     all.push(bounces(build));
     all.extend((0..AXES).map(|axis| last_step(build, axis)));
@@ -76,7 +77,9 @@ fn overrun(build: &EngineBuild, axis: usize) -> Stimulus {
     let mut program = Program::new();
     for back in [false, true] {
         for (ticks, v) in turns {
-            let segment = segment((ticks, if back { -v } else { v }));
+            // Backward a step is not at the boundary but below it.
+            let back_to = if v == 1 << 58 { -v - 1 } else { -v };
+            let segment = segment((ticks, if back { back_to } else { v }));
             program.push(Command::Segment { axis: axis as u8, segment });
         }
         program.extend([Command::Start { mask: 1 << axis }, Command::Wait { clocks: 4_000 }, Command::Clear]);
@@ -139,6 +142,24 @@ fn dry(build: &EngineBuild) -> Stimulus {
         program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 20_000 }, Command::Clear]);
     }
     Stimulus::new(build, "dry queues", &program, &Events::new())
+}
+
+/// An armed start may go in the very tick that finds an axis dry, or in the clock after a stop was asked for.
+fn starts_that_stop(build: &EngineBuild) -> [Stimulus; 2] {
+    let segment =
+        |axis, ticks, last| Command::Segment { axis, segment: Segment { ticks, v: 1 << 52, a: 0, j: 0, last } };
+    let program = |dry: bool| {
+        let mut program = vec![segment(1, 60, true), segment(1, 20, true), segment(0, 60, !dry)];
+        program.extend([Command::Start { mask: 3 }, Command::Start { mask: 2 }]);
+        [program, again(20_000)].concat()
+    };
+    let started = Stimulus::new(build, "two starts", &program(false), &Events::new()).recording;
+    let second = started.outputs.iter().filter(|(_, outputs)| outputs.started).nth(1).map_or(THEN, |(cycle, _)| *cycle);
+    let stop = vec![(second - 1, Event::Stop(true)), (second, Event::Stop(false))];
+    [
+        Stimulus::new(build, "a start in the tick that finds an axis dry", &program(true), &Events::new()),
+        Stimulus::new(build, "a start in the clock after a stop", &program(false), &stop),
+    ]
 }
 
 /// Two causes in one clock.
