@@ -8,6 +8,7 @@ pub mod engine_programs;
 pub mod golden;
 pub mod lockstep;
 pub mod moves;
+pub mod mutants;
 pub mod programs;
 pub mod proofs;
 pub mod random_moves;

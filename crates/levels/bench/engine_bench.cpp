@@ -1,11 +1,14 @@
 // Replays what a host did to carrystep_engine, for Verilator, and reports every cycle in which any output
-// changed; then asks the get port for all that the engine keeps. Argument: FILE; compiled for AXES axes
+// changed; then asks the get port for all that the engine keeps. Arguments: FILE [+mutant=N]; compiled for AXES axes
 #include "Vcarrystep_engine.h"
 #include "verilated.h"
 #include <cinttypes>
 #include <cstdio>
 
 namespace {
+
+// Clocks in which the get port answers: some ticks at most.
+constexpr int PATIENCE = 1 << 18;
 
 uint64_t outputs(const Vcarrystep_engine& core) {
     uint64_t all = 0;
@@ -34,10 +37,11 @@ void tick(Vcarrystep_engine& core) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 2) return 2;
+    if (argc < 2) return 2;
     FILE* file = std::fopen(argv[1], "r");
     if (!file) return 2;
     VerilatedContext context;
+    context.commandArgs(argc, argv);
     Vcarrystep_engine core{&context};
     core.clock = 0;
     core.eval();
@@ -59,8 +63,8 @@ int main(int argc, char** argv) {
         core.estop = estop;
         core.limit_min = limit_min;
         core.limit_max = limit_max;
+        core.eval();
         for (; count != 0; --count, ++cycle) {
-            core.eval();
             const uint64_t now = outputs(core);
             if (now != before) std::printf("%" PRIu64 " %" PRIx64 "\n", cycle, now);
             before = now;
@@ -73,8 +77,8 @@ int main(int argc, char** argv) {
             core.get_axis = axis;
             core.get_item = item;
             tick(core);
-            while (!core.get_valid) tick(core);
-            std::printf("K %x\n", core.get_data);
+            for (int clocks = 0; clocks < PATIENCE && !core.get_valid; ++clocks) tick(core);
+            std::printf(core.get_valid ? "K %x\n" : "no answer\n", core.get_data);
         }
     return 0;
 }

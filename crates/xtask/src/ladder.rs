@@ -56,3 +56,11 @@ pub fn lockstep() -> Done {
     run("engine_equals_model")?;
     run("rung_6_netlist_and_bitstream_equal_verilog")
 }
+
+/// All mutants of the engine, where a test run takes a few.
+pub fn mutants(write: bool) -> Done {
+    tools::install()?;
+    let test =
+        ["test", "--release", "-p", "carrystep-tests", "--test", "rung_8_mutants_are_caught", "--", "--nocapture"];
+    shell::run_with(&[("CARRYSTEP_MUTANTS", if write { "write" } else { "all" })], "cargo", &test)
+}

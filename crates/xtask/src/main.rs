@@ -28,6 +28,12 @@ enum Chore {
     Tools,
     /// Ten million clocks of lock-step for each test of the engine, and its longest golden vectors.
     Lockstep,
+    /// Run all mutants of the engine, and say which recording catches how many.
+    Mutants {
+        /// Write the list of survivors in `docs/mutants.md` anew; reasons that are there stay.
+        #[arg(long)]
+        write: bool,
+    },
     /// Check that the arrows between the crates go one way.
     Arrows,
     /// Formatting and lints, without a warning.
@@ -69,6 +75,7 @@ fn main() -> ExitCode {
         Chore::Prove => ladder::prove(),
         Chore::Tools => tools::install(),
         Chore::Lockstep => ladder::lockstep(),
+        Chore::Mutants { write } => ladder::mutants(write),
         Chore::Arrows => arrows::check(),
         Chore::Lint => ladder::lint(),
         Chore::Bare => ladder::bare(),

@@ -11,8 +11,9 @@ use carrystep_spec::engine::{EngineInputs, EngineOutputs};
 use carrystep_spec::{EngineBuild, Program};
 use std::fmt::Write as _;
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 const ICARUS_BENCH: &str = include_str!("../../bench/engine_bench.v");
 const VERILATOR_BENCH: &str = include_str!("../../bench/engine_bench.cpp");
@@ -107,39 +108,61 @@ pub(super) fn settle(build: &EngineBuild) -> u64 {
 /// # Errors
 /// [`LevelError`]: a tool is missing or fails, or the level has no Verilog.
 pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<Option<String>, LevelError> {
-    let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
-    let stimuli = folder.path().join("stimuli.txt");
-    std::fs::write(&stimuli, recording.text()).map_err(tool::io("cannot write the stimuli"))?;
-    let mut simulation = match level {
-        Level::Icarus => icarus(folder.path(), verilog, recording.axes())?,
-        Level::Verilator => {
-            let mut simulation = Command::new(verilated(verilog, recording.axes())?);
-            simulation.arg(&stimuli);
-            simulation
+    match level {
+        Level::Icarus => {
+            let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+            write(folder.path(), &[("stimuli.txt", &recording.text())])?;
+            first_difference(&mut icarus(folder.path(), verilog, recording.axes())?, recording)
         }
+        Level::Verilator => difference_of_mutant(verilog, 0, recording),
         Level::Fast | Level::Model | Level::RustHdl => {
-            return Err(LevelError::Gateware(format!("the level {level} does not run Verilog")));
+            Err(LevelError::Gateware(format!("the level {level} does not run Verilog")))
         }
-    };
-    let output = simulation.output().map_err(tool::io(format!("cannot start the {level} simulation")))?;
-    let text = String::from_utf8_lossy(&output.stdout);
-    let mut found = text.lines();
+    }
+}
+
+/// The same in Verilator; of Verilog that holds many mutants, for the one of this number, 0 being none.
+///
+/// # Errors
+/// [`LevelError`]: a tool is missing or fails.
+pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording) -> Result<Option<String>, LevelError> {
+    let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+    write(folder.path(), &[("stimuli.txt", &recording.text())])?;
+    let mut simulation = Command::new(verilated(verilog, recording.axes())?);
+    simulation.arg(folder.path().join("stimuli.txt")).arg(format!("+mutant={mutant}"));
+    first_difference(&mut simulation, recording)
+}
+
+/// Runs a simulation as far as it agrees with a recording.
+fn first_difference(simulation: &mut Command, recording: &Recording) -> Result<Option<String>, LevelError> {
+    let mut running = simulation.stdout(Stdio::piped()).spawn().map_err(tool::io("cannot start the simulation"))?;
+    let lines = running.stdout.take().map(|output| BufReader::new(output).lines());
+    let mut found = lines.into_iter().flatten().map_while(Result::ok);
+    let difference = compare(&mut found, recording);
+    // It may have more to say than anyone reads, or be over by now.
+    let _ = running.kill();
+    running.wait().map_err(tool::io("cannot end the simulation"))?;
+    Ok(difference)
+}
+
+fn compare(found: &mut impl Iterator<Item = String>, recording: &Recording) -> Option<String> {
+    let mut next = || found.next().unwrap_or_else(|| "nothing".to_owned());
     for (cycle, outputs) in &recording.outputs {
-        let line = found.next().unwrap_or("nothing");
+        let line = next();
         let bits = packed(outputs, recording.axes());
-        if parsed(line) != Some((*cycle, bits)) {
-            return Ok(Some(format!("expected in cycle {cycle} {outputs:?}: {bits:x}, found {line}")));
+        if parsed(&line) != Some((*cycle, bits)) {
+            return Some(format!("expected in cycle {cycle} {outputs:?}: {bits:x}, found {line}"));
         }
     }
     let rests = recording.outputs.last().is_some_and(|(_, outputs)| outputs.idle || outputs.halted);
     for expected in recording.kept.iter().flatten() {
-        let line = found.next().unwrap_or("nothing");
+        let line = next();
         let kept = line.strip_prefix("K ").and_then(|hex| u32::from_str_radix(hex, 16).ok());
         if rests && kept != Some(*expected) {
-            return Ok(Some(format!("expected to be kept: {:x?}, found {line}", recording.kept)));
+            return Some(format!("expected to be kept: {:x?}, found {line}", recording.kept));
         }
     }
-    Ok(found.next().map(|line| format!("expected nothing more, found {line}")))
+    found.next().map(|line| format!("expected nothing more, found {line}"))
 }
 
 /// A line of a bench: cycle and outputs.
