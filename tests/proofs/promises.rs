@@ -26,15 +26,15 @@ impl Promises {
     }
 
     /// Names that stand for a signal inside the module, and that signal: `(* inside = "dut.busy" *) wire [16:0] busy;`.
-    /// A star is all six axes, the highest first.
-    pub fn inside(&self) -> Vec<(&'static str, String)> {
+    /// A star is all axes, the highest first.
+    pub fn inside(&self, axes: usize) -> Vec<(&'static str, String)> {
         let declared = self.text.lines().filter_map(|line| line.trim().strip_prefix("(* inside = \"")?.split_once('"'));
         declared
             .map(|(signal, rest)| {
                 let name = rest.trim_end_matches(';').rsplit(' ').next().unwrap_or(rest);
                 let each = |axis: usize| format!("\\{}", signal.replace('*', &axis.to_string()));
                 let all: Vec<String> =
-                    if signal.contains('*') { (0..6).rev().map(each).collect() } else { vec![each(0)] };
+                    if signal.contains('*') { (0..axes).rev().map(each).collect() } else { vec![each(0)] };
                 (name, all.join(","))
             })
             .collect()

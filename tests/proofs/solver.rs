@@ -109,7 +109,7 @@ pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), P
 
 /// The steps of yosys: the exported text as it is, the promises, and names for what they see inside.
 fn script(promises: &Promises, case: &Case, question: Question) -> String {
-    let mut text = format!("read_verilog -sv exported.v\nread_verilog -formal -sv -D DUT={}", case.dut);
+    let mut text = format!("read_verilog -sv exported.v\nread_verilog -formal -sv -icells -D DUT={}", case.dut);
     for (name, number) in &case.numbers {
         // Writing to a string cannot fail.
         let _ = write!(text, " -D {name}={number}");
@@ -118,13 +118,13 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
         text.push_str(" -D INVARIANTS");
     }
     text.push_str(" promises.sv\nhierarchy -check -top promises\nproc\nflatten\n");
-    for (name, signal) in promises.inside() {
+    for (name, signal) in promises.inside(case.axes()) {
         let _ = writeln!(text, "connect -set {name} {signal}");
     }
     // Two that are both plain by now would be merged, and one label lost.
     text.push_str("setattr -set keep 1 t:$assert t:$cover\n");
     // Nothing may hang free: a free wire is any value, and a proof about it says nothing.
-    text.push_str("check -assert\nprep -top promises\n");
+    text.push_str("check -assert\nprep -nordff -top promises\n");
     // What is not asked goes, and with it the part of the module that only it looks at.
     text.push_str(&match question {
         Question::Covers(_) => "delete t:$assert\n".to_owned(),
