@@ -16,8 +16,10 @@
 mod axis;
 mod builds;
 mod edge;
+mod limits;
 mod promises;
 mod pulser;
+mod queue;
 mod sequencer;
 mod shaper;
 mod six_axis;
@@ -25,6 +27,7 @@ mod solver;
 mod stops;
 mod table;
 mod tick;
+mod turn;
 mod watch;
 
 pub use promises::Promises;
@@ -106,5 +109,8 @@ pub fn all() -> Vec<Proof> {
         pulser::proof(),
         stops::proof(),
         watch::proof(),
+        queue::proof(),
+        limits::proof(),
+        turn::proof(),
     ]
 }

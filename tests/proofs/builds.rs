@@ -51,7 +51,7 @@ pub fn small_engine(phases: u32, limits: Limits) -> (EngineBuild, Arc<str>) {
     let low = limits != Limits::Pair;
     let guard = Guard {
         round: 2,
-        debounce: 3,
+        debounce: 2,
         watchdog: 2,
         enable: 2,
         limits,

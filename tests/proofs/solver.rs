@@ -17,6 +17,18 @@ const TOOLS: [(&str, &str); 3] = [
 /// Seconds for one question; the slowest takes a tenth of it on an idle machine.
 const LIMIT: &str = "300";
 
+/// A word of a memory that lies in the exported module: `look #("\\dut.words", ABITS, WIDTH) name (1'b0, 1'b1, address, word);`.
+const LOOK: &str = r#"
+(* blackbox *)
+module look #(parameter MEMID = "", ABITS = 1, WIDTH = 1)
+    (input wire CLK, input wire EN, input wire [ABITS-1:0] ADDR, output wire [WIDTH-1:0] DATA);
+endmodule
+"#;
+
+/// After `flatten` the memory is there under its name, and a look becomes one more port of it, which only reads.
+const LOOKS_ARE_READ_PORTS: &str = "setparam -set CLK_ENABLE 0 -set CLK_POLARITY 0 -set TRANSPARENT 0 t:look\n\
+     chtype -set $memrd t:look\n";
+
 /// Why there is no answer, or not the one that was wanted.
 #[derive(Debug, Error)]
 pub enum ProofError {
@@ -74,6 +86,7 @@ pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), P
     let dir = tempfile::tempdir()?;
     fs::write(dir.path().join("exported.v"), case.verilog.as_bytes())?;
     fs::write(dir.path().join("promises.sv"), promises.text)?;
+    fs::write(dir.path().join("look.sv"), LOOK)?;
     fs::write(dir.path().join("prove.ys"), script(promises, case, question))?;
     let (fine, said) = run(dir.path(), "yosys", &["-q", "prove.ys"])?;
     if !fine {
@@ -109,7 +122,7 @@ pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), P
 
 /// The steps of yosys: the exported text as it is, the promises, and names for what they see inside.
 fn script(promises: &Promises, case: &Case, question: Question) -> String {
-    let mut text = format!("read_verilog -sv exported.v\nread_verilog -formal -sv -icells -D DUT={}", case.dut);
+    let mut text = format!("read_verilog -sv exported.v look.sv\nread_verilog -formal -sv -D DUT={}", case.dut);
     for (name, number) in &case.numbers {
         // Writing to a string cannot fail.
         let _ = write!(text, " -D {name}={number}");
@@ -121,9 +134,11 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
     for (name, signal) in promises.inside(case.axes()) {
         let _ = writeln!(text, "connect -set {name} {signal}");
     }
+    text.push_str(LOOKS_ARE_READ_PORTS);
     // Two that are both plain by now would be merged, and one label lost.
     text.push_str("setattr -set keep 1 t:$assert t:$cover\n");
     // Nothing may hang free: a free wire is any value, and a proof about it says nothing.
+    // The register behind a memory stays one: a port of its own would be free where it reads what is being written.
     text.push_str("check -assert\nprep -nordff -top promises\n");
     // What is not asked goes, and with it the part of the module that only it looks at.
     text.push_str(&match question {
