@@ -1,9 +1,9 @@
 //! Random programs for the engine: queues filled and run dry, joint moves whose axes turn and end in one
 //! tick, and whatever the other cores are given; with the e-stop, limits, stops and silence at any clock.
 
-use crate::programs;
+use crate::programs::{self, all};
 use carrystep_levels::engine::{Event, Events};
-use carrystep_spec::{AXES, Command, Program, Segment};
+use carrystep_spec::{Command, Program, Segment};
 use proptest::prelude::*;
 
 /// Speeds up to the bound, so that axes step in almost every second tick.
@@ -17,19 +17,19 @@ fn fast() -> impl Strategy<Value = i64> {
 }
 
 /// All axes the same ticks, a few segments ahead of the start; every axis turns at each boundary.
-fn reversals() -> impl Strategy<Value = Program> {
-    let row = (prop_oneof![1_u32..4, 4_u32..40], prop::collection::vec(fast(), AXES));
-    (prop::collection::vec(row, 1..8), any::<bool>()).prop_map(|(rows, dry)| {
+fn reversals(axes: usize) -> impl Strategy<Value = Program> {
+    let row = (prop_oneof![1_u32..4, 4_u32..40], prop::collection::vec(fast(), axes));
+    (prop::collection::vec(row, 1..8), any::<bool>()).prop_map(move |(rows, dry)| {
         let count = rows.len();
         let mut program = Program::new();
-        for (place, (ticks, axes)) in rows.into_iter().enumerate() {
-            for (axis, v) in (0..).zip(axes) {
+        for (place, (ticks, lanes)) in rows.into_iter().enumerate() {
+            for (axis, v) in (0..).zip(lanes) {
                 let v = if place % 2 == 0 { v } else { v.wrapping_neg() };
                 let segment = Segment { ticks, v, a: 0, j: 0, last: place + 1 == count && !dry };
                 program.push(Command::Segment { axis, segment });
             }
         }
-        program.push(Command::Start { mask: 0x3f });
+        program.push(Command::Start { mask: all(axes) });
         if dry {
             program.extend([Command::Wait { clocks: 4000 }, Command::Clear]);
         }
@@ -38,38 +38,38 @@ fn reversals() -> impl Strategy<Value = Program> {
 }
 
 /// V and A that leave the range after some ticks, on several axes at once.
-fn too_fast() -> impl Strategy<Value = Program> {
+fn too_fast(axes: usize) -> impl Strategy<Value = Program> {
     let axis = (1_u32..12, fast(), fast(), fast(), any::<bool>());
-    prop::collection::vec(axis, AXES).prop_map(|axes| {
+    prop::collection::vec(axis, axes).prop_map(move |lanes| {
         let mut program = Program::new();
-        for (axis, (ticks, v, a, j, least)) in (0..).zip(axes) {
-            let v = if least && axis == 3 { i64::MIN } else { v };
+        for (axis, (ticks, v, a, j, least)) in (0..).zip(lanes) {
+            let v = if least && axis % 4 == 3 { i64::MIN } else { v };
             program.push(Command::Segment { axis, segment: Segment { ticks, v, a: a / 4, j: j / 16, last: true } });
         }
-        program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 2500 }, Command::Clear]);
+        program.extend([Command::Start { mask: all(axes) }, Command::Wait { clocks: 2500 }, Command::Clear]);
         program
     })
 }
 
 /// Long segments at speeds that steps come from, and a clear for when they are stopped.
-fn cruises() -> impl Strategy<Value = Program> {
+fn cruises(axes: usize) -> impl Strategy<Value = Program> {
     let axis = (200_u32..600, prop_oneof![4 => -(1_i64 << 60)..(1 << 60), 1 => fast()], -(1_i64 << 50)..(1 << 50));
-    prop::collection::vec(axis, AXES).prop_map(|axes| {
+    prop::collection::vec(axis, axes).prop_map(move |lanes| {
         let mut program = Program::new();
-        for (axis, (ticks, v, a)) in (0..).zip(axes) {
+        for (axis, (ticks, v, a)) in (0..).zip(lanes) {
             program.push(Command::Segment { axis, segment: Segment { ticks, v, a, j: 0, last: true } });
         }
-        program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 12_000 }, Command::Clear]);
+        program.extend([Command::Start { mask: all(axes) }, Command::Wait { clocks: 12_000 }, Command::Clear]);
         program
     })
 }
 
 /// One thing that goes on and is over again.
-fn episode() -> impl Strategy<Value = Events> {
+fn episode(axes: usize) -> impl Strategy<Value = Events> {
     let what = prop_oneof![
         2 => Just((Event::EStop(true), Event::EStop(false))),
-        5 => (0_u8..64).prop_map(|mask| (Event::LimitMin(mask), Event::LimitMin(0))),
-        5 => (0_u8..64).prop_map(|mask| (Event::LimitMax(mask), Event::LimitMax(0))),
+        5 => (0..=all(axes)).prop_map(|mask| (Event::LimitMin(mask), Event::LimitMin(0))),
+        5 => (0..=all(axes)).prop_map(|mask| (Event::LimitMax(mask), Event::LimitMax(0))),
         3 => Just((Event::Stop(true), Event::Stop(false))),
         1 => Just((Event::Enable(false), Event::Enable(true))),
     ];
@@ -85,8 +85,8 @@ fn signs_of_life() -> impl Strategy<Value = Events> {
 }
 
 /// Everything that happens around a program.
-fn events() -> impl Strategy<Value = Events> {
-    let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode(), 1..8)];
+fn events(axes: usize) -> impl Strategy<Value = Events> {
+    let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode(axes), 1..8)];
     (episodes, signs_of_life()).prop_map(|(episodes, life)| {
         let mut events = episodes.concat();
         events.extend(life);
@@ -95,11 +95,18 @@ fn events() -> impl Strategy<Value = Events> {
     })
 }
 
-/// A segment for an axis that there is not.
+/// A segment for the last axis that can be: mostly one that there is not.
 const STRAY: Segment = Segment { ticks: 1, v: 0, a: 0, j: 0, last: true };
 
-/// Programs for the engine, and what happens around them.
-pub fn program() -> impl Strategy<Value = (Program, Events)> {
-    let part = prop_oneof![2 => reversals(), 1 => too_fast(), 4 => cruises(), 2 => programs::program(), 1 => Just(vec![Command::Segment { axis: 7, segment: STRAY }, Command::Clear])];
-    (prop::collection::vec(part, 1..5).prop_map(|parts| parts.concat()), events())
+/// Programs for an engine of so many axes, and what happens around them.
+pub fn program(axes: usize) -> impl Strategy<Value = (Program, Events)> {
+    let stray = vec![Command::Segment { axis: 7, segment: STRAY }, Command::Clear];
+    let part = prop_oneof![
+        2 => reversals(axes),
+        1 => too_fast(axes),
+        4 => cruises(axes),
+        2 => programs::program_of(axes),
+        1 => Just(stray),
+    ];
+    (prop::collection::vec(part, 1..5).prop_map(|parts| parts.concat()), events(axes))
 }

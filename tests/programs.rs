@@ -27,29 +27,31 @@ pub fn segment() -> impl Strategy<Value = Segment> {
 }
 
 /// Segments that a well-meaning host sends for one move of all axes: each axis the same ticks.
-fn joint_move() -> impl Strategy<Value = Program> {
-    prop::collection::vec((1_u32..100, prop::collection::vec((v(), change(), change()), AXES)), 1..6).prop_map(|rows| {
-        let count = rows.len();
-        let mut program = Program::new();
-        for (row, (ticks, axes)) in rows.into_iter().enumerate() {
-            for (axis, (v, a, j)) in (0..).zip(axes) {
-                // Half the speed, no change that could leave the range: such a move runs to its end.
-                let segment = Segment { ticks, v: v / 2, a: a >> 14, j: j >> 24, last: row + 1 == count };
-                program.push(Command::Segment { axis, segment });
+fn joint_move(axes: usize) -> impl Strategy<Value = Program> {
+    prop::collection::vec((1_u32..100, prop::collection::vec((v(), change(), change()), axes)), 1..6).prop_map(
+        move |rows| {
+            let count = rows.len();
+            let mut program = Program::new();
+            for (row, (ticks, lanes)) in rows.into_iter().enumerate() {
+                for (axis, (v, a, j)) in (0..).zip(lanes) {
+                    // Half the speed, no change that could leave the range: such a move runs to its end.
+                    let segment = Segment { ticks, v: v / 2, a: a >> 14, j: j >> 24, last: row + 1 == count };
+                    program.push(Command::Segment { axis, segment });
+                }
+                if row == 0 {
+                    program.push(Command::Start { mask: all(axes) });
+                }
             }
-            if row == 0 {
-                program.push(Command::Start { mask: 0x3f });
-            }
-        }
-        program
-    })
+            program
+        },
+    )
 }
 
 /// A few segments for some axes, at any speed, started together; not always marked last, so that queues
 /// run dry.
-fn wild_move() -> impl Strategy<Value = Program> {
+fn wild_move(axes: usize) -> impl Strategy<Value = Program> {
     let axis = (prop::collection::vec((segment(), 0_u32..24), 1..4), prop::bool::weighted(0.7));
-    (1_u8..64, prop::collection::vec(axis, AXES), 0_u32..3000).prop_map(|(mask, axes, wait)| {
+    (1..=all(axes), prop::collection::vec(axis, axes), 0_u32..3000).prop_map(|(mask, axes, wait)| {
         let mut rows: Vec<(usize, Command)> = Vec::new();
         for (axis, (segments, last)) in (0..).zip(axes).filter(|(axis, _)| mask >> axis & 1 == 1) {
             let count = segments.len();
@@ -68,23 +70,34 @@ fn wild_move() -> impl Strategy<Value = Program> {
 }
 
 /// Things that a host must not do, and what it may do at any time.
-fn nonsense() -> impl Strategy<Value = Program> {
+fn nonsense(axes: usize) -> impl Strategy<Value = Program> {
+    let count = axes as u8;
     let one = prop_oneof![
-        (6_u8..8, segment()).prop_map(|(axis, segment)| Command::Segment { axis, segment }),
-        (0_u8..6, segment()).prop_map(|(axis, s)| Command::Segment { axis, segment: Segment { ticks: 0, ..s } }),
-        (0_u8..6, segment()).prop_map(|(axis, s)| Command::Segment { axis, segment: Segment { v: i64::MIN, ..s } }),
-        (0_u8..64).prop_map(|mask| Command::Start { mask }),
+        (count.min(7)..8, segment()).prop_map(|(axis, segment)| Command::Segment { axis, segment }),
+        (0..count, segment()).prop_map(|(axis, s)| Command::Segment { axis, segment: Segment { ticks: 0, ..s } }),
+        (0..count, segment()).prop_map(|(axis, s)| Command::Segment { axis, segment: Segment { v: i64::MIN, ..s } }),
+        (0..=all(axes)).prop_map(|mask| Command::Start { mask }),
         Just(Command::Clear),
     ];
     (one, 1_u32..40).prop_map(|(command, clocks)| vec![command, Command::Wait { clocks }])
 }
 
-/// A whole program: proper moves, wild ones, nonsense, a clear here and there.
+/// The mask of all of so many axes.
+pub fn all(axes: usize) -> u8 {
+    ((1_u32 << axes) - 1) as u8
+}
+
+/// A whole program for the parallel core.
 pub fn program() -> impl Strategy<Value = Program> {
+    program_of(AXES)
+}
+
+/// A whole program of so many axes: proper moves, wild ones, nonsense, a clear here and there.
+pub fn program_of(axes: usize) -> impl Strategy<Value = Program> {
     let part = prop_oneof![
-        3 => joint_move(),
-        5 => wild_move(),
-        1 => nonsense(),
+        3 => joint_move(axes),
+        5 => wild_move(axes),
+        1 => nonsense(axes),
         3 => Just(vec![Command::Clear]),
     ];
     prop::collection::vec(part, 1..7).prop_map(|parts| parts.concat())

@@ -32,13 +32,15 @@ module carrystep_turn (
     localparam [2:0] FIRST_AXIS = 3'd0;
     localparam [2:0] ONE_AXIS = 3'd1;
     localparam [5:0] FIRST_LANE = 6'd1;
+    localparam [5:0] LAST_LANE = 6'd32;
 
     reg [16:0] beats = 17'd0;
     reg [2:0] number = 3'd0;
     reg [5:0] lanes = 6'd0;
     reg [2:0] axis_to_come;
 
-    wire begins = strobe | (beats[12] & !lanes[5]);
+    wire ends = (lanes & LAST_LANE) != 6'd0;
+    wire begins = strobe | (beats[12] & !ends);
     wire [16:0] shifted = beats << BY_ONE;
 
     assign beat = beats;
@@ -1880,7 +1882,7 @@ module carrystep_engine (
     localparam [5:0] ONE_AXIS_4 = 6'd16;
     localparam [5:0] ONE_AXIS_5 = 6'd32;
     localparam [2:0] COMMIT = 3'd7;
-    localparam [2:0] SIX = 3'd6;
+    localparam [3:0] AXES = 4'd6;
 
     reg armed = 1'b0;
     reg [5:0] mask = 6'd0;
@@ -1990,7 +1992,7 @@ module carrystep_engine (
 
     wire strobe = wheel_strobe;
     wire masked = (turn_lane & mask) != 6'd0;
-    wire nobody = put_axis >= SIX;
+    wire nobody = {1'b0, put_axis} >= AXES;
     wire take = put_valid & put_ready & !nobody;
     wire free = !stops_fault & !stops_finds;
     wire decides = strobe & armed & free;

@@ -4,7 +4,7 @@ use crate::ExportError;
 use crate::module::module_text;
 use crate::names::split_index;
 use crate::netlist::{self, Module};
-use carrystep_hdl::{Engine, HdlError, SixAxis};
+use carrystep_hdl::{HdlError, SixAxis, engine};
 use carrystep_spec::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use rust_hdl::prelude::{Block, check_all};
 use std::io::{ErrorKind, Write};
@@ -57,7 +57,7 @@ const PURPOSES: [(&str, &str); 21] = [
 /// [`ExportError`] where the build cannot be made.
 pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
     let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins };
-    file_text(SixAxis::new(build)?, CORE_NAME, &facts, description)
+    file_text(&mut SixAxis::new(build)?, CORE_NAME, &facts, description)
 }
 
 /// The engine of this build as Verilog-2005, top module [`ENGINE_NAME`]; otherwise as [`six_axis_verilog`].
@@ -66,7 +66,7 @@ pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, Expo
 /// [`ExportError`] where the build cannot be made.
 pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, ExportError> {
     let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins };
-    file_text(Engine::new(build)?, ENGINE_NAME, &facts, description)
+    file_text(engine(build)?.as_mut(), ENGINE_NAME, &facts, description)
 }
 
 /// What the header tells of a build.
@@ -76,10 +76,10 @@ struct Facts<'a> {
     pins: &'a [PinTiming],
 }
 
-fn file_text(mut core: impl Block, name: &str, build: &Facts<'_>, description: &str) -> Result<String, ExportError> {
+fn file_text(core: &mut dyn Block, name: &str, build: &Facts<'_>, description: &str) -> Result<String, ExportError> {
     core.connect_all();
-    check_all(&core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
-    let mut top = netlist::read(&core)?;
+    check_all(core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
+    let mut top = netlist::read(core)?;
     top.instance = name.trim_start_matches("carrystep_").into();
     let mut library = Library { build, modules: Vec::new() };
     library.add(&top)?;

@@ -1,5 +1,5 @@
 //! From Rust-HDL's flat names to Verilog's: `axis$0$go` becomes `axis_0_go`, register `left$q` is `left`,
-//! and an array of ports is one vector.
+//! and an array of ports is one vector (an array of one, one port).
 
 use crate::ExportError;
 use crate::netlist::{Module, Number};
@@ -53,6 +53,7 @@ impl Names {
         let mut names = Self::default();
         for atom in &module.atoms {
             let (base, index) = split_index(&atom.name);
+            let elements = module.atoms.iter().filter(|other| split_index(&other.name).0 == base).count();
             match atom.kind {
                 AtomKind::InputParameter | AtomKind::OutputParameter => {
                     let output = atom.kind == AtomKind::OutputParameter;
@@ -61,7 +62,7 @@ impl Names {
                         (_, true) => Role::Driven,
                         _ => Role::Given,
                     };
-                    let text = names.port(base, index, atom.width, output);
+                    let text = names.port(base, index.filter(|_| elements > 1), atom.width, output);
                     names.add(&atom.name, text, atom.width, role);
                 }
                 AtomKind::LocalSignal => {

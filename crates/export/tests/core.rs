@@ -54,12 +54,29 @@ fn guarded(build: &Build) -> EngineBuild {
     EngineBuild { guard, ..engine }
 }
 
+/// The same with so many axes.
+fn engine_of(axes: usize) -> EngineBuild {
+    let timebase = Timebase::new(56_000_000, 2000, 16).unwrap();
+    let mut engine = guarded(&Build { timebase, phase: StartPhase::Half, pins: pins() });
+    engine.pins = vec![pins()[0]; axes];
+    engine.guard.stop = vec![1 << 40; axes];
+    engine
+}
+
 fn build(clock_hz: u64, phases: u32) -> Build {
     let timebase = Timebase::new(clock_hz, 1000, phases).unwrap();
     Build { timebase, phase: StartPhase::Half, pins: pins() }
 }
 
-/// Runs a tool on each core in some builds, each in a fresh folder: whether it succeeded, and what it printed.
+/// Runs a tool on the core in a folder: whether it succeeded, and what it printed.
+fn run(tool: &str, arguments: &[String], folder: &Path) -> (bool, String) {
+    let output = Command::new(tool).args(arguments).current_dir(folder).output();
+    let output = output.unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
+    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+    (output.status.success(), said.into_owned())
+}
+
+/// Runs a tool on each core in some builds, and on engines of each number of axes, each in a fresh folder.
 fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &str) -> bool) {
     for core in &CORES {
         for (clock_hz, tick_ns, phases) in core.timebases {
@@ -67,11 +84,15 @@ fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &
             let folder = tempfile::tempdir().unwrap();
             let build = Build { timebase, phase: StartPhase::Half, pins: pins() };
             (core.write)(folder.path(), &build, "a test").unwrap();
-            let output = Command::new(tool).args(arguments(core.name)).current_dir(&folder).output();
-            let output = output.unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
-            let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-            assert!(fine(output.status.success(), &said), "{}, {phases} phases: {said}", core.name);
+            let (ok, said) = run(tool, &arguments(core.name), folder.path());
+            assert!(fine(ok, &said), "{}, {phases} phases: {said}", core.name);
         }
+    }
+    for axes in 1..=8 {
+        let folder = tempfile::tempdir().unwrap();
+        write_engine(folder.path(), &engine_of(axes), "a test").unwrap();
+        let (ok, said) = run(tool, &arguments(ENGINE_NAME), folder.path());
+        assert!(fine(ok, &said), "{ENGINE_NAME} of {axes} axes: {said}");
     }
 }
 
@@ -89,6 +110,22 @@ fn ports_are_those_of_the_table() {
     let mut expected = expected.to_vec();
     expected[SIX_AXIS_PORTS.len() - 1].pop();
     assert_eq!(found, expected);
+}
+
+#[test]
+fn an_engine_has_the_axes_of_its_build() {
+    for axes in 1..=8 {
+        let text = engine_verilog(&engine_of(axes), "a test").unwrap();
+        let (_, top) = text.split_once(&format!("module {ENGINE_NAME} (\n")).unwrap();
+        let range = if axes == 1 { String::new() } else { format!("[{}:0] ", axes - 1) };
+        let ports =
+            ["input wire {}start_mask", "input wire {}limit_max", "output wire {}step", "output wire {}culprits"];
+        let top = top.split_whitespace().collect::<Vec<_>>().join(" ");
+        for port in ports.map(|port| port.replace("{}", &range)) {
+            assert!(top.contains(&port), "{axes} axes: {port}");
+        }
+        assert_eq!(text.matches("    carrystep_pulser_").count(), axes);
+    }
 }
 
 #[test]

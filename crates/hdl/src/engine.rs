@@ -1,4 +1,4 @@
-//! The engine: one adder for six axes, the same pulses as six parallel ones (docs/engine.md).
+//! The engine: one adder for up to eight axes, the same pulses as that many parallel ones (docs/engine.md).
 //!
 //! ```text
 //!             .------.  beat, axis                                    estop, kick, enable
@@ -12,7 +12,7 @@
 //!                        .--------.             .--------.  '-------'   '-------'
 //!   step, dir <----------| pulser |<--.         | limits |------|--> hit  ^   | frozen, ramp,
 //!                        '--------'   |         '--------'      |             v halted, cause
-//!                        six of them  '---- the events of this phase
+//!                        one an axis  '---- the events of this phase
 //! ```
 //!
 //! All state of an axis is in block RAM but its pins' timers. In each tick every axis has its turn; what
@@ -20,20 +20,24 @@
 
 use crate::HdlError;
 use crate::constant::{Literal, Parameter};
+use crate::lanes::Lanes;
 use crate::register::{Input, Register};
-use crate::word::Word;
-use carrystep_spec::{AXES, EngineBuild};
+use crate::word::{Word, bit_cast};
+use carrystep_spec::EngineBuild;
 use rust_hdl::prelude::*;
 
 pub mod adder;
 pub mod limits;
 pub mod pulser;
 pub mod queue;
+mod sim;
 pub mod stops;
 pub mod store;
 pub mod turn;
 pub mod watch;
 pub mod wheel;
+
+pub use sim::{AnyEngine, EngineSim, engine};
 
 use adder::Adder;
 use limits::Limits;
@@ -45,9 +49,9 @@ use turn::Turn;
 use watch::Watch;
 use wheel::Wheel;
 
-/// The engine.
+/// The engine of N axes.
 #[derive(LogicBlock, Default)]
-pub struct Engine {
+pub struct Engine<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// A word of a segment is offered; it stays until it is taken.
@@ -63,7 +67,7 @@ pub struct Engine {
     /// A start is offered; it stays until it is taken.
     pub start_valid: Input<Bit>,
     /// Of these axes.
-    pub start_mask: Input<Word<AXES>>,
+    pub start_mask: Input<Word<N>>,
     /// The offered start is taken in this cycle.
     pub start_ready: Signal<Out, Bit>,
     /// Resume after a stop: hold it until `fault` falls.
@@ -77,9 +81,9 @@ pub struct Engine {
     /// The e-stop's pin, asynchronous.
     pub estop: Input<Bit>,
     /// The limit pins at the low ends, asynchronous.
-    pub limit_min: Input<Word<AXES>>,
+    pub limit_min: Input<Word<N>>,
     /// The limit pins at the high ends, asynchronous.
-    pub limit_max: Input<Word<AXES>>,
+    pub limit_max: Input<Word<N>>,
     /// The axis that the host asks about.
     pub get_axis: Input<Word<3>>,
     /// What it asks for: 0 and 1 P, low and high, 2 position, 3 discarded steps.
@@ -89,9 +93,9 @@ pub struct Engine {
     /// in this cycle, to what was asked in the cycle before.
     pub get_valid: Signal<Out, Bit>,
     /// The STEP pins.
-    pub step: [Signal<Out, Bit>; AXES],
+    pub step: Lanes<Signal<Out, Bit>, N>,
     /// The DIR pins, 1 is backward.
-    pub dir: [Signal<Out, Bit>; AXES],
+    pub dir: Lanes<Signal<Out, Bit>, N>,
     /// The drivers are to be powered.
     pub enabled: Signal<Out, Bit>,
     /// All axes are done and no start is armed.
@@ -103,20 +107,20 @@ pub struct Engine {
     /// Why, numbered as [`carrystep_spec::engine::Cause`];
     pub cause: Signal<Out, Word<3>>,
     /// the axes that it came from.
-    pub culprits: Signal<Out, Word<AXES>>,
+    pub culprits: Signal<Out, Word<N>>,
     /// Axes start at the end of this cycle.
     pub started: Signal<Out, Bit>,
-    turn: Turn,
+    turn: Turn<N>,
     adder: Adder,
     queue: Queue,
     pub(crate) store: Store,
-    wheel: Wheel,
-    limits: Limits,
-    stops: Stops,
+    wheel: Wheel<N>,
+    limits: Limits<N>,
+    stops: Stops<N>,
     watch: Watch,
-    pulser: [Pulser; AXES],
+    pulser: Lanes<Pulser, N>,
     armed: Register<Bit>,
-    mask: Register<Word<AXES>>,
+    mask: Register<Word<N>>,
     going: Register<Bit>,
     taken: Register<Bit>,
     taken_word: Register<Word<3>>,
@@ -134,40 +138,34 @@ pub struct Engine {
     go: Signal<Local, Bit>,
     rests: Signal<Local, Bit>,
     pins_busy: Signal<Local, Bit>,
-    late: Signal<Local, Word<AXES>>,
-    late_bit: [Signal<Local, Word<AXES>>; AXES],
-    counted: [Signal<Local, Word<6>>; AXES],
+    late: Signal<Local, Word<N>>,
+    late_bit: Lanes<Signal<Local, Word<N>>, N>,
+    counted: Lanes<Signal<Local, Word<6>>, N>,
     counts: Signal<Local, Word<6>>,
     none: Literal<6, 0>,
-    no_axes: Literal<AXES, 0>,
-    one_axis: [Parameter<AXES>; AXES],
+    no_axes: Literal<N, 0>,
+    one_axis: Lanes<Parameter<N>, N>,
     commit: Literal<3, 7>,
-    six: Literal<3, 6>,
+    axes: Parameter<4>,
 }
 
-impl Engine {
-    /// The engine of this build.
-    ///
-    /// # Errors
-    /// [`HdlError::Engine`] where the turns do not fit into the tick or a figure of the guard cannot be counted,
-    /// [`HdlError::Axes`] unless there are six, [`HdlError::PinTiming`] where an axis' timing is out of range.
-    pub fn new(build: &EngineBuild) -> Result<Self, HdlError> {
-        build.check()?;
-        if build.axes() != AXES {
-            return Err(HdlError::Axes(build.axes()));
-        }
-        let mut pulser: [Pulser; AXES] = Default::default();
+impl<const N: usize> Engine<N> {
+    /// The engine of this build, which has been checked and has N axes.
+    fn new(build: &EngineBuild) -> Result<Self, HdlError> {
+        let mut pulser = Lanes::<Pulser, N>::default();
         for (pulser, pins) in pulser.iter_mut().zip(&build.pins) {
             *pulser = Pulser::new(pins)?;
         }
         Ok(Self {
+            turn: Turn::new(),
             store: Store::new(build.phase, &build.guard.stop),
             wheel: Wheel::new(&build.timebase),
             limits: Limits::new(&build.guard),
             stops: Stops::new(&build.guard),
             watch: Watch::new(&build.guard),
             pulser,
-            one_axis: std::array::from_fn(|axis| Parameter::new(1 << axis)),
+            axes: Parameter::new(N as u64),
+            one_axis: Lanes::from_fn(|axis| Parameter::new(1 << axis)),
             rest_1: Register::new(true),
             rest_2: Register::new(true),
             ..Self::default()
@@ -175,7 +173,7 @@ impl Engine {
     }
 }
 
-impl Logic for Engine {
+impl<const N: usize> Logic for Engine<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, armed, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2);
@@ -185,7 +183,7 @@ impl Logic for Engine {
         self.masked.next = (self.turn.lane.val() & self.mask.q.val()).any();
 
         // The host's words.
-        self.nobody.next = self.put_axis.val() >= self.six.val();
+        self.nobody.next = bit_cast::<4, 3>(self.put_axis.val()) >= self.axes.val();
         self.put_ready.next = !self.stops.fault.val()
             & (self.nobody.val()
                 | (self.turn.beat.val().get_bit(7)
@@ -242,7 +240,7 @@ impl Logic for Engine {
         self.counts.next = self.none.val();
         self.pins_busy.next = false;
         self.late.next = self.no_axes.val();
-        for i in 0..6 {
+        for i in 0..N {
             self.pulser[i].clock.next = self.clock.val();
             self.pulser[i].frozen.next = self.stops.frozen.val();
             self.pulser[i].request.next = self.wheel.events.val().get_bit(i) & self.wheel.phase_start.val();
@@ -368,7 +366,7 @@ impl Logic for Engine {
 mod tests {
     use super::*;
     use carrystep_spec::engine::EngineError;
-    use carrystep_spec::{Build, PinTiming, StartPhase, Timebase};
+    use carrystep_spec::{AXES, Build, PinTiming, StartPhase, Timebase};
 
     fn build() -> EngineBuild {
         let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();
@@ -376,24 +374,36 @@ mod tests {
         EngineBuild::minimal(&build, 1 << 40)
     }
 
-    #[test]
-    fn engine_synthesizes() {
-        crate::sim::assert_synthesizes(Engine::new(&build()).unwrap(), "carrystep_engine");
+    /// As many axes as asked for, in a tick that holds them.
+    fn of_axes(axes: usize) -> EngineBuild {
+        let mut build = build();
+        build.pins.resize(axes, PinTiming::SHORTEST);
+        build.guard.stop.resize(axes, 1);
+        build.timebase = Timebase::new(56_000_000, 2000, 16).unwrap();
+        build
     }
 
     #[test]
-    fn axes_that_have_no_hardware_are_refused() {
-        let mut seven = build();
-        seven.pins.push(PinTiming::SHORTEST);
-        seven.guard.stop.push(1);
-        seven.timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
-        assert_eq!(Engine::new(&seven).err(), Some(HdlError::Axes(7)));
+    fn engine_synthesizes() {
+        crate::sim::assert_synthesizes(Engine::<1>::new(&of_axes(1)).unwrap(), "carrystep_engine_1");
+        crate::sim::assert_synthesizes(Engine::<6>::new(&build()).unwrap(), "carrystep_engine_6");
+        crate::sim::assert_synthesizes(Engine::<8>::new(&of_axes(8)).unwrap(), "carrystep_engine_8");
+    }
+
+    #[test]
+    fn there_are_engines_of_one_to_eight_axes() {
+        for axes in 1..=8 {
+            assert!(engine(&of_axes(axes)).is_ok(), "{axes} axes");
+        }
+        for axes in [0, 9] {
+            assert_eq!(engine(&of_axes(axes)).err(), Some(HdlError::Engine(EngineError::Axes(axes))));
+        }
     }
 
     #[test]
     fn a_tick_that_is_too_short_is_refused() {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
-        let refused = Engine::new(&EngineBuild { timebase, ..build() });
+        let refused = engine(&EngineBuild { timebase, ..build() });
         assert!(matches!(refused.err(), Some(HdlError::Engine(EngineError::Schedule { .. }))));
     }
 }

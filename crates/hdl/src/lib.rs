@@ -11,6 +11,7 @@ pub mod axis;
 pub mod constant;
 pub mod edge;
 pub mod engine;
+pub mod lanes;
 pub mod memory;
 pub mod register;
 pub mod sequencer;
@@ -21,11 +22,11 @@ pub mod tick;
 pub mod word;
 
 pub use axis::Axis;
-pub use engine::Engine;
-pub use sim::{AxisSim, EngineSim, SixAxisSim};
+pub use engine::{AnyEngine, EngineSim, engine};
+pub use sim::{AxisSim, SixAxisSim};
 pub use six_axis::SixAxis;
 
-use carrystep_spec::build::{AXES, MAX_CLOCKS};
+use carrystep_spec::build::MAX_CLOCKS;
 use carrystep_spec::engine::EngineError;
 use thiserror::Error;
 
@@ -46,9 +47,6 @@ pub enum HdlError {
     /// The engine has more to do in a tick than the tick has clocks, or counts further than it can.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// The engine's modules are written for six axes.
-    #[error("an engine of {0} axes: the gateware has {AXES}; axes that a machine does not have may stay unused")]
-    Axes(usize),
     /// Rust-HDL's own check of a module failed.
     #[error("Rust-HDL refuses the module: {0}")]
     Check(String),

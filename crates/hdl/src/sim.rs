@@ -8,12 +8,10 @@
 
 use crate::HdlError;
 use crate::axis::Axis;
-use crate::engine::Engine;
 use crate::six_axis::SixAxis;
 use crate::word::Word;
-use carrystep_spec::engine::{CAUSES, EngineInputs, EngineOutputs, Put};
 use carrystep_spec::ports::{Inputs, Outputs};
-use carrystep_spec::{AXES, Build, EngineBuild, Faults, Segment, StartPhase};
+use carrystep_spec::{AXES, Build, Faults, Segment, StartPhase};
 use rust_hdl::prelude::{Bit, Block, Out, Signal, check_all, simulate};
 
 /// Passes in which any module here settles, with room to spare.
@@ -106,80 +104,10 @@ impl SixAxisSim {
     }
 }
 
-/// The engine under simulation.
-pub struct EngineSim {
-    core: Box<Engine>,
-}
-
-impl EngineSim {
-    /// The engine of this build in cycle 0.
-    ///
-    /// # Errors
-    /// [`HdlError`] where the build cannot be made.
-    pub fn new(build: &EngineBuild) -> Result<Self, HdlError> {
-        Ok(Self { core: connected(Engine::new(build)?)? })
-    }
-
-    /// The outputs of the present cycle with these inputs; what is not offered is driven as zero.
-    pub fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs {
-        let core = &mut self.core;
-        core.clock.next = false.into();
-        let put = inputs.put.unwrap_or(Put { axis: 0, word: 0, data: 0 });
-        core.put_valid.next = inputs.put.is_some();
-        core.put_axis.next = Word::from(u64::from(put.axis));
-        core.put_word.next = Word::from(u64::from(put.word));
-        core.put_data.next = Word::from(u64::from(put.data));
-        core.start_valid.next = inputs.start.is_some();
-        core.start_mask.next = Word::from(u64::from(inputs.start.unwrap_or(0)));
-        core.clear.next = inputs.clear;
-        core.stop.next = inputs.stop;
-        core.kick.next = inputs.kick;
-        core.enable.next = inputs.enable;
-        core.estop.next = inputs.estop;
-        core.limit_min.next = Word::from(u64::from(inputs.limit_min));
-        core.limit_max.next = Word::from(u64::from(inputs.limit_max));
-        settle(core.as_mut());
-        self.outputs()
-    }
-
-    /// Goes to the next cycle, with the inputs as last settled.
-    pub fn clock(&mut self) {
-        self.core.clock.next = true.into();
-        rising_edge(self.core.as_mut());
-    }
-
-    /// What the `get` port says of an axis in the present cycle, if it speaks; `item` as in [`Engine::get_item`].
-    pub fn get(&mut self, axis: usize, item: usize) -> Option<u32> {
-        self.core.get_axis.next = Word::from(axis as u64);
-        self.core.get_item.next = Word::from(item as u64);
-        self.core.get_valid.val().then(|| self.core.get_data.val().value() as u32)
-    }
-
-    /// What the memory keeps of an axis; `item` as in [`Engine::get_item`].
-    pub fn kept(&self, axis: usize, item: usize) -> u32 {
-        self.core.store.segments.word(axis << 6 | item << 3 | 7).value() as u32
-    }
-
-    fn outputs(&self) -> EngineOutputs {
-        let core = &self.core;
-        let cause = CAUSES[core.cause.val().value() as usize];
-        EngineOutputs {
-            put_ready: core.put_ready.val(),
-            start_ready: core.start_ready.val(),
-            step: mask(&core.step),
-            dir: mask(&core.dir),
-            enabled: core.enabled.val(),
-            idle: core.idle.val(),
-            fault: core.fault.val().then(|| (cause, core.culprits.val().value() as u8)),
-            halted: core.halted.val(),
-            started: core.started.val(),
-        }
-    }
-}
-
 const NO_SEGMENT: Segment = Segment { ticks: 0, v: 0, a: 0, j: 0, last: false };
 
-fn mask(bits: &[Signal<Out, Bit>; AXES]) -> u8 {
+/// The pins of all axes, bit i is axis i.
+pub(crate) fn mask(bits: &[Signal<Out, Bit>]) -> u8 {
     bits.iter().rev().fold(0, |mask, bit| mask << 1 | u8::from(bit.val()))
 }
 

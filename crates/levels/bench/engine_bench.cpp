@@ -1,5 +1,5 @@
 // Replays what a host did to carrystep_engine, for Verilator, and reports every cycle in which any output
-// changed; then asks the get port for all that the engine keeps. Argument: FILE
+// changed; then asks the get port for all that the engine keeps. Argument: FILE; compiled for AXES axes
 #include "Vcarrystep_engine.h"
 #include "verilated.h"
 #include <cinttypes>
@@ -18,9 +18,9 @@ uint64_t outputs(const Vcarrystep_engine& core) {
     add(core.started, 1);
     add(core.enabled, 1);
     add(core.fault ? core.cause : 0, 3);
-    add(core.step, 6);
-    add(core.dir, 6);
-    add(core.fault ? core.culprits : 0, 6);
+    add(core.step, AXES);
+    add(core.dir, AXES);
+    add(core.fault ? core.culprits : 0, AXES);
     return all;
 }
 
@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
         }
     }
     core.put_valid = core.start_valid = core.clear = core.stop = core.kick = 0;
-    for (int axis = 0; axis < 6; ++axis)
+    for (int axis = 0; axis < AXES; ++axis)
         for (int item = 0; item < 4; ++item) {
             core.get_axis = axis;
             core.get_item = item;

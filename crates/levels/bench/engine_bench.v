@@ -1,15 +1,16 @@
 // Replays what a host did to carrystep_engine, for Icarus, and reports every cycle in which any output
-// changed; then asks the get port for all that the engine keeps. +stimuli=FILE
+// changed; then asks the get port for all that the engine keeps. +stimuli=FILE, -Pengine_bench.AXES=n
 `timescale 1ns / 1ps
 module engine_bench;
+    parameter AXES = 6;
     reg clock, put_valid, start_valid, clear, stop, kick, enable, estop;
-    reg [5:0] limit_min, limit_max;
+    reg [AXES-1:0] limit_min, limit_max;
     reg [2:0] put_axis, put_word, get_axis = 0;
     reg [31:0] put_data;
-    reg [5:0] start_mask;
+    reg [AXES-1:0] start_mask;
     reg [1:0] get_item = 0;
     wire put_ready, start_ready, idle, fault, halted, started, enabled, get_valid;
-    wire [5:0] step, dir, culprits;
+    wire [AXES-1:0] step, dir, culprits;
     wire [2:0] cause;
     wire [31:0] get_data;
 
@@ -21,9 +22,9 @@ module engine_bench;
         .step(step), .dir(dir), .enabled(enabled), .idle(idle), .fault(fault), .halted(halted), .cause(cause),
         .culprits(culprits), .started(started));
 
-    wire [27:0] outputs = {put_ready, start_ready, idle, fault, halted, started, enabled,
-                           fault ? cause : 3'd0, step, dir, fault ? culprits : 6'd0};
-    reg [27:0] before;
+    wire [3*AXES+9:0] outputs = {put_ready, start_ready, idle, fault, halted, started, enabled,
+                           fault ? cause : 3'd0, step, dir, culprits & {AXES{fault}}};
+    reg [3*AXES+9:0] before;
     integer file, fields, axis, item;
     reg [63:0] cycle, count;
     reg [8*256-1:0] name;
@@ -39,7 +40,7 @@ module engine_bench;
     initial begin
         if (!$value$plusargs("stimuli=%s", name)) $finish;
         file = $fopen(name, "r");
-        before = {28{1'bx}};
+        before = {3*AXES+10{1'bx}};
         cycle = 0;
         #1 clock = 0;
         #1;
@@ -61,7 +62,7 @@ module engine_bench;
         clear = 0;
         stop = 0;
         kick = 0;
-        for (axis = 0; axis < 6; axis = axis + 1)
+        for (axis = 0; axis < AXES; axis = axis + 1)
             for (item = 0; item < 4; item = item + 1) begin
                 get_axis = axis;
                 get_item = item;

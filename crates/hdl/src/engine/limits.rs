@@ -10,13 +10,12 @@ use crate::constant::{Literal, Parameter};
 use crate::memory::Memory;
 use crate::register::{Input, Register};
 use crate::word::{Word, bit_cast};
-use carrystep_spec::AXES;
 use carrystep_spec::engine::{Guard, Limits as Wiring};
 use rust_hdl::prelude::*;
 
 /// Debounce, and what a switch means for the axis.
 #[derive(LogicBlock, Default)]
-pub struct Limits {
+pub struct Limits<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// Last beat of a turn.
@@ -26,15 +25,15 @@ pub struct Limits {
     /// The axis of the next cycle.
     pub axis_next: Input<Word<3>>,
     /// The axis, one bit.
-    pub lane: Input<Word<AXES>>,
+    pub lane: Input<Word<N>>,
     /// First tick of a round: `limit_min` is looked at.
     pub tick_0: Input<Bit>,
     /// Second tick of a round: `limit_max` is looked at.
     pub tick_1: Input<Bit>,
     /// The pins.
-    pub limit_min: Input<Word<AXES>>,
+    pub limit_min: Input<Word<N>>,
     /// The pins.
-    pub limit_max: Input<Word<AXES>>,
+    pub limit_max: Input<Word<N>>,
     /// The axis makes its tick, with a V that is not zero.
     pub goes: Input<Bit>,
     /// V < 0.
@@ -44,8 +43,8 @@ pub struct Limits {
     switches: Memory<4, 8>,
     max: Signal<Local, Bit>,
     looks: Signal<Local, Bit>,
-    pins: Signal<Local, Word<AXES>>,
-    chosen: Signal<Local, Word<AXES>>,
+    pins: Signal<Local, Word<N>>,
+    chosen: Signal<Local, Word<N>>,
     sync: Register<Bit>,
     now: Register<Bit>,
     word: Signal<Local, Word<8>>,
@@ -59,7 +58,7 @@ pub struct Limits {
     one_for_all: Parameter<1>,
     low: Parameter<1>,
     last_look: Parameter<7>,
-    first_lane: Literal<AXES, 1>,
+    first_lane: Literal<N, 1>,
     one: Literal<7, 1>,
     none: Literal<7, 0>,
     active: Literal<8, 0x80>,
@@ -71,7 +70,7 @@ pub struct Limits {
     by_one: Literal<1, 1>,
 }
 
-impl Limits {
+impl<const N: usize> Limits<N> {
     /// The limits of this guard, which has been checked.
     pub fn new(guard: &Guard) -> Self {
         let is = |wiring| Parameter::new(u64::from(guard.limits == wiring));
@@ -86,7 +85,7 @@ impl Limits {
     }
 }
 
-impl Logic for Limits {
+impl<const N: usize> Logic for Limits<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, sync, now);
@@ -151,6 +150,6 @@ mod tests {
     #[test]
     fn limits_synthesizes() {
         let guard = Guard { limits: Wiring::Pair, debounce: 10, ..Guard::minimal(Vec::new()) };
-        assert_synthesizes(Limits::new(&guard), "carrystep_limits");
+        assert_synthesizes(Limits::<6>::new(&guard), "carrystep_limits");
     }
 }

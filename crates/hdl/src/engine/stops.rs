@@ -12,13 +12,12 @@
 use crate::constant::{Literal, Parameter};
 use crate::register::{Input, Register};
 use crate::word::Word;
-use carrystep_spec::AXES;
 use carrystep_spec::engine::Guard;
 use rust_hdl::prelude::*;
 
 /// The stop that is under way.
 #[derive(LogicBlock, Default)]
-pub struct Stops {
+pub struct Stops<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// Last cycle of a tick.
@@ -26,7 +25,7 @@ pub struct Stops {
     /// Last beat of a turn: what the axis finds counts.
     pub turn_ends: Input<Bit>,
     /// The axis, one bit.
-    pub lane: Input<Word<AXES>>,
+    pub lane: Input<Word<N>>,
     /// It runs in this tick.
     pub runs: Input<Bit>,
     /// Its V does not fit.
@@ -36,7 +35,7 @@ pub struct Stops {
     /// Its queue is dry.
     pub dry: Input<Bit>,
     /// These axes owe a second step.
-    pub late: Input<Word<AXES>>,
+    pub late: Input<Word<N>>,
     /// The e-stop is pressed.
     pub pressed: Input<Bit>,
     /// The host breaks the protocol.
@@ -64,7 +63,7 @@ pub struct Stops {
     /// The first cause.
     pub cause: Signal<Out, Word<3>>,
     /// The axes that it came from.
-    pub culprits: Signal<Out, Word<AXES>>,
+    pub culprits: Signal<Out, Word<N>>,
     called: Register<Bit>, // `fault`
     freeze: Register<Bit>, // `frozen`
     slow: Register<Bit>,   // `ramp`
@@ -72,7 +71,7 @@ pub struct Stops {
     settled: Register<Bit>,
     wiping: Register<Bit>, // `clearing`
     first: Register<Word<3>>,
-    axes: Register<Word<AXES>>,
+    axes: Register<Word<N>>,
     found: Register<Bit>,
     kind: Register<Word<3>>, // of what is found
     found_freezing: Register<Bit>,
@@ -93,14 +92,14 @@ pub struct Stops {
     host: Literal<3, 7>,
 }
 
-impl Stops {
+impl<const N: usize> Stops<N> {
     /// The stops of this guard.
     pub fn new(guard: &Guard) -> Self {
         Self { limit_freezes: Parameter::new(u64::from(guard.limit_freezes)), ..Self::default() }
     }
 }
 
-impl Logic for Stops {
+impl<const N: usize> Logic for Stops<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, called, freeze, slow, still, settled, wiping);
@@ -205,6 +204,6 @@ mod tests {
 
     #[test]
     fn stops_synthesizes() {
-        assert_synthesizes(Stops::new(&Guard::minimal(Vec::new())), "carrystep_stops");
+        assert_synthesizes(Stops::<6>::new(&Guard::minimal(Vec::new())), "carrystep_stops");
     }
 }

@@ -9,15 +9,14 @@
 //!
 //! A beat is one flip-flop of a long shift register: what happens in a beat costs no decoder.
 
-use crate::constant::Literal;
+use crate::constant::{Literal, Parameter};
 use crate::register::{Input, Register};
 use crate::word::Word;
-use carrystep_spec::AXES;
 use rust_hdl::prelude::*;
 
-/// The beats, and the axis.
+/// The beats, and the axis, of N.
 #[derive(LogicBlock, Default)]
-pub struct Turn {
+pub struct Turn<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// Last cycle of a tick.
@@ -29,10 +28,11 @@ pub struct Turn {
     /// The axis of the next cycle.
     pub axis_next: Signal<Out, Word<3>>,
     /// The axis, one bit each; none after the last turn.
-    pub lane: Signal<Out, Word<AXES>>,
+    pub lane: Signal<Out, Word<N>>,
     beats: Register<Word<17>>,
     number: Register<Word<3>>,
-    lanes: Register<Word<AXES>>,
+    lanes: Register<Word<N>>,
+    ends: Signal<Local, Bit>,
     begins: Signal<Local, Bit>,
     axis_to_come: Signal<Local, Word<3>>,
     shifted: Signal<Local, Word<17>>,
@@ -40,15 +40,24 @@ pub struct Turn {
     first_beat: Literal<17, 1>,
     first_axis: Literal<3, 0>,
     one_axis: Literal<3, 1>,
-    first_lane: Literal<AXES, 1>,
+    first_lane: Literal<N, 1>,
+    last_lane: Parameter<N>,
 }
 
-impl Logic for Turn {
+impl<const N: usize> Turn<N> {
+    /// The turns of N axes.
+    pub fn new() -> Self {
+        Self { last_lane: Parameter::new(1 << (N - 1)), ..Self::default() }
+    }
+}
+
+impl<const N: usize> Logic for Turn<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, beats, number, lanes);
 
-        self.begins.next = self.strobe.val() | (self.beats.q.val().get_bit(12) & !self.lanes.q.val().get_bit(5));
+        self.ends.next = (self.lanes.q.val() & self.last_lane.val()).any();
+        self.begins.next = self.strobe.val() | (self.beats.q.val().get_bit(12) & !self.ends.val());
         self.shifted.next = self.beats.q.val() << self.by_one.val();
         self.beats.d.next = self.shifted.val();
         if self.begins.val() {
@@ -79,11 +88,12 @@ impl Logic for Turn {
 mod tests {
     use super::*;
     use crate::sim::{assert_synthesizes, rising_edge, settle};
+    use carrystep_spec::AXES;
     use carrystep_spec::engine::TURN;
 
     #[test]
     fn every_axis_has_thirteen_beats() {
-        let mut turn = Turn::default();
+        let mut turn = Turn::<AXES>::new();
         turn.connect_all();
         for cycle in 0..100_u32 {
             turn.clock.next = false.into();
@@ -101,6 +111,6 @@ mod tests {
 
     #[test]
     fn turn_synthesizes() {
-        assert_synthesizes(Turn::default(), "carrystep_turn");
+        assert_synthesizes(Turn::<AXES>::new(), "carrystep_turn");
     }
 }

@@ -16,18 +16,18 @@ use crate::memory::Memory;
 use crate::register::{Input, Register};
 use crate::tick::Tick;
 use crate::word::{Word, bit_cast};
-use carrystep_spec::{AXES, Timebase};
+use carrystep_spec::Timebase;
 use rust_hdl::prelude::*;
 
 /// The tick, and the events in it.
 #[derive(LogicBlock, Default)]
-pub struct Wheel {
+pub struct Wheel<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// Last beat of a turn: what follows is of this axis.
     pub turn_ends: Input<Bit>,
     /// This axis, one bit each.
-    pub lane: Input<Word<AXES>>,
+    pub lane: Input<Word<N>>,
     /// Its tick steps.
     pub crosses: Input<Bit>,
     /// Its V is not zero.
@@ -43,9 +43,9 @@ pub struct Wheel {
     /// First cycle of a phase: what `events` say of kind 0 happens.
     pub phase_start: Signal<Out, Bit>,
     /// Bit i: axis i.
-    pub events: Signal<Out, Word<AXES>>,
+    pub events: Signal<Out, Word<N>>,
     /// Bit i: backward.
-    pub backward: Signal<Out, Word<AXES>>,
+    pub backward: Signal<Out, Word<N>>,
     tick: Tick, // a cycle ahead of the pins
     rim: Memory<7, 16>,
     turned: Register<Bit>,    // `strobe`
@@ -57,7 +57,7 @@ pub struct Wheel {
     sign_due: Register<Bit>,
     step_due: Register<Bit>,
     step_known: Register<Bit>,
-    whose: Register<Word<AXES>>,
+    whose: Register<Word<N>>,
     when: Register<Word<2>>, // the tick before the one in which it happens
     writes_sign: Signal<Local, Bit>,
     writes_step: Signal<Local, Bit>,
@@ -76,7 +76,7 @@ pub struct Wheel {
     q_shift: Parameter<4>,
 }
 
-impl Wheel {
+impl<const N: usize> Wheel<N> {
     /// The wheel of this timebase.
     pub fn new(timebase: &Timebase) -> Self {
         Self {
@@ -89,7 +89,7 @@ impl Wheel {
     }
 }
 
-impl Logic for Wheel {
+impl<const N: usize> Logic for Wheel<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, turned, started, ahead, read, sign_due, step_due, step_known, whose, when);
@@ -155,8 +155,8 @@ impl Logic for Wheel {
         self.rim.write_data.next = self.data.val();
         self.bits.next = self.no.val();
         if self.writes_sign.val() | self.writes_step.val() {
-            self.bits.next = bit_cast::<16, AXES>(self.whose.q.val())
-                | (bit_cast::<16, AXES>(self.whose.q.val()) << self.at_8.val());
+            self.bits.next =
+                bit_cast::<16, N>(self.whose.q.val()) | (bit_cast::<16, N>(self.whose.q.val()) << self.at_8.val());
         }
         if self.wipes.val() {
             self.bits.next = self.all.val();
@@ -165,8 +165,8 @@ impl Logic for Wheel {
 
         self.strobe.next = self.turned.q.val();
         self.phase_start.next = self.started.q.val();
-        self.events.next = self.rim.read_data.val().get_bits::<AXES>(0);
-        self.backward.next = self.rim.read_data.val().get_bits::<AXES>(8);
+        self.events.next = self.rim.read_data.val().get_bits::<N>(0);
+        self.backward.next = self.rim.read_data.val().get_bits::<N>(8);
     }
 }
 
@@ -178,6 +178,6 @@ mod tests {
     #[test]
     fn wheel_synthesizes() {
         let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();
-        assert_synthesizes(Wheel::new(&timebase), "carrystep_wheel");
+        assert_synthesizes(Wheel::<6>::new(&timebase), "carrystep_wheel");
     }
 }

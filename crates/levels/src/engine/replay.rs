@@ -8,7 +8,7 @@ use crate::tool::{self, ICARUS, VERILATOR};
 use crate::{Level, LevelError};
 use carrystep_model::Engine;
 use carrystep_spec::engine::{EngineInputs, EngineOutputs};
-use carrystep_spec::{AXES, EngineBuild, Program};
+use carrystep_spec::{EngineBuild, Program};
 use std::fmt::Write as _;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
@@ -16,10 +16,10 @@ use std::process::Command;
 
 const ICARUS_BENCH: &str = include_str!("../../bench/engine_bench.v");
 const VERILATOR_BENCH: &str = include_str!("../../bench/engine_bench.cpp");
-const OPTIONS: [&str; 9] = ["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "-Wno-fatal", "-CFLAGS", "-O2"];
+const OPTIONS: [&str; 7] = ["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "-Wno-fatal"];
 
 /// P low, P high, position and discarded steps of each axis.
-pub type Kept = [[u32; 4]; AXES];
+pub type Kept = Vec<[u32; 4]>;
 
 /// A run of the model: what went in, what came out.
 #[derive(Debug, Clone)]
@@ -57,11 +57,17 @@ impl Recording {
             quiet = if host.is_done() && (outputs.idle || outputs.halted) { quiet + 1 } else { 0 };
             EngineCore::clock(&mut model, &inputs);
         }
-        recording.kept = std::array::from_fn(|axis| {
+        let kept = |axis| {
             let (p, shaper) = (model.fraction(axis), model.shaper(axis));
             [p as u32, (p >> 32) as u32, shaper.position.cast_unsigned(), shaper.discarded]
-        });
+        };
+        recording.kept = (0..build.axes()).map(kept).collect();
         recording
+    }
+
+    /// How many axes the engine has.
+    fn axes(&self) -> usize {
+        self.kept.len()
     }
 
     fn add(&mut self, inputs: EngineInputs, outputs: EngineOutputs) {
@@ -84,8 +90,8 @@ impl Recording {
             let (put, start) = (u8::from(inputs.put.is_some()), u8::from(inputs.start.is_some()));
             let EngineInputs { clear, stop, kick, enable, estop, limit_min, limit_max, .. } = *inputs;
             let [clear, stop, kick, enable, estop] = [clear, stop, kick, enable, estop].map(u8::from);
-            let (mask, all) = (inputs.start.unwrap_or(0), (1 << AXES) - 1);
-            let (min, max) = (limit_min & all, limit_max & all);
+            let [mask, min, max] = [inputs.start.unwrap_or(0), limit_min, limit_max]
+                .map(|mask| u32::from(mask) & ((1 << self.axes()) - 1));
             let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear} {stop} {kick} {enable}");
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{count} {host} {estop} {min:x} {max:x}");
@@ -105,9 +111,9 @@ pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<
     let stimuli = folder.path().join("stimuli.txt");
     std::fs::write(&stimuli, recording.text()).map_err(tool::io("cannot write the stimuli"))?;
     let mut simulation = match level {
-        Level::Icarus => icarus(folder.path(), verilog)?,
+        Level::Icarus => icarus(folder.path(), verilog, recording.axes())?,
         Level::Verilator => {
-            let mut simulation = Command::new(verilated(verilog)?);
+            let mut simulation = Command::new(verilated(verilog, recording.axes())?);
             simulation.arg(&stimuli);
             simulation
         }
@@ -120,8 +126,9 @@ pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<
     let mut found = text.lines();
     for (cycle, outputs) in &recording.outputs {
         let line = found.next().unwrap_or("nothing");
-        if parsed(line) != Some((*cycle, packed(outputs))) {
-            return Ok(Some(format!("expected in cycle {cycle} {outputs:?}: {:x}, found {line}", packed(outputs))));
+        let bits = packed(outputs, recording.axes());
+        if parsed(line) != Some((*cycle, bits)) {
+            return Ok(Some(format!("expected in cycle {cycle} {outputs:?}: {bits:x}, found {line}")));
         }
     }
     let rests = recording.outputs.last().is_some_and(|(_, outputs)| outputs.idle || outputs.halted);
@@ -142,37 +149,39 @@ fn parsed(line: &str) -> Option<(u64, u64)> {
 }
 
 /// The outputs as the benches write them.
-fn packed(outputs: &EngineOutputs) -> u64 {
+fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
     let EngineOutputs { put_ready, start_ready, step, dir, enabled, idle, fault, halted, started } = *outputs;
     let (cause, culprits) = fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
     let flags = [put_ready, start_ready, idle, fault.is_some(), halted, started, enabled];
     let flags = flags.into_iter().fold(0, |all, flag| all << 1 | u64::from(flag));
-    [step, dir, culprits].into_iter().fold(flags << 3 | cause, |all, mask| all << AXES | u64::from(mask))
+    [step, dir, culprits].into_iter().fold(flags << 3 | cause, |all, mask| all << axes | u64::from(mask))
 }
 
-fn icarus(folder: &Path, verilog: &str) -> Result<Command, LevelError> {
+fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelError> {
     tool::find(&ICARUS)?;
     write(folder, &[("core.v", verilog), ("bench.v", ICARUS_BENCH)])?;
-    let files = ["-o", "bench.vvp", "bench.v", "core.v"];
-    tool::complete(&ICARUS, Command::new(ICARUS.name).arg("-g2005").args(files).current_dir(folder))?;
+    let parameter = format!("-Pengine_bench.AXES={axes}");
+    let arguments = ["-g2005", &parameter, "-o", "bench.vvp", "bench.v", "core.v"];
+    tool::complete(&ICARUS, Command::new(ICARUS.name).args(arguments).current_dir(folder))?;
     let mut simulation = Command::new("vvp");
     simulation.args(["-n", "bench.vvp", "+stimuli=stimuli.txt"]).current_dir(folder);
     Ok(simulation)
 }
 
 /// The compiled simulation of this Verilog, from the cache or made now.
-fn verilated(verilog: &str) -> Result<PathBuf, LevelError> {
+fn verilated(verilog: &str, axes: usize) -> Result<PathBuf, LevelError> {
     tool::find(&VERILATOR)?;
     let cache = std::env::temp_dir().join("carrystep-verilator");
     std::fs::create_dir_all(&cache).map_err(tool::io("cannot make the cache folder"))?;
     let mut hash = DefaultHasher::new();
-    (verilog, VERILATOR_BENCH, OPTIONS, env!("CARGO_PKG_VERSION")).hash(&mut hash);
+    (verilog, VERILATOR_BENCH, axes, OPTIONS, env!("CARGO_PKG_VERSION")).hash(&mut hash);
     let binary = cache.join(format!("engine_{:016x}", hash.finish()));
     if !binary.is_file() {
         let folder = tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
         write(folder.path(), &[("core.v", verilog), ("bench.cpp", VERILATOR_BENCH)])?;
         let mut command = Command::new(VERILATOR.name);
-        command.args(OPTIONS).args(["--top-module", "carrystep_engine", "-o", "bench", "core.v", "bench.cpp"]);
+        command.args(OPTIONS).args(["-CFLAGS", &format!("-O2 -DAXES={axes}")]);
+        command.args(["--top-module", "carrystep_engine", "-o", "bench", "core.v", "bench.cpp"]);
         tool::complete(&VERILATOR, command.current_dir(folder.path()))?;
         // Whole or not at all: another run may be looking for it.
         std::fs::rename(folder.path().join("obj_dir").join("bench"), &binary)

@@ -1,0 +1,126 @@
+//! The engine of a build, whose number of axes is known only when it is built; and the same under simulation.
+
+use super::Engine;
+use crate::HdlError;
+use crate::sim::{mask, rising_edge, settle};
+use crate::word::Word;
+use carrystep_spec::EngineBuild;
+use carrystep_spec::engine::{CAUSES, EngineError, EngineInputs, EngineOutputs, Put};
+use rust_hdl::prelude::{Block, check_all};
+
+/// An engine of any number of axes.
+pub trait AnyEngine: Block {
+    /// Drives the inputs; the outputs of the present cycle.
+    fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs;
+    /// Goes to the next cycle, with the inputs as last settled.
+    fn clock(&mut self);
+    /// Asks the `get` port; its answer of the present cycle, if it speaks.
+    fn get(&mut self, axis: usize, item: usize) -> Option<u32>;
+    /// What the memory keeps.
+    fn kept(&self, axis: usize, item: usize) -> u32;
+}
+
+/// The engine of this build, with as many axes as the build has.
+///
+/// # Errors
+/// [`HdlError::Engine`] where a parameter cannot be, [`HdlError::PinTiming`] where an axis' timing is out of range.
+pub fn engine(build: &EngineBuild) -> Result<Box<dyn AnyEngine>, HdlError> {
+    build.check()?;
+    Ok(match build.axes() {
+        1 => Box::new(Engine::<1>::new(build)?),
+        2 => Box::new(Engine::<2>::new(build)?),
+        3 => Box::new(Engine::<3>::new(build)?),
+        4 => Box::new(Engine::<4>::new(build)?),
+        5 => Box::new(Engine::<5>::new(build)?),
+        6 => Box::new(Engine::<6>::new(build)?),
+        7 => Box::new(Engine::<7>::new(build)?),
+        8 => Box::new(Engine::<8>::new(build)?),
+        axes => return Err(EngineError::Axes(axes).into()),
+    })
+}
+
+impl<const N: usize> AnyEngine for Engine<N> {
+    fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs {
+        self.clock.next = false.into();
+        let put = inputs.put.unwrap_or(Put { axis: 0, word: 0, data: 0 });
+        self.put_valid.next = inputs.put.is_some();
+        self.put_axis.next = Word::from(u64::from(put.axis));
+        self.put_word.next = Word::from(u64::from(put.word));
+        self.put_data.next = Word::from(u64::from(put.data));
+        self.start_valid.next = inputs.start.is_some();
+        self.start_mask.next = Word::from(u64::from(inputs.start.unwrap_or(0)));
+        self.clear.next = inputs.clear;
+        self.stop.next = inputs.stop;
+        self.kick.next = inputs.kick;
+        self.enable.next = inputs.enable;
+        self.estop.next = inputs.estop;
+        self.limit_min.next = Word::from(u64::from(inputs.limit_min));
+        self.limit_max.next = Word::from(u64::from(inputs.limit_max));
+        settle(self);
+        let cause = CAUSES[self.cause.val().value() as usize];
+        EngineOutputs {
+            put_ready: self.put_ready.val(),
+            start_ready: self.start_ready.val(),
+            step: mask(&*self.step),
+            dir: mask(&*self.dir),
+            enabled: self.enabled.val(),
+            idle: self.idle.val(),
+            fault: self.fault.val().then(|| (cause, self.culprits.val().value() as u8)),
+            halted: self.halted.val(),
+            started: self.started.val(),
+        }
+    }
+
+    fn clock(&mut self) {
+        self.clock.next = true.into();
+        rising_edge(self);
+    }
+
+    fn get(&mut self, axis: usize, item: usize) -> Option<u32> {
+        self.get_axis.next = Word::from(axis as u64);
+        self.get_item.next = Word::from(item as u64);
+        self.get_valid.val().then(|| self.get_data.val().value() as u32)
+    }
+
+    fn kept(&self, axis: usize, item: usize) -> u32 {
+        self.store.segments.word(axis << 6 | item << 3 | 7).value() as u32
+    }
+}
+
+/// The engine under simulation.
+pub struct EngineSim {
+    core: Box<dyn AnyEngine>,
+}
+
+impl EngineSim {
+    /// The engine of this build in cycle 0.
+    ///
+    /// # Errors
+    /// [`HdlError`] where the build cannot be made.
+    pub fn new(build: &EngineBuild) -> Result<Self, HdlError> {
+        let mut core = engine(build)?;
+        core.connect_all();
+        check_all(core.as_ref()).map_err(|error| HdlError::Check(format!("{error:?}")))?;
+        Ok(Self { core })
+    }
+
+    /// The outputs of the present cycle with these inputs; what is not offered is driven as zero.
+    pub fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs {
+        self.core.settle(inputs)
+    }
+
+    /// Goes to the next cycle, with the inputs as last settled.
+    pub fn clock(&mut self) {
+        self.core.clock();
+    }
+
+    /// What the `get` port says of an axis in the present cycle, if it speaks; `item` as in [`Engine::get_item`].
+    pub fn get(&mut self, axis: usize, item: usize) -> Option<u32> {
+        self.core.get(axis, item)
+    }
+
+    /// What the memory keeps of an axis; `item` as in [`Engine::get_item`].
+    pub fn kept(&self, axis: usize, item: usize) -> u32 {
+        self.core.kept(axis, item)
+    }
+}
