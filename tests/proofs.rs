@@ -13,9 +13,11 @@
 //!
 //! To add a module: its `promises.sv`, a file in `proofs/` that lists its cases and bugs, a line in [`all`].
 
+mod adder;
 mod axis;
 mod builds;
 mod edge;
+mod engine;
 mod limits;
 mod promises;
 mod pulser;
@@ -29,7 +31,9 @@ mod table;
 mod tick;
 mod turn;
 mod watch;
+mod wheel;
 
+pub use builds::small_engine;
 pub use promises::Promises;
 pub use solver::{Question, ask, tools};
 pub use table::table;
@@ -112,5 +116,8 @@ pub fn all() -> Vec<Proof> {
         queue::proof(),
         limits::proof(),
         turn::proof(),
+        wheel::proof(),
+        adder::proof(),
+        engine::proof(),
     ]
 }

@@ -43,11 +43,12 @@ pub fn shipped_engine() -> (EngineBuild, Arc<str>) {
     (machine.engine(), text.into())
 }
 
-/// An engine of six axes in as few clocks as hold them, with extreme pins, and a guard whose figures are small.
-pub fn small_engine(phases: u32, limits: Limits) -> (EngineBuild, Arc<str>) {
-    let timebase = Timebase::new(80_000_000, 1000, phases).expect("a fine timebase");
-    let (build, _) = small(phases);
-    let minimal = EngineBuild::minimal(&Build { timebase, ..build }, 1 << 40);
+/// An engine of so many axes, at a tick of so many clocks, with extreme pins, and a guard whose figures are small.
+pub fn small_engine(axes: usize, clocks: u32, phases: u32, limits: Limits) -> (EngineBuild, Arc<str>) {
+    let timebase = Timebase::new(u64::from(clocks) * 1_000_000, 1000, phases).expect("a fine timebase");
+    let mut minimal = EngineBuild::minimal(&Build { timebase, ..small(phases).0 }, 1 << 40);
+    minimal.pins.resize(axes, PinTiming::SHORTEST);
+    minimal.guard.stop.resize(axes, 1 << 40);
     let low = limits != Limits::Pair;
     let guard = Guard {
         round: 2,

@@ -19,7 +19,7 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof() -> Proof {
-    let wirings = [Limits::Pair, Limits::None, Limits::Each, Limits::One].map(|limits| small_engine(4, limits));
+    let wirings = [Limits::Pair, Limits::None, Limits::Each, Limits::One].map(|limits| small_engine(6, 80, 4, limits));
     let case = |(build, verilog): (EngineBuild, _)| {
         let guard = &build.guard;
         let wiring = match guard.limits {

@@ -17,6 +17,15 @@ impl Promises {
         self.labelled("cover (").collect()
     }
 
+    /// The text with each cover as the assertion that it is never reached, which must fail.
+    pub fn covers_as_assertions(&self) -> String {
+        let turned = |line: &str| match line.split_once(": cover (").zip(line.strip_suffix(");")) {
+            Some(((label, what), _)) => format!("{label}: assert (!({}));\n", &what[..what.len() - 2]),
+            None => format!("{line}\n"),
+        };
+        self.text.lines().map(turned).collect()
+    }
+
     /// The promises that are proved here, by number.
     pub fn numbers(&self) -> Vec<u32> {
         let mut numbers: Vec<u32> = self.labels().into_iter().filter_map(number).collect();

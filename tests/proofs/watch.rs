@@ -43,7 +43,7 @@ pub(super) fn proof() -> Proof {
     Proof {
         module: "watch",
         promises: Promises { text: include_str!("../../crates/hdl/src/engine/watch/promises.sv") },
-        cases: [small_engine(16, Limits::Pair), shipped_engine()].into_iter().map(case).collect(),
+        cases: [small_engine(6, 80, 16, Limits::Pair), shipped_engine()].into_iter().map(case).collect(),
         depth: 1,
         reach: 20,
         bugs: BUGS,
