@@ -31,12 +31,12 @@ module carrystep_turn (
     localparam [16:0] FIRST_BEAT = 17'd1;
     localparam [2:0] FIRST_AXIS = 3'd0;
     localparam [2:0] ONE_AXIS = 3'd1;
-    localparam [5:0] FIRST_LANE = 6'd1;
     localparam [5:0] LAST_LANE = 6'd32;
+    localparam [2:0] TO_TOP = 3'd5;
 
     reg [16:0] beats = 17'd0;
     reg [2:0] number = 3'd0;
-    reg [5:0] lanes = 6'd0;
+    reg [5:0] lanes = 6'd1;
     reg [2:0] axis_to_come;
 
     wire ends = (lanes & LAST_LANE) != 6'd0;
@@ -50,10 +50,11 @@ module carrystep_turn (
 
     always @(*) begin
         axis_to_come = number;
-        if (strobe) begin
-            axis_to_come = FIRST_AXIS;
-        end else if (beats[12]) begin
+        if (beats[12]) begin
             axis_to_come = number + ONE_AXIS;
+            if (ends) begin
+                axis_to_come = FIRST_AXIS;
+            end
         end
     end
 
@@ -62,12 +63,10 @@ module carrystep_turn (
         if (begins) begin
             beats <= shifted | FIRST_BEAT;
         end
-        number <= axis_to_come;
-        if (strobe) begin
-            lanes <= FIRST_LANE;
-        end else if (beats[12]) begin
-            lanes <= lanes << BY_ONE;
+        if (beats[12]) begin
+            lanes <= (lanes << BY_ONE) | (lanes >> TO_TOP);
         end
+        number <= axis_to_come;
     end
 endmodule
 
@@ -117,10 +116,11 @@ module carrystep_adder (
     reg bound = 1'b0;
     reg crossed = 1'b0;
     reg bisects = 1'b0;
-    reg carry_due = 1'b0;
-    reg odd = 1'b0;
+    reg carry_if_top = 1'b0;
+    reg carry_if_not = 1'b0;
     reg [3:0] bits = 4'd0;
     reg [31:0] x;
+    reg carry_in;
     reg [33:0] low;
 
     wire counting = beat[5] | beat[6];
@@ -130,7 +130,9 @@ module carrystep_adder (
     wire [31:0] half = (b >> BY_ONE) | (b & SIGN);
     wire halves_on = beat[12] | beat[13] | beat[14];
     wire crosses_now = top ^ crossed;
-    wire carry_in = carry_due | (odd & crosses_now);
+    wire carry_due = (beat[5] & lost) | (beat[6] & !down) | (beat[8] & carry_2) | ((beat[9] | beat[10]) & carry_1);
+    wire odd = halves_on & b[0];
+    wire odd_beyond = odd & bisects & crosses_now;
     wire [33:0] wide = (({2'b0, x} << BY_ONE) | CARRY) + (({2'b0, b} << BY_ONE) | low);
     wire wiping = wipe & (beat[5] | beat[11]);
     wire empty = (b & ~SIGN) == 32'd0;
@@ -152,6 +154,13 @@ module carrystep_adder (
             if (top) begin
                 x = ~r;
             end
+        end
+    end
+
+    always @(*) begin
+        carry_in = carry_if_not;
+        if (top) begin
+            carry_in = carry_if_top;
         end
     end
 
@@ -179,8 +188,8 @@ module carrystep_adder (
             b <= half;
         end
         bisects <= halves_on;
-        odd <= halves_on & b[0];
-        carry_due <= (beat[5] & lost) | (beat[6] & !down) | (beat[8] & carry_2) | ((beat[9] | beat[10]) & carry_1);
+        carry_if_not <= carry_due | odd_beyond;
+        carry_if_top <= carry_due | (odd & !odd_beyond);
         r <= wide[32:1];
         if (beat[8]) begin
             r <= x;
@@ -830,6 +839,8 @@ module carrystep_wheel (
     localparam [15:0] ALL = 16'd65535;
     localparam [15:0] FORWARD = 16'd255;
     localparam [6:0] SIGN_KIND = 7'd16;
+    localparam BY_ONE = 1'b1;
+    localparam [2:0] TO_TOP = 3'd5;
     localparam [3:0] AT_5 = 4'd5;
     localparam [3:0] AT_8 = 4'd8;
     localparam [6:0] LAST_PHASE = 7'd15;
@@ -842,7 +853,6 @@ module carrystep_wheel (
     reg sign_due = 1'b0;
     reg step_due = 1'b0;
     reg step_known = 1'b0;
-    reg [5:0] whose = 6'd0;
     reg [1:0] when = 2'd0;
     reg [6:0] place;
     reg [6:0] later;
@@ -859,6 +869,7 @@ module carrystep_wheel (
     wire writes_sign = !wipes & sign_due;
     wire writes_step = !wipes & !sign_due & step_due & step_known;
     wire [1:0] now = when + ONE_TICK;
+    wire [5:0] whose = (lane >> BY_ONE) | (lane << TO_TOP);
 
     assign strobe = turned;
     assign phase_start = started;
@@ -942,7 +953,6 @@ module carrystep_wheel (
             sign_due <= has_sign;
             step_due <= crosses;
             step_known <= 1'b0;
-            whose <= lane;
             when <= read[6:5] + ONE_TICK;
         end
     end
@@ -1882,6 +1892,8 @@ module carrystep_engine (
     localparam [5:0] ONE_AXIS_4 = 6'd16;
     localparam [5:0] ONE_AXIS_5 = 6'd32;
     localparam [2:0] COMMIT = 3'd7;
+    localparam BY_ONE = 1'b1;
+    localparam [2:0] TO_TOP = 3'd5;
     localparam [3:0] AXES = 4'd6;
 
     reg armed = 1'b0;
@@ -1991,7 +2003,7 @@ module carrystep_engine (
     wire pulser_5_overruns;
 
     wire strobe = wheel_strobe;
-    wire masked = (turn_lane & mask) != 6'd0;
+    wire masked = mask[0];
     wire nobody = {1'b0, put_axis} >= AXES;
     wire take = put_valid & put_ready & !nobody;
     wire free = !stops_fault & !stops_finds;
@@ -2390,6 +2402,9 @@ module carrystep_engine (
         end
         if (strobe) begin
             going <= go;
+        end
+        if (turn_beat[12]) begin
+            mask <= (mask >> BY_ONE) | (mask << TO_TOP);
         end
         if (start_ready & start_valid) begin
             armed <= 1'b1;

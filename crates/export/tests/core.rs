@@ -166,6 +166,53 @@ fn an_engine_whose_turns_do_not_fit_is_refused_with_the_arithmetic_and_nothing_i
 }
 
 #[test]
+fn an_engine_that_cannot_work_is_refused_by_name_and_nothing_is_written() {
+    let phase_of_one_clock = |build: &mut EngineBuild| {
+        (build.pins, build.guard.stop) = (vec![PinTiming::SHORTEST], vec![1]);
+        build.timebase = Timebase::new(16_000_000, 1000, 16).unwrap();
+    };
+    let nine_axes = |build: &mut EngineBuild| {
+        build.pins = vec![PinTiming::SHORTEST; 9];
+        build.guard.stop = vec![1; 9];
+    };
+    let refusals: [(&dyn Fn(&mut EngineBuild), &str); 6] = [
+        (&nine_axes, "9 axes: an engine has 1 to 8"),
+        (&|build| build.pins.clear(), "0 axes: an engine has 1 to 8"),
+        (&|build| build.guard.stop.truncate(4), "4 stop accelerations for 6 axes"),
+        (&phase_of_one_clock, "16 phases in the 16 clocks of a tick"),
+        (&|build| build.pins[5].width = 0, "axis 5: width is 0 clocks"),
+        (&|build| build.pins[1].setup = 65_537, "axis 1: setup is 65537 clocks: from 1 to 65536 can be counted"),
+    ];
+    for (spoil, says) in refusals {
+        let mut build = engine_of(6);
+        spoil(&mut build);
+        let folder = tempfile::tempdir().unwrap();
+        let error = write_engine(folder.path(), &build, "a test").unwrap_err().to_string();
+        assert!(error.contains(says), "{error}, not: {says}");
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+    }
+}
+
+/// What a machine file asks is refused before there is a build: the driver's width and gap at the greatest speed, and
+/// phases that do not divide the tick.
+#[test]
+fn a_machine_that_no_engine_can_drive_is_refused_by_name() {
+    let text = std::fs::read_to_string(Path::new(ROOT).join("sim/engine.toml")).unwrap();
+    let refusals = [
+        ("driver = \"tmc2209\"", "step_ns = 15000\ngap_ns = 15000\nsetup_ns = 20\nhold_ns = 20", "width and gap"),
+        ("tick_ns = 2000", "tick_ns = 1750", "84 clocks per tick do not divide into 16 equal phases"),
+    ];
+    for (was, becomes, says) in refusals {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("machine.toml");
+        assert!(text.contains(was), "the text is gone: {was}");
+        std::fs::write(&file, text.replace(was, becomes)).unwrap();
+        let error = Machine::load(&file).unwrap_err().to_string();
+        assert!(error.contains(says), "{error}, not: {says}");
+    }
+}
+
+#[test]
 fn verilator_has_nothing_to_say() {
     let arguments = |name: &str| {
         let words = ["--lint-only", "-Wall", "--top-module", name, &format!("{name}.vlt"), &format!("{name}.v")];

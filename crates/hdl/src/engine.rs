@@ -120,7 +120,7 @@ pub struct Engine<const N: usize> {
     watch: Watch,
     pulser: Lanes<Pulser, N>,
     armed: Register<Bit>,
-    mask: Register<Word<N>>,
+    mask: Register<Word<N>>, // of the start, turning with the turns: bit 0 is the present axis
     going: Register<Bit>,
     taken: Register<Bit>,
     taken_word: Register<Word<3>>,
@@ -146,6 +146,8 @@ pub struct Engine<const N: usize> {
     no_axes: Literal<N, 0>,
     one_axis: Lanes<Parameter<N>, N>,
     commit: Literal<3, 7>,
+    by_one: Literal<1, 1>,
+    to_top: Parameter<3>,
     axes: Parameter<4>,
 }
 
@@ -165,6 +167,7 @@ impl<const N: usize> Engine<N> {
             watch: Watch::new(&build.guard),
             pulser,
             axes: Parameter::new(N as u64),
+            to_top: Parameter::new(N as u64 - 1),
             one_axis: Lanes::from_fn(|axis| Parameter::new(1 << axis)),
             rest_1: Register::new(true),
             rest_2: Register::new(true),
@@ -180,7 +183,7 @@ impl<const N: usize> Logic for Engine<N> {
         clock!(self, clock, turn, adder, queue, store, wheel, limits, stops, watch);
 
         self.strobe.next = self.wheel.strobe.val();
-        self.masked.next = (self.turn.lane.val() & self.mask.q.val()).any();
+        self.masked.next = self.mask.q.val().get_bit(0);
 
         // The host's words.
         self.nobody.next = bit_cast::<4, 3>(self.put_axis.val()) >= self.axes.val();
@@ -209,6 +212,9 @@ impl<const N: usize> Logic for Engine<N> {
         self.go.next = self.decides.val() & !self.unfed.q.val() & !self.held.q.val();
         if self.strobe.val() {
             self.going.d.next = self.go.val();
+        }
+        if self.turn.beat.val().get_bit(12) {
+            self.mask.d.next = (self.mask.q.val() >> self.by_one.val()) | (self.mask.q.val() << self.to_top.val());
         }
         if self.start_ready.val() & self.start_valid.val() {
             self.armed.d.next = true;

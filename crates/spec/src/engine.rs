@@ -8,7 +8,7 @@
 //! strobe   ________________________________________________________________________/^
 //! ```
 
-use crate::build::Timebase;
+use crate::build::{MAX_CLOCKS, PinTiming, Timebase};
 
 mod build;
 mod error;
@@ -45,21 +45,43 @@ pub const fn clocks_of_turns(axes: usize) -> u32 {
     axes as u32 * TURN + 1
 }
 
-/// Whether the turns of all axes fit into a tick.
+/// Fewest clocks of a phase: in one its events are read, in the others more are written.
+pub const MIN_CLOCKS_PER_PHASE: u32 = 2;
+
+/// Whether the turns of all axes fit into a tick, and events between its phases.
 ///
 /// # Errors
-/// [`EngineError::Schedule`] says what is needed, what there is, and the least clock that would do.
+/// [`EngineError::Schedule`] says what is needed, what there is, and the least clock that would do;
+/// [`EngineError::ShortPhase`] that phases are too many.
 pub fn check_schedule(axes: usize, timebase: &Timebase) -> Result<(), EngineError> {
     let needed = clocks_of_turns(axes);
     let clocks = timebase.clocks_per_tick();
     if clocks >= needed {
-        return Ok(());
+        return match timebase.clocks_per_phase() {
+            MIN_CLOCKS_PER_PHASE.. => Ok(()),
+            _ => Err(EngineError::ShortPhase { phases: timebase.phases(), clocks }),
+        };
     }
     let (tick_ns, clock_hz) = (timebase.tick_ns(), timebase.clock_hz());
     // As few clocks as hold the turns and divide into phases.
     let least = u64::from(needed.next_multiple_of(timebase.phases()));
     let least_hz = (least * 1_000_000_000).div_ceil(tick_ns);
     Err(EngineError::Schedule { axes, needed, clocks, tick_ns, clock_hz, least_hz })
+}
+
+/// Whether the timers can count what the drivers of all axes ask for.
+///
+/// # Errors
+/// [`EngineError::PinTiming`] names the first that they cannot.
+pub fn check_pins(pins: &[PinTiming]) -> Result<(), EngineError> {
+    for (axis, &PinTiming { width, gap, setup, hold }) in pins.iter().enumerate() {
+        for (name, clocks) in [("width", width), ("gap", gap), ("setup", setup), ("hold", hold)] {
+            if !(1..=MAX_CLOCKS).contains(&clocks) {
+                return Err(EngineError::PinTiming { axis, name, clocks });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// One word of a segment on its way into the queue.
@@ -166,5 +188,16 @@ mod tests {
         );
         assert!(check_schedule(6, &Timebase::new(80_000_000, 1000, 16).unwrap()).is_ok());
         assert!(check_schedule(6, &Timebase::new(48_000_000, 2000, 16).unwrap()).is_ok());
+    }
+
+    #[test]
+    fn a_phase_of_one_clock_is_refused() {
+        let timebase = |phases| Timebase::new(16_000_000, 1000, phases).unwrap();
+        assert_eq!(
+            check_schedule(1, &timebase(16)).unwrap_err().to_string(),
+            "16 phases in the 16 clocks of a tick: an engine needs 2 clocks in each; fewer phases, a faster clock or a \
+             longer tick would do"
+        );
+        assert!(check_schedule(1, &timebase(4)).is_ok());
     }
 }

@@ -75,9 +75,9 @@ pub struct Adder {
     bound: Register<Bit>,   // `least`
     crossed: Register<Bit>, // the bisection's last sum but one was beyond the step
     bisects: Register<Bit>,
-    carry_due: Register<Bit>, // known a beat ahead
-    odd: Register<Bit>,       // what halving B lost
-    bits: Register<Word<4>>,  // `q`
+    carry_if_top: Register<Bit>, // the carry that comes in where `top` is set,
+    carry_if_not: Register<Bit>, // and where it is not: all else is known a beat ahead
+    bits: Register<Word<4>>,     // `q`
     x: Signal<Local, Word<32>>,
     half: Signal<Local, Word<32>>,
     ones_in: Signal<Local, Bit>,
@@ -86,6 +86,9 @@ pub struct Adder {
     halve: Signal<Local, Bit>,
     halves_on: Signal<Local, Bit>,
     crosses_now: Signal<Local, Bit>,
+    carry_due: Signal<Local, Bit>,
+    odd: Signal<Local, Bit>, // halving B loses its lowest bit
+    odd_beyond: Signal<Local, Bit>,
     carry_in: Signal<Local, Bit>,
     low: Signal<Local, Word<34>>,
     wide: Signal<Local, Word<34>>,
@@ -104,7 +107,21 @@ impl Logic for Adder {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, a, b, r, top, carry_0, carry_1, carry_2, over, unfit);
-        dff_setup!(self, clock, low_zero, minus, zero, bound, crossed, odd, bits, bisects, carry_due, sign_of_a, other);
+        dff_setup!(
+            self,
+            clock,
+            low_zero,
+            minus,
+            zero,
+            bound,
+            crossed,
+            carry_if_top,
+            carry_if_not,
+            bits,
+            bisects,
+            sign_of_a,
+            other
+        );
 
         // A: from memory, in beat 7 from the host.
         if self.beat.val().get_bit(1)
@@ -145,7 +162,6 @@ impl Logic for Adder {
         // The bisection goes on in the next beat.
         self.halves_on.next = self.beat.val().get_bit(12) | self.beat.val().get_bit(13) | self.beat.val().get_bit(14);
         self.bisects.d.next = self.halves_on.val();
-        self.odd.d.next = self.halves_on.val() & self.b.q.val().get_bit(0);
 
         // X: A; in the bisection R, straight or as its complement.
         self.crosses_now.next = self.top.q.val() ^ self.crossed.q.val();
@@ -158,11 +174,18 @@ impl Logic for Adder {
         }
 
         // The sum; a carry comes in as 1 + 1 below the lowest bit.
-        self.carry_due.d.next = (self.beat.val().get_bit(5) & self.lost.val())
+        self.carry_due.next = (self.beat.val().get_bit(5) & self.lost.val())
             | (self.beat.val().get_bit(6) & !self.down.val())
             | (self.beat.val().get_bit(8) & self.carry_2.q.val())
             | ((self.beat.val().get_bit(9) | self.beat.val().get_bit(10)) & self.carry_1.q.val());
-        self.carry_in.next = self.carry_due.q.val() | (self.odd.q.val() & self.crosses_now.val());
+        self.odd.next = self.halves_on.val() & self.b.q.val().get_bit(0);
+        self.odd_beyond.next = self.odd.val() & self.bisects.q.val() & self.crosses_now.val();
+        self.carry_if_not.d.next = self.carry_due.val() | self.odd_beyond.val();
+        self.carry_if_top.d.next = self.carry_due.val() | (self.odd.val() & !self.odd_beyond.val());
+        self.carry_in.next = self.carry_if_not.q.val();
+        if self.top.q.val() {
+            self.carry_in.next = self.carry_if_top.q.val();
+        }
         self.low.next = self.no_carry.val();
         if self.carry_in.val() {
             self.low.next = self.carry.val();

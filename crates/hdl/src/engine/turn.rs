@@ -27,7 +27,7 @@ pub struct Turn<const N: usize> {
     pub axis: Signal<Out, Word<3>>,
     /// The axis of the next cycle.
     pub axis_next: Signal<Out, Word<3>>,
-    /// The axis, one bit each; none after the last turn.
+    /// The axis, one bit each; after the last turn the first one.
     pub lane: Signal<Out, Word<N>>,
     beats: Register<Word<17>>,
     number: Register<Word<3>>,
@@ -40,14 +40,19 @@ pub struct Turn<const N: usize> {
     first_beat: Literal<17, 1>,
     first_axis: Literal<3, 0>,
     one_axis: Literal<3, 1>,
-    first_lane: Literal<N, 1>,
     last_lane: Parameter<N>,
+    to_top: Parameter<3>,
 }
 
 impl<const N: usize> Turn<N> {
     /// The turns of N axes.
     pub fn new() -> Self {
-        Self { last_lane: Parameter::new(1 << (N - 1)), ..Self::default() }
+        Self {
+            lanes: Register::new(Word::new(1)),
+            last_lane: Parameter::new(1 << (N - 1)),
+            to_top: Parameter::new(N as u64 - 1),
+            ..Self::default()
+        }
     }
 }
 
@@ -65,17 +70,16 @@ impl<const N: usize> Logic for Turn<N> {
         }
 
         self.axis_to_come.next = self.number.q.val();
-        if self.strobe.val() {
-            self.axis_to_come.next = self.first_axis.val();
-        } else if self.beats.q.val().get_bit(12) {
+        if self.beats.q.val().get_bit(12) {
             self.axis_to_come.next = self.number.q.val() + self.one_axis.val();
+            if self.ends.val() {
+                self.axis_to_come.next = self.first_axis.val();
+            }
+        }
+        if self.beats.q.val().get_bit(12) {
+            self.lanes.d.next = (self.lanes.q.val() << self.by_one.val()) | (self.lanes.q.val() >> self.to_top.val());
         }
         self.number.d.next = self.axis_to_come.val();
-        if self.strobe.val() {
-            self.lanes.d.next = self.first_lane.val();
-        } else if self.beats.q.val().get_bit(12) {
-            self.lanes.d.next = self.lanes.q.val() << self.by_one.val();
-        }
 
         self.beat.next = self.beats.q.val();
         self.axis.next = self.number.q.val();

@@ -24,9 +24,9 @@ use rust_hdl::prelude::*;
 pub struct Wheel<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// Last beat of a turn: what follows is of this axis.
+    /// Last beat of a turn: what follows is of its axis.
     pub turn_ends: Input<Bit>,
-    /// This axis, one bit each.
+    /// The axis of the present turn, one bit each.
     pub lane: Input<Word<N>>,
     /// Its tick steps.
     pub crosses: Input<Bit>,
@@ -57,8 +57,8 @@ pub struct Wheel<const N: usize> {
     sign_due: Register<Bit>,
     step_due: Register<Bit>,
     step_known: Register<Bit>,
-    whose: Register<Word<N>>,
-    when: Register<Word<2>>, // the tick before the one in which it happens
+    when: Register<Word<2>>,       // the tick before the one in which it happens
+    whose: Signal<Local, Word<N>>, // the axis before
     writes_sign: Signal<Local, Bit>,
     writes_step: Signal<Local, Bit>,
     now: Signal<Local, Word<2>>,
@@ -70,6 +70,8 @@ pub struct Wheel<const N: usize> {
     all: Literal<16, 0xffff>,
     forward: Literal<16, 0x00ff>,
     sign_kind: Literal<7, 0x10>,
+    by_one: Literal<1, 1>,
+    to_top: Parameter<3>,
     at_5: Literal<4, 5>,
     at_8: Literal<4, 8>,
     last_phase: Parameter<7>,
@@ -83,6 +85,7 @@ impl<const N: usize> Wheel<N> {
             tick: Tick::ahead(timebase),
             last_phase: Parameter::new(u64::from(timebase.phases() - 1)),
             q_shift: Parameter::new(u64::from(4 - timebase.phase_bits())),
+            to_top: Parameter::new(N as u64 - 1),
             rim: Memory::of_bits(),
             ..Self::default()
         }
@@ -92,7 +95,7 @@ impl<const N: usize> Wheel<N> {
 impl<const N: usize> Logic for Wheel<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, turned, started, ahead, read, sign_due, step_due, step_known, whose, when);
+        dff_setup!(self, clock, turned, started, ahead, read, sign_due, step_due, step_known, when);
         clock!(self, clock, tick, rim);
 
         // Time, as the pins have it.
@@ -131,7 +134,6 @@ impl<const N: usize> Logic for Wheel<N> {
             self.sign_due.d.next = self.has_sign.val();
             self.step_due.d.next = self.crosses.val();
             self.step_known.d.next = false;
-            self.whose.d.next = self.lane.val();
             self.when.d.next = self.read.q.val().get_bits::<2>(5) + self.one_tick.val();
         }
         self.now.next = self.when.q.val() + self.one_tick.val();
@@ -153,10 +155,11 @@ impl<const N: usize> Logic for Wheel<N> {
             }
         }
         self.rim.write_data.next = self.data.val();
+        self.whose.next = (self.lane.val() >> self.by_one.val()) | (self.lane.val() << self.to_top.val());
         self.bits.next = self.no.val();
         if self.writes_sign.val() | self.writes_step.val() {
             self.bits.next =
-                bit_cast::<16, N>(self.whose.q.val()) | (bit_cast::<16, N>(self.whose.q.val()) << self.at_8.val());
+                bit_cast::<16, N>(self.whose.val()) | (bit_cast::<16, N>(self.whose.val()) << self.at_8.val());
         }
         if self.wipes.val() {
             self.bits.next = self.all.val();

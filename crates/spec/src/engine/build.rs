@@ -1,6 +1,6 @@
 //! The build parameters of an engine: axes, pins, and what its guard watches.
 
-use super::{EngineError, MAX_AXES, MAX_LOOKS, MAX_ROUNDS, check_schedule};
+use super::{EngineError, MAX_AXES, MAX_LOOKS, MAX_ROUNDS, check_pins, check_schedule};
 use crate::build::{Build, PinTiming, Timebase};
 use crate::fixed::StartPhase;
 use crate::machine::Machine;
@@ -116,7 +116,7 @@ impl EngineBuild {
         self.pins.len()
     }
 
-    /// Whether there can be such an engine; what the pins ask is checked where their timers are built.
+    /// Whether there can be such an engine.
     ///
     /// # Errors
     /// [`EngineError`] names the parameter.
@@ -126,6 +126,7 @@ impl EngineBuild {
             return Err(EngineError::Axes(axes));
         }
         check_schedule(axes, &self.timebase)?;
+        check_pins(&self.pins)?;
         if !(2..=1024).contains(&guard.round) || !guard.round.is_power_of_two() {
             return Err(EngineError::Round(guard.round));
         }
@@ -166,6 +167,9 @@ mod tests {
         let nine = |build: &mut EngineBuild| build.pins = vec![PinTiming::SHORTEST; 9];
         assert_eq!(refusal(nine), "9 axes: an engine has 1 to 8");
         assert!(refusal(|build| build.pins.clear()).starts_with("0 axes"));
+        let said = refusal(|build| build.pins[3].gap = 0);
+        assert_eq!(said, "axis 3: gap is 0 clocks: from 1 to 65536 can be counted");
+        assert!(refusal(|build| build.pins[5].hold = 65_537).starts_with("axis 5: hold is 65537 clocks"));
         assert!(refusal(|build| build.guard.round = 3).starts_with("a round of 3 ticks"));
         assert!(refusal(|build| build.guard.watchdog = 5000).starts_with("watchdog of 5000 rounds"));
         assert!(refusal(|build| build.guard.enable = 5000).starts_with("enable of 5000 rounds"));

@@ -1,6 +1,7 @@
 //! Why there can be no engine with some parameters: each error names them, and what would do.
 
-use super::{MAX_AXES, MAX_LOOKS, MAX_ROUNDS, TURN};
+use super::{MAX_AXES, MAX_LOOKS, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, TURN};
+use crate::build::MAX_CLOCKS;
 use thiserror::Error;
 
 /// Parameters that make no engine.
@@ -27,6 +28,27 @@ pub enum EngineError {
         clock_hz: u64,
         /// The least clock that would do, Hz.
         least_hz: u64,
+    },
+    /// Events could not be written between the phases.
+    #[error(
+        "{phases} phases in the {clocks} clocks of a tick: an engine needs {MIN_CLOCKS_PER_PHASE} clocks in each; \
+         fewer phases, a faster clock or a longer tick would do"
+    )]
+    ShortPhase {
+        /// Phases of a tick.
+        phases: u32,
+        /// Clocks of a tick.
+        clocks: u32,
+    },
+    /// A pin timing that the timers cannot count.
+    #[error("axis {axis}: {name} is {clocks} clocks: from 1 to {MAX_CLOCKS} can be counted")]
+    PinTiming {
+        /// The axis.
+        axis: usize,
+        /// width, gap, setup or hold.
+        name: &'static str,
+        /// What was asked for.
+        clocks: u32,
     },
     /// A round is not a power of two.
     #[error("a round of {0} ticks: a power of two from 2 to 1024 is needed")]
