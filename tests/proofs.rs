@@ -33,7 +33,6 @@ mod turn;
 mod watch;
 mod wheel;
 
-pub use builds::small_engine;
 pub use promises::Promises;
 pub use solver::{Question, ask, tools};
 pub use table::table;

@@ -97,13 +97,3 @@ fn every_promise_of_every_module_has_its_bug() {
         assert!(!proof.promises.covers().is_empty(), "{}: no covers", proof.module);
     }
 }
-
-#[test]
-fn dump() {
-    use carrystep_spec::engine::Limits;
-    for (name, limits) in [("pair", Limits::Pair), ("each", Limits::Each), ("one", Limits::One), ("none", Limits::None)] {
-        for (axes, clocks, phases) in [(6, 80, 16), (1, 16, 4), (1, 16, 16), (1, 16, 1), (2, 32, 16), (8, 112, 16)] {
-            std::fs::write(format!("/tmp/pv/{name}_{axes}_{clocks}_{phases}.v"), &*proofs::small_engine(axes, clocks, phases, limits).1).unwrap();
-        }
-    }
-}

@@ -5,14 +5,14 @@ use super::{Bug, Case, Promises, Proof};
 use carrystep_spec::engine::{EngineBuild, Limits};
 
 const BUGS: &[Bug] = &[
-    Bug { breaks: "promise_5_every_axis_frozen", text: ".clock(clock),\n        .frozen(stops_frozen),", becomes: ".clock(clock),\n        .frozen(stops_ramp)," },
+    Bug {
+        breaks: "promise_5_every_axis_frozen",
+        text: ".clock(clock),\n        .frozen(stops_frozen),",
+        becomes: ".clock(clock),\n        .frozen(stops_ramp),",
+    },
     Bug { breaks: "promise_6_taken_in_its_turn", text: "turn_axis == put_axis", becomes: "turn_axis != put_axis" },
     Bug { breaks: "promise_6_nothing_taken_in_a_fault", text: "put_ready = !stops_fault &", becomes: "put_ready =" },
-    Bug {
-        breaks: "promise_6_no_such_axis_is_told",
-        text: "(put_valid & nobody & !stops_fault) | ",
-        becomes: "",
-    },
+    Bug { breaks: "promise_6_no_such_axis_is_told", text: "(put_valid & nobody & !stops_fault) | ", becomes: "" },
     Bug { breaks: "promise_6_something_to_start", text: "unfed <= unfed |", becomes: "unfed <= !put_valid & unfed |" },
     Bug { breaks: "promise_6_a_start_is_kept", text: "if (go | stops_fault) begin", becomes: "if (strobe) begin" },
     Bug { breaks: "promise_8_idle", text: "rest_2 & !armed & !pins_busy", becomes: "rest_2 & !pins_busy" },
@@ -22,7 +22,7 @@ const BUGS: &[Bug] = &[
         text: ".request(wheel_events & wheel_phase_start)",
         becomes: ".request(wheel_events)",
     },
-    Bug { breaks: "promise_12_starts_are_of_the_mask", text: ".starts(going & masked)", becomes: ".starts(going)" },
+    Bug { breaks: "promise_12_starts_who_is_asked_to", text: ".starts(going & masked)", becomes: ".starts(going)" },
     Bug { breaks: "promise_13_inactive", text: "rest_2 = 1'b1;", becomes: "rest_2 = 1'b0;" },
     Bug { breaks: "promise_14_start_only_warm", text: "& enable & watch_warm", becomes: "& enable" },
 ];

@@ -10,11 +10,6 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_10_stops_by_direction", text: "word[6:0] == LAST_LOOK", becomes: "word[6:0] != LAST_LOOK" },
     Bug { breaks: "promise_10_stops_by_direction", text: "if (differs & !flips) begin", becomes: "if (!flips) begin" },
     Bug { breaks: "promise_12_own_switch_only", text: "(looks & (EXIST", becomes: "((looks | goes) & (EXIST" },
-    Bug {
-        breaks: "promise_12_no_word_read_as_it_is_written",
-        text: ".read_address(({1'b0, axis_next}",
-        becomes: ".read_address(({1'b0, axis}",
-    },
     Bug { breaks: "promise_13_inactive", text: "hit = looks &", becomes: "hit = 1'b1 |" },
 ];
 

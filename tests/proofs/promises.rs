@@ -49,6 +49,13 @@ impl Promises {
             .collect()
     }
 
+    /// Signals inside the module that may be anything in any clock, so that what drives them is left out:
+    /// `// (* free = "dut.word" *)`. What holds then holds all the more.
+    pub fn free(&self) -> Vec<&'static str> {
+        let told = self.text.lines().filter_map(|line| line.trim().strip_prefix("// (* free = \"")?.split_once('"'));
+        told.map(|(signal, _)| signal).collect()
+    }
+
     fn labelled(&self, kind: &'static str) -> impl Iterator<Item = &'static str> {
         self.text.lines().filter_map(move |line| {
             let (label, rest) = line.trim().split_once(": ")?;

@@ -35,7 +35,8 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof() -> Proof {
-    let builds = [small_engine(6, 80, 16, Limits::Pair), shipped_engine()].map(|(build, verilog)| (build.pins, verilog));
+    let builds =
+        [small_engine(6, 80, 16, Limits::Pair), shipped_engine()].map(|(build, verilog)| (build.pins, verilog));
     Proof {
         module: "pulser",
         promises: Promises { text: include_str!("../../crates/hdl/src/engine/pulser/promises.sv") },

@@ -27,9 +27,9 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_10_ramp_as_defined", text: "next_known = KNOWN_BIT;", becomes: "next_known = NO;" },
     Bug { breaks: "promise_12_only_its_own_turn", text: "if (beat[12]) begin", becomes: "if (beat[11]) begin" },
     Bug {
-        breaks: "promise_12_no_word_read_as_it_is_written",
-        text: ".read_address(axis_next)",
-        becomes: ".read_address(axis)",
+        breaks: "promise_12_no_word_used_that_was_written",
+        text: "if (beat[12]) begin",
+        becomes: "if (beat[11]) begin",
     },
     Bug { breaks: "promise_13_inactive", text: "forward = 1'b0;", becomes: "forward = 1'b1;" },
 ];

@@ -146,6 +146,9 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
         let _ = writeln!(text, "connect -set {name} {signal}");
     }
     text.push_str(LOOKS_ARE_READ_PORTS);
+    for signal in promises.free() {
+        let _ = writeln!(text, "cutpoint w:{signal}");
+    }
     // Two that are both plain by now would be merged, and one label lost.
     text.push_str("setattr -set keep 1 t:$assert t:$cover\n");
     // Nothing may hang free: a free wire is any value, and a proof about it says nothing.

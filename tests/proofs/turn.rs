@@ -8,7 +8,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_11_every_axis_once_a_tick", text: "strobe | (beats[12]", becomes: "strobe | (beats[11]" },
     Bug { breaks: "promise_11_tail", text: "beats <= shifted;", becomes: "beats <= shifted & 17'h1ffff >> 1;" },
     Bug { breaks: "promise_12_whose_turn", text: "number + ONE_AXIS", becomes: "number + ONE_AXIS + ONE_AXIS" },
-    Bug { breaks: "promise_12_lane_is_the_axis", text: "lanes <= lanes << BY_ONE;", becomes: "lanes <= FIRST_LANE;" },
+    Bug { breaks: "promise_12_lane_is_the_axis", text: "(lanes << BY_ONE) | (lanes >> TO_TOP)", becomes: "lanes" },
     Bug { breaks: "promise_12_one_after_the_other", text: "axis_next = axis_to_come;", becomes: "axis_next = number;" },
     Bug { breaks: "promise_13_inactive", text: "beats = 17'd0;", becomes: "beats = 17'd1;" },
 ];

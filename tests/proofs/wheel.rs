@@ -5,13 +5,25 @@ use super::{Bug, Case, Promises, Proof};
 use carrystep_spec::engine::{EngineBuild, Limits};
 
 const BUGS: &[Bug] = &[
-    Bug { breaks: "promise_6_each_carry_once", text: "step_due <= crosses;", becomes: "step_due <= crosses & has_sign;" },
+    Bug {
+        breaks: "promise_6_each_carry_once",
+        text: "step_due <= crosses;",
+        becomes: "step_due <= crosses & has_sign;",
+    },
     Bug { breaks: "promise_11_at_its_phase", text: "when <= read[6:5] + ONE_TICK;", becomes: "when <= read[6:5];" },
     Bug { breaks: "promise_11_sign_before_its_tick", text: "SIGN_KIND | LAST_PHASE;", becomes: "SIGN_KIND;" },
     Bug { breaks: "promise_11_direction", text: "data = FORWARD;", becomes: "data = ALL;" },
     Bug { breaks: "promise_11_one_beat", text: "turned <= tick_strobe;", becomes: "turned <= tick_phase_start;" },
-    Bug { breaks: "promise_12_of_its_own_axis", text: "!sign_due & step_due & step_known", becomes: "!sign_due & step_known" },
-    Bug { breaks: "promise_12_no_word_used_that_was_written", text: "rim_write_address = read;", becomes: "rim_write_address = place;" },
+    Bug {
+        breaks: "promise_12_of_its_own_axis",
+        text: "!sign_due & step_due & step_known",
+        becomes: "!sign_due & step_known",
+    },
+    Bug {
+        breaks: "promise_12_no_word_used_that_was_written",
+        text: "rim_write_address = read;",
+        becomes: "rim_write_address = place;",
+    },
     Bug { breaks: "promise_13_inactive", text: "turned = 1'b0;", becomes: "turned = 1'b1;" },
 ];
 

@@ -36,6 +36,9 @@ module promises (
         assume (who < `AXES);
     end
 
+    // What the memory of the segments gives does not matter here: any word in any clock.
+    // (* free = "dut.store.segments_read_data" *)
+
     // ---- What the parts are told. Bit i is axis i's.
 
     (* inside = "dut.pulser_*.frozen" *) wire [`AXES-1:0] pulser_frozen;
@@ -68,6 +71,7 @@ module promises (
 
     // ---- What the last clock was.
 
+    reg asked = 0;                   // `who` by the start that was taken last
     reg first_clock = 1, was_frozen = 0, was_fault = 0, was_enabled = 0, was_breaking = 0, was_cleared = 0;
     reg was_strobe = 0, was_start = 0, was_armed = 0, was_started = 0, was_starts = 0, was_halted = 0, was_ramp = 0;
     reg was_clearing = 0, was_tick_0 = 0, was_tick_1 = 0;
@@ -80,6 +84,7 @@ module promises (
         {was_strobe, was_start, was_armed, was_started} <= {strobe, start, armed, started};
         {was_starts, was_halted, was_ramp, was_clearing} <= {starts, halted, ramp, clearing};
         {was_tick_0, was_tick_1} <= {tick_0, tick_1};
+        if (start) asked <= (start_mask >> who) & 1;
         was_breaking <= put_valid & put_axis >= `AXES & !fault;
         was_cleared <= strobe & clearing;
     end
@@ -103,7 +108,7 @@ module promises (
 
         promise_12_own_requests: assert (requests == (phase_start ? events : 0) && requests_back == backward);
         promise_12_own_direction: assert (signs == (strobe ? events : 0) && signs_back == backward);
-        promise_12_starts_are_of_the_mask: assert (!starts || going && (lane & mask) != 0);
+        promise_12_starts_who_is_asked_to: assert (!mine || starts == (going & asked));
         promise_12_on_one_tick: assert (!started || strobe && armed);
 
         promise_13_inactive: assert (!first_clock || {step, dir, enabled, fault, halted, started, culprits} == 0 && idle);
@@ -156,7 +161,9 @@ module promises (
     (* inside = "dut.stops.found_freezing" *) wire found_freezing;
     (* inside = "dut.watch.round" *) wire [9:0] round;
     wire quiet = !word[6] & word[5:3] == word[2:0];
-    wire masked = (mask >> who) & 1;
+    // The mask goes round with the turns.
+    wire [3:0] round_by = who >= axis ? who - axis : who + `AXES - axis;
+    wire masked = (mask >> round_by) & 1;
     reg taken = 0;                   // a word, in this tick
     always @(posedge clock) taken <= take | taken & !strobe;
 
@@ -165,7 +172,7 @@ module promises (
         invariant_1: assert (at < CLOCKS && sub < PHASE_CLOCKS && phases < PHASES && phases * PHASE_CLOCKS + sub == next);
         invariant_2: assert (strobe == (at == CLOCKS - 1) && (phase_start == (at % PHASE_CLOCKS == 0) || first_clock));
         invariant_3: assert (beats[12:0] == (in_turn ? 13'd1 << (at % TURN) : 0)
-            && lane == (in_turn ? 32'd1 << (at / TURN) : 0) && (!in_turn || axis == at / TURN));
+            && axis == (in_turn ? at / TURN : 0) && lane == 32'd1 << axis);
         invariant_4: assert (was_beat[11:0] == 0 || at % TURN != 0);
         invariant_5: assert (axis != who || !in_turn || word_read == word);
         invariant_6: assert (!in_turn || at % TURN == 0 || !(committed && at % TURN < 8));
@@ -173,8 +180,9 @@ module promises (
         invariant_8: assert (!taken || !rest_1 && !rest_2);
         invariant_9: assert (!rest_2 || rest_1 && quiet);
         invariant_10: assert (!(had_turn && !active && !taken) || quiet);
-        invariant_11: assert (!(armed && had_turn && masked && !unfed && !held) || !word[6] && word[5:3] != word[2:0]);
-        invariant_12: assert (!(going && masked && !had_turn) || !word[6] && word[5:3] != word[2:0]);
+        invariant_11: assert (!(armed && had_turn && asked && !unfed && !held) || !word[6] && word[5:3] != word[2:0]);
+        invariant_12: assert (!(going && asked && !had_turn) || !word[6] && word[5:3] != word[2:0]);
+        invariant_20: assert (masked == asked || !armed && !going);
         invariant_13: assert (!going || !halted && !armed);
         invariant_14: assert ((!(halted || ramp || frozen) || fault) && (!found_freezing || found));
         invariant_15: assert (!clearing || settled && halted);

@@ -2,7 +2,7 @@
 //
 //   from outside   AXES; WIRING: 0 none, 1 a pair an axis, 2 one an axis, 3 one for all; LOW; LOOKS; `DUT, the
 //                  exported limits with these
-//   assumed        what turn/ and watch/promises.sv prove: axes change between turns, the first two ticks of a round are two
+//   assumed        what turn/ and watch/promises.sv prove: turns end apart, the first two ticks of a round are two
 //
 // All is said of one switch, `side` of axis `who`, which may be any: the runs of looks at it are counted here without a memory.
 
@@ -27,16 +27,16 @@ module promises (
     wire hit;
     `DUT dut (.*);
 
-    reg first_clock = 1, was_min = 0, was_max = 0;
+    reg first_clock = 1, was_min = 0, was_max = 0, was_turn_ends = 0;
     reg [2:0] was_next = 0;
     always @(posedge clock) begin
         first_clock <= 0;
-        {was_min, was_max, was_next} <= {tick_0, tick_1, axis_next};
+        {was_min, was_max, was_next, was_turn_ends} <= {tick_0, tick_1, axis_next, turn_ends};
     end
     always_comb begin
         assume (!tick_0 || !tick_1);
         assume (who < `AXES && (side == 0 || WIRING == PAIR));
-        assume (axis == was_next && (!turn_ends || axis_next != axis && axis < `AXES));
+        assume (axis == was_next && (!turn_ends || !was_turn_ends && axis < `AXES));
         // A round's tick changes in the clock after a strobe, where no turn ends.
         assume (!turn_ends || !first_clock && {tick_0, tick_1} == {was_min, was_max});
     end
@@ -70,7 +70,6 @@ module promises (
         promise_10_stops_as_it_is_reached: assert (WIRING == PAIR || !looks || hit == (goes & flips & believed_now));
         promise_10_believed_after_equal_looks: assert (against < LOOKS && (!flips || looks));
         promise_12_own_switch_only: assert (memory == was_memory || was_looks);
-        promise_12_no_word_read_as_it_is_written: assert (!writes || write_at != read_at);
         promise_13_inactive: assert (!first_clock || !hit || turn_ends);
     end
 
@@ -85,17 +84,13 @@ module promises (
     (* inside = "dut.now" *) wire now;
     (* inside = "dut.sync" *) wire dut_sync;
     (* inside = "dut.word" *) wire [7:0] word;
-    (* inside = "dut.switches.write_bits" *) wire [7:0] write_bits;
-    (* inside = "dut.switches.write_address" *) wire [3:0] write_at;
-    (* inside = "dut.switches.read_address" *) wire [3:0] read_at;
-    wire writes = write_bits != 0;
     // Its word was read in the last clock.
     wire looked_up = !first_clock & was_next == who & (was_max & WIRING == PAIR) == side;
 
 `ifdef INVARIANTS
     always_comb begin
         invariant_1: assert (memory == {believed, against[6:0]} && against < LOOKS);
-        invariant_2: assert (!looked_up || word == memory);
+        invariant_2: assert (!looked_up || was_turn_ends || word == memory);
         invariant_3: assert ({dut_sync, now} == {sync, seen});
     end
 `endif

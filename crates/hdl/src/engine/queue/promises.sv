@@ -45,18 +45,18 @@ module promises (
     wire ends = mine & beat[12];
     reg first_clock = 1, was_running = 0;
     reg [12:0] was_beat = 0;
-    reg [2:0] was_next = 0;
+    reg [2:0] was_next = 0, was_axis = 0;
     reg was_starts = 0, was_halted = 0, was_ramp = 0, was_clear = 0;
     always @(posedge clock) begin
         first_clock <= 0;
-        {was_beat, was_next} <= {beat[12:0], axis_next};
+        {was_beat, was_next, was_axis} <= {beat[12:0], axis_next, axis};
         {was_starts, was_halted, was_ramp, was_clear} <= {starts, halted, ramp, clear};
     end
     always_comb begin
         assume ((beat[12:0] & (beat[12:0] - 1)) == 0 && beat[12:1] == was_beat[11:0]);
         assume (first_clock ? axis == 0 && !in_turn : axis == was_next);
         assume (beat[11:0] == 0 || axis_next == axis);
-        assume (!beat[12] || axis_next != axis);
+        assume (!was_beat[12] || axis != was_axis || !in_turn);
         assume (was_beat[11:0] == 0 || {starts, halted, ramp, clear} == {was_starts, was_halted, was_ramp, was_clear});
         assume (!clear || halted);
     end
@@ -144,7 +144,7 @@ module promises (
             && (!slows || upward == known_back));
 
         promise_12_only_its_own_turn: assert (control == was_control || was_ends);
-        promise_12_no_word_read_as_it_is_written: assert (!writes || write_at != read_at);
+        promise_12_no_word_used_that_was_written: assert (!was_clash || !in_turn);
         promise_12_no_mark_read_as_it_is_written: assert (!mark_writes || mark_write_at != mark_read_at);
 
         promise_13_inactive: assert (!first_clock || {up, down, lost} == 0);
@@ -181,7 +181,8 @@ module promises (
     (* inside = "dut.lasts.write_address" *) wire [5:0] mark_write_at;
     (* inside = "dut.lasts.read_address" *) wire [5:0] mark_read_at;
     (* inside = "dut.lasts_read_data" *) wire mark_read;
-    wire writes = write_bits != 0;
+    reg was_clash = 0;               // a word was read as it was written
+    always @(posedge clock) was_clash <= write_bits != 0 & write_at == read_at;
 
     wire signed [31:0] room = {30'd0, spare};
 
@@ -190,7 +191,8 @@ module promises (
         invariant_1: assert (control[6:0] == {runs, committed[2:0], begun[2:0]});
         invariant_2: assert (control[7] == unfit && control[15:14] == {known, known_back});
         invariant_3: assert (control[13:8] == {written_off[2:0], told[2:0]});
-        invariant_4: assert (!mine || first_clock || word == control);
+        invariant_4: assert (!mine || first_clock || was_ends || word == control);
+        invariant_11: assert (!was_ends || first_clock || was_beat[12] && was_axis == who);
         invariant_5: assert (lasts == marks);
         invariant_6: assert (!mine || beat[12:1] == 0 || mark_read == lasts[begun_now[2:0]]);
         invariant_7: assert ((mine && beat[12:1] != 0 ? dut_committed == adds : !adds) && (!adds || beat[12:8] != 0));

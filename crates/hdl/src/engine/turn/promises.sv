@@ -36,10 +36,10 @@ module promises (
 
     reg first_clock = 1;
     reg [12:0] was_beat = 0;
-    reg [2:0] was_next = 0;
+    reg [2:0] was_next = 0, was_axis = 0;
     always @(posedge clock) begin
         first_clock <= 0;
-        {was_beat, was_next} <= {beat[12:0], axis_next};
+        {was_beat, was_next, was_axis} <= {beat[12:0], axis_next, axis};
     end
 
     // ---- The promises.
@@ -47,14 +47,15 @@ module promises (
     always_comb begin
         promise_11_every_axis_once_a_tick: assert (beat[12:0] == (in_turn ? 13'd1 << clock_of_turn : 0));
         promise_11_tail: assert (beat[16:13] == tail);
-        promise_12_whose_turn: assert (!in_turn || axis == number);
-        promise_12_lane_is_the_axis: assert (lane == (in_turn ? 32'd1 << number : 0));
+        promise_12_whose_turn: assert (axis == (in_turn ? number : 0));
+        promise_12_lane_is_the_axis: assert (lane == 32'd1 << axis);
         promise_12_one_after_the_other: assert ((beat[12:0] & (beat[12:0] - 1)) == 0 && beat[12:1] == was_beat[11:0]
             && (first_clock ? axis == 0 : axis == was_next));
         promise_12_nothing_else_in_a_turn: assert ((beat[11:0] == 0 || axis_next == axis)
-            && (!beat[12] || axis_next != axis));
+            && (!beat[12] || axis_next != axis || AXES == 1));
         promise_12_no_turn_at_a_strobe: assert (!strobe || beat[12:0] == 0);
-        promise_13_inactive: assert (!first_clock || beat == 0 && lane == 0);
+        promise_12_a_turn_of_its_own_after_a_pause: assert (!was_beat[12] || axis != was_axis || beat[12:0] == 0);
+        promise_13_inactive: assert (!first_clock || beat == 0);
     end
 
 `ifdef INVARIANTS
@@ -63,6 +64,7 @@ module promises (
         invariant_2: assert (in_turn ? since == at + 1 : since > TURNS);
         invariant_3: assert (in_turn ? was_beat == (clock_of_turn == 0 ? (at == 0 ? 0 : 13'h1000)
             : 13'd1 << (clock_of_turn - 1)) : was_beat == 0 || was_beat == 13'h1000);
+        invariant_5: assert (!was_beat[12] || first_clock || was_axis == (in_turn ? number : AXES) - 1);
         invariant_4: assert (was_next == axis || first_clock);
     end
 `endif

@@ -127,7 +127,7 @@ module promises (
         invariant_3: assert (read == (at == CLOCKS - 1 ? {tick, 1'b1, 4'd0} | (PHASES - 1)
             : {tick, 1'b0, 4'd0} | at / PHASE_CLOCKS));
         invariant_4: assert (beats[12:0] == (in_turn ? 13'd1 << (at % TURN) : 0)
-            && lane == (in_turn ? 32'd1 << (at / TURN) : 0));
+            && lane == 32'd1 << (in_turn ? at / TURN : 0));
         invariant_5: assert (beats[16:13] == {age == 4, age == 3, age == 2, age == 1});
         invariant_6: assert (age != 0 && (!turning || at < TURN || tick == 0 && !turning
             || age == (at < TURNS ? at % TURN + 1 : at - (TURNS - 1) > 15 ? 15 : at - (TURNS - 1))));
