@@ -13,7 +13,11 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_6_taken_in_its_turn", text: "turn_axis == put_axis", becomes: "turn_axis != put_axis" },
     Bug { breaks: "promise_6_nothing_taken_in_a_fault", text: "put_ready = !stops_fault &", becomes: "put_ready =" },
     Bug { breaks: "promise_6_no_such_axis_is_told", text: "(put_valid & nobody & !stops_fault) | ", becomes: "" },
-    Bug { breaks: "promise_6_something_to_start", text: "unfed <= unfed |", becomes: "unfed <= !put_valid & unfed |" },
+    Bug {
+        breaks: "promise_6_something_to_start",
+        text: "unfed <= unfed | (masked & queue_empty);",
+        becomes: "unfed <= unfed;",
+    },
     Bug { breaks: "promise_6_a_start_is_kept", text: "if (go | stops_fault) begin", becomes: "if (strobe) begin" },
     Bug { breaks: "promise_8_idle", text: "rest_2 & !armed & !pins_busy", becomes: "rest_2 & !pins_busy" },
     Bug { breaks: "promise_8_idle_is_empty", text: "rest_2 <= !active & rest_1;", becomes: "rest_2 <= 1'b1;" },
@@ -41,7 +45,7 @@ pub(super) fn proof() -> Proof {
         promises: Promises { text: include_str!("../../crates/hdl/src/engine/promises.sv") },
         cases: builds.into_iter().chain([shipped_engine()]).map(case).collect(),
         depth: 1,
-        reach: 120,
+        reach: 200,
         bugs: BUGS,
     }
 }
