@@ -10,7 +10,11 @@ const BUGS: &[Bug] = &[
         text: ".clock(clock),\n        .frozen(stops_frozen),",
         becomes: ".clock(clock),\n        .frozen(stops_ramp),",
     },
-    Bug { breaks: "promise_6_taken_in_its_turn", text: "turn_axis == put_axis", becomes: "turn_axis != put_axis" },
+    Bug {
+        breaks: "promise_6_taken_in_its_turn",
+        text: "turn_beat[7] & (turn_axis",
+        becomes: "turn_beat[6] & (turn_axis",
+    },
     Bug { breaks: "promise_6_nothing_taken_in_a_fault", text: "put_ready = !stops_fault &", becomes: "put_ready =" },
     Bug { breaks: "promise_6_no_such_axis_is_told", text: "(put_valid & nobody & !stops_fault) | ", becomes: "" },
     Bug {
@@ -18,7 +22,11 @@ const BUGS: &[Bug] = &[
         text: "unfed <= unfed | (masked & queue_empty);",
         becomes: "unfed <= unfed;",
     },
-    Bug { breaks: "promise_6_a_start_is_kept", text: "if (go | stops_fault) begin", becomes: "if (strobe) begin" },
+    Bug {
+        breaks: "promise_6_a_start_is_kept",
+        text: "if (go | stops_fault) begin",
+        becomes: "if (turn_beat[3]) begin",
+    },
     Bug { breaks: "promise_8_idle", text: "rest_2 & !armed & !pins_busy", becomes: "rest_2 & !pins_busy" },
     Bug { breaks: "promise_8_idle_is_empty", text: "rest_2 <= !active & rest_1;", becomes: "rest_2 <= 1'b1;" },
     Bug {
