@@ -13,16 +13,25 @@
 //!
 //! To add a module: its `promises.sv`, a file in `proofs/` that lists its cases and bugs, a line in [`all`].
 
+mod adder;
 mod axis;
 mod builds;
 mod edge;
+mod engine;
+mod limits;
 mod promises;
+mod pulser;
+mod queue;
 mod sequencer;
 mod shaper;
 mod six_axis;
 mod solver;
+mod stops;
 mod table;
 mod tick;
+mod turn;
+mod watch;
+mod wheel;
 
 pub use promises::Promises;
 pub use solver::{Question, ask, tools};
@@ -70,6 +79,11 @@ pub struct Bug {
 }
 
 impl Case {
+    /// How many axes a star in `promises.sv` stands for: the number `AXES`.
+    pub fn axes(&self) -> usize {
+        self.numbers.iter().find(|(name, _)| *name == "AXES").and_then(|(_, axes)| axes.parse().ok()).unwrap_or(1)
+    }
+
     /// The same Verilog with a bug planted.
     ///
     /// # Panics
@@ -88,5 +102,21 @@ impl Case {
 
 /// Every proof, the slowest first.
 pub fn all() -> Vec<Proof> {
-    vec![shaper::proof(), axis::proof(), sequencer::proof(), tick::proof(), edge::proof(), six_axis::proof()]
+    vec![
+        shaper::proof(),
+        axis::proof(),
+        sequencer::proof(),
+        tick::proof(),
+        edge::proof(),
+        six_axis::proof(),
+        pulser::proof(),
+        stops::proof(),
+        watch::proof(),
+        queue::proof(),
+        limits::proof(),
+        turn::proof(),
+        wheel::proof(),
+        adder::proof(),
+        engine::proof(),
+    ]
 }

@@ -2,6 +2,7 @@
 
 use super::builds::{beat, beat_name, shipped, small};
 use super::{Bug, Case, Promises, Proof};
+use carrystep_spec::Build;
 
 const BUGS: &[Bug] = &[
     Bug { breaks: "promise_6_nothing_lost", text: "emit <= tick_crossed;", becomes: "emit <= tick_crossed & !frozen;" },
@@ -18,11 +19,11 @@ const BUGS: &[Bug] = &[
 
 pub(super) fn proof() -> Proof {
     let builds = [small(4), small(16), small(1), shipped()];
-    let case = |(build, verilog)| Case {
-        name: beat_name(&build),
+    let case = |(build, verilog): (Build, _)| Case {
+        name: beat_name(&build.timebase),
         dut: "carrystep_step_edge".into(),
         verilog,
-        numbers: beat(&build),
+        numbers: beat(&build.timebase),
     };
     Proof {
         module: "edge",

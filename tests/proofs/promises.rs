@@ -17,6 +17,15 @@ impl Promises {
         self.labelled("cover (").collect()
     }
 
+    /// The text with each cover as the assertion that it is never reached, which must fail.
+    pub fn covers_as_assertions(&self) -> String {
+        let turned = |line: &str| match line.split_once(": cover (").zip(line.strip_suffix(");")) {
+            Some(((label, what), _)) => format!("{label}: assert (!({}));\n", &what[..what.len() - 2]),
+            None => format!("{line}\n"),
+        };
+        self.text.lines().map(turned).collect()
+    }
+
     /// The promises that are proved here, by number.
     pub fn numbers(&self) -> Vec<u32> {
         let mut numbers: Vec<u32> = self.labels().into_iter().filter_map(number).collect();
@@ -26,18 +35,25 @@ impl Promises {
     }
 
     /// Names that stand for a signal inside the module, and that signal: `(* inside = "dut.busy" *) wire [16:0] busy;`.
-    /// A star is all six axes, the highest first.
-    pub fn inside(&self) -> Vec<(&'static str, String)> {
+    /// A star is all axes, the highest first.
+    pub fn inside(&self, axes: usize) -> Vec<(&'static str, String)> {
         let declared = self.text.lines().filter_map(|line| line.trim().strip_prefix("(* inside = \"")?.split_once('"'));
         declared
             .map(|(signal, rest)| {
                 let name = rest.trim_end_matches(';').rsplit(' ').next().unwrap_or(rest);
                 let each = |axis: usize| format!("\\{}", signal.replace('*', &axis.to_string()));
                 let all: Vec<String> =
-                    if signal.contains('*') { (0..6).rev().map(each).collect() } else { vec![each(0)] };
+                    if signal.contains('*') { (0..axes).rev().map(each).collect() } else { vec![each(0)] };
                 (name, all.join(","))
             })
             .collect()
+    }
+
+    /// Signals inside the module that may be anything in any clock, so that what drives them is left out:
+    /// `// (* free = "dut.word" *)`. What holds then holds all the more.
+    pub fn free(&self) -> Vec<&'static str> {
+        let told = self.text.lines().filter_map(|line| line.trim().strip_prefix("// (* free = \"")?.split_once('"'));
+        told.map(|(signal, _)| signal).collect()
     }
 
     fn labelled(&self, kind: &'static str) -> impl Iterator<Item = &'static str> {

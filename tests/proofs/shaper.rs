@@ -1,7 +1,7 @@
 //! The shaper's proof: eleven pin timings, from the shortest to the longest that can be built.
 
-use super::builds::{shipped, small};
-use super::{Bug, Case, Promises, Proof};
+use super::builds::{pin_cases, shipped, small};
+use super::{Bug, Promises, Proof};
 
 const BUGS: &[Bug] = &[
     Bug { breaks: "promise_1_width", text: "busy != GAP)", becomes: "busy != GAP + BUSY_ONE)" },
@@ -29,22 +29,11 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof() -> Proof {
-    let mut cases: Vec<Case> = Vec::new();
-    for (build, verilog) in [small(16), shipped()] {
-        for pins in build.pins {
-            let name = format!("w{}_s{}_d{}_h{}", pins.width, pins.gap, pins.setup, pins.hold);
-            let numbers = [("W", pins.width), ("S", pins.gap), ("D", pins.setup), ("H", pins.hold)];
-            let numbers = numbers.into_iter().map(|(name, clocks)| (name, clocks.to_string())).collect();
-            let dut = format!("carrystep_shaper_{name}");
-            if cases.iter().all(|case| case.dut != dut) {
-                cases.push(Case { name, dut, verilog: verilog.clone(), numbers });
-            }
-        }
-    }
+    let builds = [small(16), shipped()].map(|(build, verilog)| (build.pins.to_vec(), verilog));
     Proof {
         module: "shaper",
         promises: Promises { text: include_str!("../../crates/hdl/src/shaper/promises.sv") },
-        cases,
+        cases: pin_cases("carrystep_shaper", &builds),
         depth: 1,
         reach: 20,
         bugs: BUGS,

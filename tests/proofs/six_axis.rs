@@ -2,6 +2,7 @@
 
 use super::builds::{beat_name, shipped, small};
 use super::{Bug, Case, Promises, Proof};
+use carrystep_spec::{AXES, Build};
 
 const BUGS: &[Bug] = &[
     Bug { breaks: "promise_12_any_fault_stops_all", text: "frozen = broken;", becomes: "frozen = 1'b0;" },
@@ -21,11 +22,11 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof() -> Proof {
-    let case = |(build, verilog)| Case {
-        name: beat_name(&build),
+    let case = |(build, verilog): (Build, _)| Case {
+        name: beat_name(&build.timebase),
         dut: "carrystep_six_axis".into(),
         verilog,
-        numbers: Vec::new(),
+        numbers: vec![("AXES", AXES.to_string())],
     };
     Proof {
         module: "six_axis",

@@ -2,6 +2,7 @@
 
 use super::builds::{beat, beat_name, shipped, small};
 use super::{Bug, Case, Promises, Proof};
+use carrystep_spec::Build;
 
 const BUGS: &[Bug] = &[
     Bug { breaks: "promise_11_strobe_ends_the_tick", text: "sub_over & phase_over", becomes: "phase_over" },
@@ -12,11 +13,11 @@ const BUGS: &[Bug] = &[
 
 pub(super) fn proof() -> Proof {
     let builds = [small(4), small(16), small(1), shipped()];
-    let case = |(build, verilog)| Case {
-        name: beat_name(&build),
+    let case = |(build, verilog): (Build, _)| Case {
+        name: beat_name(&build.timebase),
         dut: "carrystep_tick".into(),
         verilog,
-        numbers: beat(&build),
+        numbers: beat(&build.timebase),
     };
     Proof {
         module: "tick",

@@ -1,0 +1,92 @@
+// The one adder: what a turn makes of its words: promises 6, 7, 11 and 13. Without bound.
+//
+//   from outside   `DUT, the exported adder
+//   assumed        what turn/promises.sv proves: beats in a row; and in a turn what is counted stands still
+//
+// The memory gives the halves of A, J, V and P in two rows; here they are put together and summed in 64 bits.
+
+module promises (
+    input wire clock,
+    input wire [16:0] beat,
+    input wire [31:0] word,
+    input wire [31:0] put,
+    input wire counts,
+    input wire lost,
+    input wire up,
+    input wire down,
+    input wire wipe
+);
+    wire [31:0] sum;
+    wire ended, overflow, turned, crosses, back, still, least;
+    wire [3:0] q;
+    `DUT dut (.*);
+
+    // ---- A turn: a beat after the other; the words that came in each.
+
+    reg first_clock = 1;
+    reg [16:0] was_beat = 0;
+    reg [31:0] low_a = 0, low_j = 0, low_v = 0, low_p = 0, n = 0, pos = 0, high_j = 0, high_a = 0, high_v = 0, high_p = 0;
+    reg [31:0] was_put = 0;
+    reg was_counts = 0, was_lost = 0, was_up = 0, was_down = 0, was_wipe = 0;
+    always @(posedge clock) begin
+        first_clock <= 0;
+        was_beat <= beat;
+        {was_counts, was_lost, was_up, was_down, was_wipe} <= {counts, lost, up, down, wipe};
+        if (beat[1]) low_a <= word;
+        if (beat[2]) low_j <= word;
+        if (beat[3]) low_v <= word;
+        if (beat[4]) low_p <= word;
+        if (beat[5]) n <= word;
+        if (beat[6]) pos <= word;
+        if (beat[7]) {high_j, was_put} <= {word, put};
+        if (beat[8]) high_a <= word;
+        if (beat[9]) high_v <= word;
+        if (beat[10]) high_p <= word;
+    end
+    always_comb begin
+        assume ((beat[12:0] & (beat[12:0] - 1)) == 0 && beat[16:1] == was_beat[15:0]);
+        assume (was_beat[11:5] == 0 || {counts, lost, up, down, wipe} == {was_counts, was_lost, was_up, was_down, was_wipe});
+        assume (!(lost && counts) && !(up && down));
+    end
+
+    wire [63:0] a = {high_a, low_a}, j = {high_j, low_j}, v = {high_v, low_v}, p = {high_p, low_p};
+    wire signed [64:0] faster = $signed({v[63], v}) + $signed({a[63], a});
+    wire [64:0] further = {1'b0, p} + {1'b0, v};
+    wire [63:0] next_a = a + j;
+    wire [31:0] counted = n - counts + lost;
+
+    // ---- The promises.
+
+    always_comb begin
+        promise_6_a_plus_j: assert ((!beat[4] || sum == low_a + low_j) && (!beat[10] || sum == next_a[63:32]));
+        promise_6_v_plus_a: assert ((!beat[5] || sum == low_a + low_v) && (!beat[11] || sum == faster[63:32]));
+        promise_6_p_plus_v: assert ((!beat[6] || was_wipe || sum == low_p + low_v)
+            && (!beat[12] || wipe || sum == further[63:32]));
+        promise_6_wiped: assert ((!beat[6] || !was_wipe || sum == 0) && (!beat[12] || !wipe || sum == 0));
+        promise_6_carry_is_a_step: assert (!beat[12] || crosses == (v[63] ? !further[64] : further[64]));
+        promise_6_overspeed: assert (!beat[12] || overflow == (faster[64] != faster[63]));
+        promise_6_least: assert (!beat[12] || least == (v == 64'h8000_0000_0000_0000));
+        promise_6_ticks_and_discarded: assert (!beat[7] || sum == counted);
+        promise_6_over_after_the_last_tick: assert (!beat[12] || !counts || ended == (n == 0));
+        promise_6_put_as_it_is: assert (!beat[9] || sum == was_put);
+        promise_7_position: assert (!beat[8] || sum == pos + up - down);
+        promise_10_ramp_turns_where_the_sign_does: assert (!beat[12] || turned == (faster[63] != v[63]));
+        promise_11_sign: assert (!beat[12] || {back, still} == {v[63], v == 0});
+        promise_11_direction_stays: assert (beat[12] || first_clock || back == was_back);
+        promise_11_phase_stays: assert (was_beat[16:13] != 0 || first_clock || q == was_q);
+        promise_13_inactive: assert (!first_clock || {ended, overflow, turned, crosses, back, still, least, q} == 0);
+    end
+
+    reg was_back = 0;
+    reg [3:0] was_q = 0;
+    always @(posedge clock) {was_back, was_q} <= {back, q};
+
+    // ---- None of it is empty.
+
+    always_comb begin
+        cover_6_carry_between_the_halves: cover (beat[12] && crosses && low_p + low_v < low_p && high_v == 0);
+        cover_6_overspeed: cover (beat[12] && overflow && !back);
+        cover_7_step_back: cover (beat[8] && down && sum == 32'hffffffff);
+        cover_11_least: cover (beat[12] && least);
+    end
+endmodule

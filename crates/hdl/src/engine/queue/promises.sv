@@ -1,0 +1,224 @@
+// Which segment runs and which wait: promises 5, 6, 7, 10, 12 and 13 of the queue, for any axis. Without bound.
+//
+//   from outside   `DUT, the exported queue
+//   assumed        what turn/ and engine/promises.sv prove: beats in a row, of one axis; stops change between turns;
+//                  what is taken is taken in beat 7 where there is room, what starts has something to start.
+//                  And at most three pulses more than turns in any time: docs/promises.md says why
+//
+// All is said of one axis, `who`, which may be any; and segments are counted, not numbered modulo 8.
+
+module promises (
+    input wire clock,
+    input wire [16:0] beat,
+    input wire [2:0] axis,
+    input wire [2:0] axis_next,
+    input wire starts,
+    input wire halted,
+    input wire ramp,
+    input wire clear,
+    input wire take,
+    input wire commit,
+    input wire last,
+    input wire ended,
+    input wire overflow,
+    input wire least,
+    input wire turned,
+    input wire back,
+    input wire [2:0] pulses,
+    input wire [2:0] losses,
+    input wire rises,        // a pulse of `who` in this clock
+    input wire rises_back,
+    input wire discards      // one of its steps is discarded
+);
+    (* anyconst *) reg [2:0] who;
+
+    wire [2:0] live, fresh;
+    wire full, empty, running, sound, slows, upward, steady, moves, goes_on, too_fast, dry, up, down, lost;
+    `DUT dut (.*);
+
+    // ---- The beats of a turn, and what holds still in it.
+
+    wire mine = axis == who;
+    wire in_turn = beat[12:0] != 0;
+    wire looks = mine & beat[4];     // at the pulses,
+    wire asked = mine & beat[12:5] != 0;   // and tells what it saw
+    wire ends = mine & beat[12];
+    reg first_clock = 1, was_running = 0;
+    reg [12:0] was_beat = 0;
+    reg [2:0] was_next = 0, was_axis = 0;
+    reg was_starts = 0, was_halted = 0, was_ramp = 0, was_clear = 0;
+    always @(posedge clock) begin
+        first_clock <= 0;
+        {was_beat, was_next, was_axis} <= {beat[12:0], axis_next, axis};
+        {was_starts, was_halted, was_ramp, was_clear} <= {starts, halted, ramp, clear};
+    end
+    always_comb begin
+        assume ((beat[12:0] & (beat[12:0] - 1)) == 0 && beat[12:1] == was_beat[11:0]);
+        assume (first_clock ? axis == 0 && !in_turn : axis == was_next);
+        assume (beat[11:0] == 0 || axis_next == axis);
+        assume (!was_beat[12] || axis != was_axis || !in_turn);
+        assume (was_beat[11:0] == 0 || {starts, halted, ramp, clear} == {was_starts, was_halted, was_ramp, was_clear});
+        assume (!clear || halted);
+    end
+
+    // ---- Segments of `who`, counted: committed, begun. Their marks, by place.
+
+    reg [31:0] committed = 0, begun = 0;
+    reg [7:0] marks = 0;
+    reg adds = 0;                    // committed in this turn
+    wire begins = mine & in_turn & starts;
+    wire [31:0] begun_now = begun + begins;
+    wire [31:0] waiting = committed - begun_now;
+    wire [7:0] place = 8'd1 << (committed[2:0] + 3'd1);
+    always_comb begin
+        assume (!take || beat[7] && !full);
+        assume (!begins || committed != begun && !runs && !halted);
+    end
+
+    // ---- What an axis does in its turn, as docs/clock-by-clock.md has it.
+
+    reg runs = 0, unfit = 0, known = 0, known_back = 0;
+    wire on = (runs | begins) & !halted;
+    wire fine = on & !unfit & !least;
+    wire mark = marks[begun_now[2:0]];
+    wire over = ended & mark;
+    wire follows = ended & !mark & waiting != 0;
+    wire rests = ramp ? known & turned : over;
+    wire [31:0] begun_then = begun_now + (fine & !ramp & follows);
+    always @(posedge clock) begin
+        if (mine && take && commit) begin
+            adds <= 1;
+            marks <= last ? marks | place : marks & ~place;
+        end
+        if (ends) begin
+            begun <= clear ? 0 : begun_then;
+            committed <= clear ? 0 : committed + adds;
+            adds <= 0;
+            runs <= fine & !rests;
+            unfit <= fine & !rests & !ramp & !follows & overflow;
+            known <= fine & !rests & ramp;
+            if (!(ramp & known)) known_back <= back;
+        end
+    end
+
+    // ---- Pulses and discarded steps of `who`, and how many of them were told to the memory.
+
+    reg [31:0] at = 0, told = 0, given_up = 0, written_off = 0;
+    reg [1:0] spare = 3;
+    reg [2:0] spare_losses = 7;
+    wire [31:0] told_then = up ? told + 1 : down ? told - 1 : told;
+    wire [31:0] written_off_then = written_off + lost;
+    always_comb begin
+        assume (!mine || !in_turn || {losses, pulses} == {given_up[2:0], at[2:0]});
+        assume (!rises || spare != 0);
+        assume (!discards || given_up - written_off != 7);
+    end
+    always @(posedge clock) begin
+        at <= !rises ? at : rises_back ? at - 1 : at + 1;
+        given_up <= given_up + discards;
+        spare <= spare - rises + (looks & spare != 3);
+        if (ends) {told, written_off} <= {told_then, written_off_then};
+    end
+    wire signed [31:0] behind = at - told;
+    wire signed [31:0] behind_then = at - (asked ? told_then : told);
+
+    // ---- The promises.
+
+    always_comb begin
+        promise_5_halted_runs_nothing: assert (!halted || !{running, sound, moves, goes_on, too_fast, dry});
+
+        promise_6_never_overtaken: assert (waiting <= 7 && committed - begun <= 7);
+        promise_6_in_order: assert (!mine || !in_turn || live == begun_now[2:0] && fresh == committed[2:0] + 3'd1);
+        promise_6_full: assert (!mine || !in_turn || full == (waiting == 7));
+        promise_6_empty: assert (!mine || !in_turn || empty == (waiting == 0));
+        promise_6_runs_as_told: assert (!mine || !in_turn || {running, moves, too_fast} == {on, fine, on & !fine});
+        promise_6_goes_on: assert (!ends || goes_on == (fine & !rests));
+        promise_6_discarded_are_written_off: assert (!asked || lost == (was_unseen && !on));
+        promise_6_none_written_off_twice: assert (given_up - written_off <= 7);
+
+        promise_7_never_far_behind: assert (!looks || behind >= -3 && behind <= 3);
+        promise_7_told_as_pulsed: assert (!asked || {up, down} == {was_behind > 0, was_behind < 0});
+
+        promise_10_dry_is_told: assert (!ends || dry == (fine & !ramp & ended & !mark & waiting == 0));
+        promise_10_ramp_as_defined: assert (!mine || !in_turn || slows == (ramp & known) && steady == (ramp & !known)
+            && (!slows || upward == known_back));
+
+        promise_12_only_its_own_turn: assert (control == was_control || was_ends);
+        promise_12_no_word_used_that_was_written: assert (!was_clash || !in_turn);
+        promise_12_no_mark_read_as_it_is_written: assert (!mark_writes || mark_write_at != mark_read_at);
+
+        promise_13_inactive: assert (!first_clock || {up, down, lost} == 0);
+    end
+
+    reg was_unseen = 0, was_ends = 0;
+    reg [15:0] was_control = 0;
+    reg signed [31:0] was_behind = 0;
+    always @(posedge clock) begin
+        was_ends <= ends;
+        was_control <= control;
+        if (looks) begin
+            was_unseen <= given_up != written_off;
+            was_behind <= behind;
+        end
+    end
+
+    // ---- Why they hold: the words of `who` in memory, seen through a port of their own.
+
+    wire [15:0] control;
+    wire [7:0] lasts;
+    look #("\\dut.control.words", 3, 16) at_control (1'b0, 1'b1, who, control);
+    genvar slot;
+    generate for (slot = 0; slot < 8; slot = slot + 1) begin : each
+        look #("\\dut.lasts.words", 6, 1) at_lasts (1'b0, 1'b1, {who, slot[2:0]}, lasts[slot]);
+    end endgenerate
+
+    (* inside = "dut.word" *) wire [15:0] word;
+    (* inside = "dut.committed" *) wire dut_committed;
+    (* inside = "dut.control.write_bits" *) wire [15:0] write_bits;
+    (* inside = "dut.control.write_address" *) wire [2:0] write_at;
+    (* inside = "dut.control.read_address" *) wire [2:0] read_at;
+    (* inside = "dut.lasts.write_bits" *) wire mark_writes;
+    (* inside = "dut.lasts.write_address" *) wire [5:0] mark_write_at;
+    (* inside = "dut.lasts.read_address" *) wire [5:0] mark_read_at;
+    (* inside = "dut.lasts_read_data" *) wire mark_read;
+    reg was_clash = 0;               // a word was read as it was written
+    always @(posedge clock) was_clash <= write_bits != 0 & write_at == read_at;
+
+    wire signed [31:0] room = {30'd0, spare};
+
+`ifdef INVARIANTS
+    always_comb begin
+        invariant_1: assert (control[6:0] == {runs, committed[2:0], begun[2:0]});
+        invariant_2: assert (control[7] == unfit && control[15:14] == {known, known_back});
+        invariant_3: assert (control[13:8] == {written_off[2:0], told[2:0]});
+        invariant_4: assert (!mine || first_clock || was_ends || word == control);
+        invariant_11: assert (!was_ends || first_clock || was_beat[12] && was_axis == who);
+        invariant_5: assert (lasts == marks);
+        invariant_6: assert (!mine || beat[12:1] == 0 || mark_read == lasts[begun_now[2:0]]);
+        invariant_7: assert ((mine && beat[12:1] != 0 ? dut_committed == adds : !adds) && (!adds || beat[12:8] != 0));
+        invariant_8: assert (behind_then <= 3 - room && behind_then >= room - 3);
+        invariant_9: assert (!adds || waiting < 7);
+        invariant_10: assert (!asked || !was_unseen || given_up != written_off);
+    end
+`endif
+
+    // ---- Where a run is looked for: turns of axis 0 as fast as they may come.
+
+`ifndef INVARIANTS
+    reg [3:0] clock_of_turn = 14;
+    always @(posedge clock) clock_of_turn <= clock_of_turn >= 13 ? 0 : clock_of_turn + 1;
+    always_comb begin
+        assume (who == 0 && beat == (clock_of_turn < 13 ? 17'd1 << clock_of_turn : 0));
+        assume (axis == (clock_of_turn == 13));
+    end
+`endif
+
+    // ---- None of it is empty.
+
+    always_comb begin
+        cover_6_last_is_over: cover (ends && over && fine);
+        cover_6_one_begun_one_waits: cover (begun == 1 && committed == 2);
+        cover_7_two_behind: cover (behind == 2 && told == 1);
+        cover_10_dry: cover (dry && ends);
+    end
+endmodule
