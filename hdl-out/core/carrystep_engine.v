@@ -1286,7 +1286,7 @@ module carrystep_watch (
     assign pressed = held & now;
     assign missed = silent & (WATCHDOG != 12'd0);
     assign enabled = power;
-    assign warm = is_warm;
+    assign warm = is_warm & power;
     assign tick_0 = round == FIRST_TICK;
     assign tick_1 = round == ONE_TICK;
 

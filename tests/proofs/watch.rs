@@ -22,6 +22,7 @@ const BUGS: &[Bug] = &[
         text: "if (!power) begin",
         becomes: "if (!power & idle) begin",
     },
+    Bug { breaks: "promise_14_warm_is_powered", text: "is_warm & power;", becomes: "is_warm;" },
 ];
 
 pub(super) fn proof() -> Proof {

@@ -113,7 +113,7 @@ module promises (
 
         promise_13_inactive: assert (!first_clock || {step, dir, enabled, fault, halted, started, culprits} == 0 && idle);
 
-        promise_14_start_only_warm: assert (!start || enable && warm && strobe);
+        promise_14_start_only_warm: assert (!start || enable && enabled && warm && strobe);
         promise_14_nothing_moves_unasked: assert (!armed || was_armed || was_start);
     end
 

@@ -115,7 +115,7 @@ impl Logic for Watch {
         if !self.power.q.val() {
             self.warmth.d.next = self.no_round.val();
         }
-        self.warm.next = self.is_warm.val();
+        self.warm.next = self.is_warm.val() & self.power.q.val();
         self.enabled.next = self.power.q.val();
     }
 }

@@ -35,7 +35,7 @@ impl Watch {
 
     /// The drivers have been powered for long enough.
     pub(super) const fn is_warm(&self, guard: &Guard) -> bool {
-        self.warm == guard.enable
+        self.enabled && self.warm == guard.enable
     }
 
     pub(super) fn clock(&mut self, guard: &Guard, inputs: &EngineInputs, strobe: bool, idle: bool) {

@@ -62,7 +62,8 @@ module promises (
         promise_14_powered_where_asked: assert (!was_enable || enabled);
         promise_14_powered_until_idle: assert (!was_enabled || enabled || was_idle && !was_enable);
         promise_14_warm_not_before_its_time: assert (!warm || WARM == 0 || powered > (WARM - 1) * ROUND);
-        promise_14_warm_in_time: assert (warm || powered < WARM * ROUND);
+        promise_14_warm_is_powered: assert (!warm || enabled);
+        promise_14_warm_in_time: assert (warm || !enabled || powered < WARM * ROUND);
 
         promise_12_one_round_for_all: assert (tick_0 == (tick == 0) && tick_1 == (tick == 1));
     end
