@@ -79,7 +79,7 @@ fn beside(rows: &[Measured]) -> String {
             (cells, format!("| {} | {} | {} | {queue} | {cells} | {mhz} |\n", peer.core, peer.ramp, peer.pins))
         })
         .collect();
-    let ours = ROWS.iter().zip(rows).filter(|(row, _)| row.part == ROWS[0].part);
+    let ours = ROWS.iter().zip(rows).filter(|(row, _)| row.part == ROWS[0].part && row.always);
     lines.extend(ours.map(|(row, found)| {
         let (size, us) = (found.size, row.tick_ns / 1000);
         let name = format!("**carrystep**, {} axes, {us} us, guard included", row.axes);
