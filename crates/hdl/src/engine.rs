@@ -369,47 +369,4 @@ impl<const N: usize> Logic for Engine<N> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use carrystep_spec::engine::EngineError;
-    use carrystep_spec::{AXES, Build, PinTiming, StartPhase, Timebase};
-
-    fn build() -> EngineBuild {
-        let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();
-        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-        EngineBuild::minimal(&build, 1 << 40)
-    }
-
-    /// As many axes as asked for, in a tick that holds them.
-    fn of_axes(axes: usize) -> EngineBuild {
-        let mut build = build();
-        build.pins.resize(axes, PinTiming::SHORTEST);
-        build.guard.stop.resize(axes, 1);
-        build.timebase = Timebase::new(56_000_000, 2000, 16).unwrap();
-        build
-    }
-
-    #[test]
-    fn engine_synthesizes() {
-        crate::sim::assert_synthesizes(Engine::<1>::new(&of_axes(1)).unwrap(), "carrystep_engine_1");
-        crate::sim::assert_synthesizes(Engine::<6>::new(&build()).unwrap(), "carrystep_engine_6");
-        crate::sim::assert_synthesizes(Engine::<8>::new(&of_axes(8)).unwrap(), "carrystep_engine_8");
-    }
-
-    #[test]
-    fn there_are_engines_of_one_to_eight_axes() {
-        for axes in 1..=8 {
-            assert!(engine(&of_axes(axes)).is_ok(), "{axes} axes");
-        }
-        for axes in [0, 9] {
-            assert_eq!(engine(&of_axes(axes)).err(), Some(HdlError::Engine(EngineError::Axes(axes))));
-        }
-    }
-
-    #[test]
-    fn a_tick_that_is_too_short_is_refused() {
-        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
-        let refused = engine(&EngineBuild { timebase, ..build() });
-        assert!(matches!(refused.err(), Some(HdlError::Engine(EngineError::Schedule { .. }))));
-    }
-}
+mod tests;
