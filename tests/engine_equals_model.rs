@@ -163,6 +163,8 @@ struct Seen {
     /// Edges after a stop was called: of ramps.
     ramped: u64,
     cleared: u64,
+    /// Axes that have met the limit that they waited for, while others waited on.
+    homed: u64,
 }
 
 impl Seen {
@@ -173,6 +175,7 @@ impl Seen {
             let rising = (now.step & !before.step).count_ones();
             self.edges += u64::from(rising);
             self.together += u64::from(rising > 1);
+            self.homed += u64::from(now.homing != 0 && before.homing & !now.homing != 0);
             match (before.fault, now.fault) {
                 (None, Some((cause, _))) => self.causes[cause as usize] += 1,
                 (Some((Cause::Stop, _)), Some(_)) => self.ramped += u64::from(rising),
@@ -184,8 +187,8 @@ impl Seen {
     }
 
     fn assert_everything(&self) {
-        let Self { clocks, edges, together, causes, ramped, cleared } = *self;
-        let all = [[clocks, edges, together, ramped, cleared].as_slice(), &causes].concat();
+        let Self { clocks, edges, together, causes, ramped, cleared, homed } = *self;
+        let all = [[clocks, edges, together, ramped, cleared, homed].as_slice(), &causes].concat();
         assert!(all.iter().all(|count| *count > 0), "random programs miss something: {self:?}");
     }
 }

@@ -72,6 +72,8 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         5 => (0..=all(axes)).prop_map(|mask| (Event::LimitMax(mask), Event::LimitMax(0))),
         3 => Just((Event::Stop(true), Event::Stop(false))),
         1 => Just((Event::Enable(false), Event::Enable(true))),
+        6 => (1..=all(axes)).prop_map(|mask| (Event::Home(mask), Event::Home(0))),
+        1 => Just((Event::Broken, Event::Kick)),
     ];
     let length = prop_oneof![1 => 1_u64..10, 2 => 100_u64..400, 4 => 500_u64..5000];
     (what, 0_u64..60_000, length).prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])

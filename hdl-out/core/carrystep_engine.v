@@ -316,6 +316,7 @@ module carrystep_queue (
     input  wire         halted,
     input  wire         ramp,
     input  wire         clear,
+    input  wire         empties,
     input  wire         take,
     input  wire         commit,
     input  wire         last,
@@ -329,6 +330,7 @@ module carrystep_queue (
     output wire   [2:0] live,
     output wire   [2:0] fresh,
     output wire         full,
+    output wire   [2:0] room,
     output wire         empty,
     output wire         running,
     output wire         sound,
@@ -396,6 +398,7 @@ module carrystep_queue (
     assign live = live_now;
     assign fresh = fresh_now;
     assign full = fresh_now == live_now;
+    assign room = live_now + ~newest;
     assign empty = none;
     assign running = runs;
     assign sound = fits;
@@ -442,6 +445,9 @@ module carrystep_queue (
         next_live = live_now;
         if (moves & follows) begin
             next_live = live_now + ONE;
+        end
+        if (empties) begin
+            next_live = newest;
         end
         next_newest = newest;
         if (committed) begin
@@ -1109,6 +1115,56 @@ module carrystep_limits (
     always @(posedge clock) begin
         sync <= (chosen != 6'd0) ^ (LOW != 1'b0);
         now <= sync;
+    end
+endmodule
+
+// 
+module carrystep_homes (
+    input  wire         clock,
+    input  wire         set,
+    input  wire   [5:0] mask,
+    input  wire         turn_ends,
+    input  wire   [5:0] lane,
+    input  wire         hit,
+    input  wire         goes_on,
+    output wire   [5:0] axes,
+    output wire         waits,
+    output wire         slows
+);
+    localparam [5:0] NONE = 6'd0;
+
+    reg [5:0] waiting = 6'd0;
+    reg [5:0] slowing = 6'd0;
+    reg [5:0] slower;
+
+    wire mine = (waiting & lane) != 6'd0;
+    wire mine_slows = (slowing & lane) != 6'd0;
+    wire caught = hit & mine;
+
+    assign axes = waiting;
+    assign waits = mine;
+    assign slows = mine_slows;
+
+    always @(*) begin
+        slower = NONE;
+        if (caught) begin
+            slower = lane;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (caught) begin
+            waiting <= waiting & ~lane;
+        end
+        if (set) begin
+            waiting <= mask;
+        end
+        if (turn_ends) begin
+            slowing <= slowing | slower;
+            if (!goes_on) begin
+                slowing <= (slowing & ~lane) | slower;
+            end
+        end
     end
 endmodule
 
@@ -1886,6 +1942,9 @@ module carrystep_engine (
     output wire         start_ready,
     input  wire         clear,
     input  wire         stop,
+    input  wire         broken,
+    input  wire         home_valid,
+    input  wire   [5:0] home_mask,
     input  wire         kick,
     input  wire         enable,
     input  wire         estop,
@@ -1895,6 +1954,10 @@ module carrystep_engine (
     input  wire   [1:0] get_item,
     output wire  [31:0] get_data,
     output wire         get_valid,
+    output wire         latch,
+    output wire   [2:0] latch_axis,
+    output wire   [2:0] room,
+    output wire         room_valid,
     output wire   [5:0] step,
     output wire   [5:0] dir,
     output wire         enabled,
@@ -1903,6 +1966,9 @@ module carrystep_engine (
     output wire         halted,
     output wire   [2:0] cause,
     output wire   [5:0] culprits,
+    output wire         armed,
+    output wire         ready,
+    output wire   [5:0] homing,
     output wire         started
 );
     localparam [5:0] NONE = 6'd0;
@@ -1918,7 +1984,7 @@ module carrystep_engine (
     localparam [2:0] TO_TOP = 3'd5;
     localparam [3:0] AXES = 4'd6;
 
-    reg armed = 1'b0;
+    reg waits = 1'b0;
     reg [5:0] mask = 6'd0;
     reg going = 1'b0;
     reg taken = 1'b0;
@@ -1960,6 +2026,7 @@ module carrystep_engine (
     wire [2:0] queue_live;
     wire [2:0] queue_fresh;
     wire queue_full;
+    wire [2:0] queue_room;
     wire queue_empty;
     wire queue_running;
     wire queue_sound;
@@ -1979,6 +2046,9 @@ module carrystep_engine (
     wire [5:0] wheel_events;
     wire [5:0] wheel_backward;
     wire limits_hit;
+    wire [5:0] homes_axes;
+    wire homes_waits;
+    wire homes_slows;
     wire stops_fault;
     wire stops_finds;
     wire stops_frozen;
@@ -2027,16 +2097,22 @@ module carrystep_engine (
     wire strobe = wheel_strobe;
     wire masked = mask[0];
     wire nobody = {1'b0, put_axis} >= AXES;
+    wire listens = turn_beat[7] & (turn_axis == put_axis);
     wire take = put_valid & put_ready & !nobody;
+    wire may_start = enable & watch_warm;
     wire free = !stops_fault & !stops_finds;
-    wire decides = strobe & armed & free;
+    wire decides = strobe & waits & free;
     wire go = decides & !unfed & !held;
-    wire rests = rest_2 & !armed & !pins_busy;
+    wire rests = rest_2 & !waits & !pins_busy;
 
-    assign put_ready = !stops_fault & (nobody | (turn_beat[7] & (turn_axis == put_axis) & !queue_full));
-    assign start_ready = strobe & !armed & !stops_fault & enable & watch_warm;
+    assign put_ready = !stops_fault & (nobody | (listens & !queue_full));
+    assign start_ready = strobe & !waits & !stops_fault & may_start;
     assign get_data = store_word;
     assign get_valid = turn_beat[11];
+    assign latch = turn_beat[6] & homes_waits;
+    assign latch_axis = turn_axis;
+    assign room = queue_room;
+    assign room_valid = listens;
     assign step[0] = pulser_0_step;
     assign step[1] = pulser_1_step;
     assign step[2] = pulser_2_step;
@@ -2055,6 +2131,9 @@ module carrystep_engine (
     assign halted = stops_halted;
     assign cause = stops_cause;
     assign culprits = stops_culprits;
+    assign armed = waits;
+    assign ready = may_start;
+    assign homing = homes_axes;
     assign started = go;
 
     always @(*) begin
@@ -2208,8 +2287,9 @@ module carrystep_engine (
         .axis_next(turn_axis_next),
         .starts(going & masked),
         .halted(stops_halted),
-        .ramp(stops_ramp),
+        .ramp(stops_ramp | homes_slows),
         .clear(stops_clearing),
+        .empties(homes_slows & !queue_goes_on),
         .take(take),
         .commit(put_word == COMMIT),
         .last(put_data[0]),
@@ -2223,6 +2303,7 @@ module carrystep_engine (
         .live(queue_live),
         .fresh(queue_fresh),
         .full(queue_full),
+        .room(queue_room),
         .empty(queue_empty),
         .running(queue_running),
         .sound(queue_sound),
@@ -2289,6 +2370,19 @@ module carrystep_engine (
         .hit(limits_hit)
     );
 
+    carrystep_homes homes (
+        .clock(clock),
+        .set(home_valid),
+        .mask(home_mask),
+        .turn_ends(turn_beat[12]),
+        .lane(turn_lane),
+        .hit(limits_hit),
+        .goes_on(queue_goes_on),
+        .axes(homes_axes),
+        .waits(homes_waits),
+        .slows(homes_slows)
+    );
+
     carrystep_stops stops (
         .clock(clock),
         .strobe(strobe),
@@ -2296,11 +2390,11 @@ module carrystep_engine (
         .lane(turn_lane),
         .runs(queue_running),
         .too_fast(queue_too_fast),
-        .limit(limits_hit),
+        .limit(limits_hit & !homes_waits),
         .dry(queue_dry),
         .late(late),
         .pressed(watch_pressed),
-        .breaks((put_valid & nobody & !stops_fault) | (decides & unfed)),
+        .breaks((((put_valid & nobody) | broken) & !stops_fault) | (decides & unfed)),
         .missed(watch_missed & !rest_2),
         .asked(stop),
         .clear(clear),
@@ -2429,15 +2523,15 @@ module carrystep_engine (
             mask <= (mask >> BY_ONE) | (mask << TO_TOP);
         end
         if (start_ready & start_valid) begin
-            armed <= 1'b1;
+            waits <= 1'b1;
             mask <= start_mask;
         end
         if (go | stops_fault) begin
-            armed <= 1'b0;
+            waits <= 1'b0;
         end
         if (turn_beat[12]) begin
             unfed <= unfed | (masked & queue_empty);
-            held <= held | (masked & queue_goes_on);
+            held <= held | (masked & (queue_goes_on | homes_slows));
             active <= active | queue_running | !queue_empty;
         end
         if (strobe) begin

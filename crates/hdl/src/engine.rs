@@ -27,6 +27,7 @@ use carrystep_spec::EngineBuild;
 use rust_hdl::prelude::*;
 
 pub mod adder;
+pub mod homing;
 pub mod limits;
 pub mod pulser;
 pub mod queue;
@@ -40,6 +41,7 @@ pub mod wheel;
 pub use sim::{AnyEngine, EngineSim, engine};
 
 use adder::Adder;
+use homing::Homing;
 use limits::Limits;
 use pulser::Pulser;
 use queue::Queue;
@@ -74,6 +76,12 @@ pub struct Engine<const N: usize> {
     pub clear: Input<Bit>,
     /// The host's controlled stop.
     pub stop: Input<Bit>,
+    /// The host has broken the segment protocol: stop.
+    pub broken: Input<Bit>,
+    /// The host says anew which axes wait for their limit,
+    pub home_valid: Input<Bit>,
+    /// namely these.
+    pub home_mask: Input<Word<N>>,
     /// The host was heard of: the watchdog starts anew.
     pub kick: Input<Bit>,
     /// The host wants the drivers to be powered.
@@ -92,6 +100,14 @@ pub struct Engine<const N: usize> {
     pub get_data: Signal<Out, Word<32>>,
     /// in this cycle, to what was asked in the cycle before.
     pub get_valid: Signal<Out, Bit>,
+    /// `get_data` is the position of the axis of `turn`, which waits for its limit.
+    pub latch: Signal<Out, Bit>,
+    /// The axis whose turn it is.
+    pub latch_axis: Signal<Out, Word<3>>,
+    /// Segments that the axis of `put_axis` has room for,
+    pub room: Signal<Out, Word<3>>,
+    /// in this cycle.
+    pub room_valid: Signal<Out, Bit>,
     /// The STEP pins.
     pub step: Lanes<Signal<Out, Bit>, N>,
     /// The DIR pins, 1 is backward.
@@ -108,6 +124,12 @@ pub struct Engine<const N: usize> {
     pub cause: Signal<Out, Word<3>>,
     /// the axes that it came from.
     pub culprits: Signal<Out, Word<N>>,
+    /// A start is armed.
+    pub armed: Signal<Out, Bit>,
+    /// The drivers have had power for long enough, and shall have it: starts can be taken.
+    pub ready: Signal<Out, Bit>,
+    /// The axes that wait for their limit.
+    pub homing: Signal<Out, Word<N>>,
     /// Axes start at the end of this cycle.
     pub started: Signal<Out, Bit>,
     turn: Turn<N>,
@@ -116,10 +138,11 @@ pub struct Engine<const N: usize> {
     pub(crate) store: Store,
     wheel: Wheel<N>,
     limits: Limits<N>,
+    homes: Homing<N>,
     stops: Stops<N>,
     watch: Watch,
     pulser: Lanes<Pulser, N>,
-    armed: Register<Bit>,
+    waits: Register<Bit>, // `armed`
     mask: Register<Word<N>>, // of the start, turning with the turns: bit 0 is the present axis
     going: Register<Bit>,
     taken: Register<Bit>,
@@ -132,7 +155,9 @@ pub struct Engine<const N: usize> {
     strobe: Signal<Local, Bit>,
     masked: Signal<Local, Bit>,
     nobody: Signal<Local, Bit>,
+    listens: Signal<Local, Bit>, // the axis of `put_axis` looks at the port
     take: Signal<Local, Bit>,
+    may_start: Signal<Local, Bit>,
     free: Signal<Local, Bit>,
     decides: Signal<Local, Bit>,
     go: Signal<Local, Bit>,
@@ -179,19 +204,19 @@ impl<const N: usize> Engine<N> {
 impl<const N: usize> Logic for Engine<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, armed, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2);
-        clock!(self, clock, turn, adder, queue, store, wheel, limits, stops, watch);
+        dff_setup!(self, clock, waits, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2);
+        clock!(self, clock, turn, adder, queue, store, wheel, limits, homes, stops, watch);
 
         self.strobe.next = self.wheel.strobe.val();
         self.masked.next = self.mask.q.val().get_bit(0);
 
         // The host's words.
         self.nobody.next = bit_cast::<4, 3>(self.put_axis.val()) >= self.axes.val();
-        self.put_ready.next = !self.stops.fault.val()
-            & (self.nobody.val()
-                | (self.turn.beat.val().get_bit(7)
-                    & (self.turn.axis.val() == self.put_axis.val())
-                    & !self.queue.full.val()));
+        self.listens.next = self.turn.beat.val().get_bit(7) & (self.turn.axis.val() == self.put_axis.val());
+        self.put_ready.next =
+            !self.stops.fault.val() & (self.nobody.val() | (self.listens.val() & !self.queue.full.val()));
+        self.room.next = self.queue.room.val();
+        self.room_valid.next = self.listens.val();
         self.take.next = self.put_valid.val() & self.put_ready.val() & !self.nobody.val();
         self.taken.d.next = self.taken.q.val() & !self.turn.beat.val().get_bit(9);
         if self.take.val() {
@@ -202,13 +227,11 @@ impl<const N: usize> Logic for Engine<N> {
         }
 
         // Starts: armed at a strobe, then at the first strobe at which every axis of the mask rests and waits.
-        self.start_ready.next = self.strobe.val()
-            & !self.armed.q.val()
-            & !self.stops.fault.val()
-            & self.enable.val()
-            & self.watch.warm.val();
+        self.may_start.next = self.enable.val() & self.watch.warm.val();
+        self.start_ready.next =
+            self.strobe.val() & !self.waits.q.val() & !self.stops.fault.val() & self.may_start.val();
         self.free.next = !self.stops.fault.val() & !self.stops.finds.val();
-        self.decides.next = self.strobe.val() & self.armed.q.val() & self.free.val();
+        self.decides.next = self.strobe.val() & self.waits.q.val() & self.free.val();
         self.go.next = self.decides.val() & !self.unfed.q.val() & !self.held.q.val();
         if self.strobe.val() {
             self.going.d.next = self.go.val();
@@ -217,17 +240,18 @@ impl<const N: usize> Logic for Engine<N> {
             self.mask.d.next = (self.mask.q.val() >> self.by_one.val()) | (self.mask.q.val() << self.to_top.val());
         }
         if self.start_ready.val() & self.start_valid.val() {
-            self.armed.d.next = true;
+            self.waits.d.next = true;
             self.mask.d.next = self.start_mask.val();
         }
         if self.go.val() | self.stops.fault.val() {
-            self.armed.d.next = false;
+            self.waits.d.next = false;
         }
 
         // What the turns find.
         if self.turn.beat.val().get_bit(12) {
             self.unfed.d.next = self.unfed.q.val() | (self.masked.val() & self.queue.empty.val());
-            self.held.d.next = self.held.q.val() | (self.masked.val() & self.queue.goes_on.val());
+            self.held.d.next = self.held.q.val()
+                | (self.masked.val() & (self.queue.goes_on.val() | self.homes.slows.val()));
             self.active.d.next = self.active.q.val() | self.queue.running.val() | !self.queue.empty.val();
         }
         if self.strobe.val() {
@@ -267,7 +291,7 @@ impl<const N: usize> Logic for Engine<N> {
             self.step[i].next = self.pulser[i].step.val();
             self.dir[i].next = self.pulser[i].dir.val();
         }
-        self.rests.next = self.rest_2.q.val() & !self.armed.q.val() & !self.pins_busy.val();
+        self.rests.next = self.rest_2.q.val() & !self.waits.q.val() & !self.pins_busy.val();
 
         // The modules.
         self.turn.strobe.next = self.strobe.val();
@@ -276,7 +300,8 @@ impl<const N: usize> Logic for Engine<N> {
         self.queue.axis_next.next = self.turn.axis_next.val();
         self.queue.starts.next = self.going.q.val() & self.masked.val();
         self.queue.halted.next = self.stops.halted.val();
-        self.queue.ramp.next = self.stops.ramp.val();
+        self.queue.ramp.next = self.stops.ramp.val() | self.homes.slows.val();
+        self.queue.empties.next = self.homes.slows.val() & !self.queue.goes_on.val();
         self.queue.clear.next = self.stops.clearing.val();
         self.queue.take.next = self.take.val();
         self.queue.commit.next = self.put_word.val() == self.commit.val();
@@ -325,6 +350,8 @@ impl<const N: usize> Logic for Engine<N> {
 
         self.get_data.next = self.store.word.val();
         self.get_valid.next = self.turn.beat.val().get_bit(11);
+        self.latch.next = self.turn.beat.val().get_bit(6) & self.homes.waits.val();
+        self.latch_axis.next = self.turn.axis.val();
         self.limits.turn_ends.next = self.turn.beat.val().get_bit(12);
         self.limits.axis.next = self.turn.axis.val();
         self.limits.axis_next.next = self.turn.axis_next.val();
@@ -336,16 +363,24 @@ impl<const N: usize> Logic for Engine<N> {
         self.limits.goes.next = self.queue.moves.val() & !self.adder.still.val();
         self.limits.back.next = self.adder.back.val();
 
+        self.homes.set.next = self.home_valid.val();
+        self.homes.mask.next = self.home_mask.val();
+        self.homes.turn_ends.next = self.turn.beat.val().get_bit(12);
+        self.homes.lane.next = self.turn.lane.val();
+        self.homes.hit.next = self.limits.hit.val();
+        self.homes.goes_on.next = self.queue.goes_on.val();
+
         self.stops.strobe.next = self.strobe.val();
         self.stops.turn_ends.next = self.turn.beat.val().get_bit(12);
         self.stops.lane.next = self.turn.lane.val();
         self.stops.runs.next = self.queue.running.val();
         self.stops.too_fast.next = self.queue.too_fast.val();
-        self.stops.limit.next = self.limits.hit.val();
+        self.stops.limit.next = self.limits.hit.val() & !self.homes.waits.val();
         self.stops.dry.next = self.queue.dry.val();
         self.stops.late.next = self.late.val();
         self.stops.pressed.next = self.watch.pressed.val();
-        self.stops.breaks.next = (self.put_valid.val() & self.nobody.val() & !self.stops.fault.val())
+        self.stops.breaks.next = (((self.put_valid.val() & self.nobody.val()) | self.broken.val())
+            & !self.stops.fault.val())
             | (self.decides.val() & self.unfed.q.val());
         self.stops.missed.next = self.watch.missed.val() & !self.rest_2.q.val();
         self.stops.asked.next = self.stop.val();
@@ -364,6 +399,9 @@ impl<const N: usize> Logic for Engine<N> {
         self.halted.next = self.stops.halted.val();
         self.cause.next = self.stops.cause.val();
         self.culprits.next = self.stops.culprits.val();
+        self.armed.next = self.waits.q.val();
+        self.ready.next = self.may_start.val();
+        self.homing.next = self.homes.axes.val();
         self.started.next = self.go.val();
     }
 }

@@ -13,6 +13,13 @@ constexpr int PATIENCE = 1 << 18;
 uint64_t outputs(const Vcarrystep_engine& core) {
     uint64_t all = 0;
     const auto add = [&all](uint64_t value, int bits) { all = all << bits | value; };
+    add(core.latch, 1);
+    add(core.latch ? core.latch_axis : 0, 3);
+    add(core.room_valid, 1);
+    add(core.room_valid ? core.room : 0, 3);
+    add(core.armed, 1);
+    add(core.ready, 1);
+    add(core.homing, AXES);
     add(core.put_ready, 1);
     add(core.start_ready, 1);
     add(core.idle, 1);
@@ -47,9 +54,10 @@ int main(int argc, char** argv) {
     core.eval();
     uint64_t before = ~uint64_t{0}, cycle = 0, count;
     unsigned put_valid, put_axis, put_word, put_data, start_valid, start_mask, clear;
-    unsigned stop, kick, enable, estop, limit_min, limit_max;
-    while (std::fscanf(file, "%" SCNu64 " %u %x %x %x %u %x %u %u %u %u %u %x %x", &count, &put_valid, &put_axis, &put_word, &put_data,
-                       &start_valid, &start_mask, &clear, &stop, &kick, &enable, &estop, &limit_min, &limit_max) == 14) {
+    unsigned stop, broken, home_valid, home_mask, kick, enable, estop, limit_min, limit_max;
+    while (std::fscanf(file, "%" SCNu64 " %u %x %x %x %u %x %u %u %u %u %x %u %u %u %x %x", &count, &put_valid, &put_axis, &put_word, &put_data,
+                       &start_valid, &start_mask, &clear, &stop, &broken, &home_valid, &home_mask, &kick, &enable, &estop, &limit_min,
+                       &limit_max) == 17) {
         core.put_valid = put_valid;
         core.put_axis = put_axis;
         core.put_word = put_word;
@@ -58,6 +66,9 @@ int main(int argc, char** argv) {
         core.start_mask = start_mask;
         core.clear = clear;
         core.stop = stop;
+        core.broken = broken;
+        core.home_valid = home_valid;
+        core.home_mask = home_mask;
         core.kick = kick;
         core.enable = enable;
         core.estop = estop;
@@ -71,7 +82,7 @@ int main(int argc, char** argv) {
             tick(core);
         }
     }
-    core.put_valid = core.start_valid = core.clear = core.stop = core.kick = 0;
+    core.put_valid = core.start_valid = core.clear = core.stop = core.broken = core.home_valid = core.kick = 0;
     for (int axis = 0; axis < AXES; ++axis)
         for (int item = 0; item < 4; ++item) {
             core.get_axis = axis;

@@ -68,6 +68,10 @@ pub enum Event {
     Enable(bool),
     /// A sign of life, in this cycle.
     Kick,
+    /// These axes wait for their limit from this cycle on.
+    Home(u8),
+    /// The segment protocol is broken, in this cycle.
+    Broken,
 }
 
 /// Events in order of their cycles.
@@ -124,7 +128,7 @@ impl EngineHost {
 
     /// Takes the events of this cycle.
     fn happen(&mut self) {
-        self.around.kick = self.awake;
+        self.around = EngineInputs { kick: self.awake, broken: false, home: None, ..self.around };
         while let Some((_, event)) = self.events.next_if(|(cycle, _)| *cycle <= self.cycle) {
             match event {
                 Event::EStop(active) => self.around.estop = active,
@@ -133,6 +137,8 @@ impl EngineHost {
                 Event::Stop(asked) => self.around.stop = asked,
                 Event::Enable(wanted) => self.around.enable = wanted,
                 Event::Kick => self.around.kick = true,
+                Event::Home(axes) => self.around.home = Some(axes),
+                Event::Broken => self.around.broken = true,
             }
         }
     }

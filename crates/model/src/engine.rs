@@ -13,9 +13,12 @@ mod lane;
 
 use crate::shaper;
 use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, Limits, PUT_BEAT, Put, QUEUE, TURN};
+use carrystep_spec::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, Limits, PUT_BEAT, Put, TURN};
 use guard::{Stop, Watch, freezes};
 use lane::{Lane, Look, Segment, Tick};
+
+/// The beat of a turn in which an axis that waits for its limit says its position.
+const LATCH_BEAT: u32 = 6;
 
 /// The beat of a turn in which a limit's pin counts.
 const LOOK_BEAT: u32 = 10;
@@ -71,8 +74,9 @@ impl Engine {
     pub fn outputs(&self, inputs: &EngineInputs) -> EngineOutputs {
         let free = self.stop.fault.is_none();
         let (strobe, guard) = (self.strobe(), &self.build.guard);
+        let put_axis = inputs.put.map_or(0, |put| usize::from(put.axis));
         EngineOutputs {
-            put_ready: free && self.takes(inputs.put.unwrap_or(Put { axis: 0, word: 0, data: 0 })),
+            put_ready: free && self.takes(put_axis),
             start_ready: free && strobe && self.armed.is_none() && inputs.enable && self.watch.is_warm(guard),
             step: bits(&self.lanes, |lane| lane.shaper.step),
             dir: bits(&self.lanes, |lane| lane.shaper.dir),
@@ -80,6 +84,11 @@ impl Engine {
             idle: self.rest == 2 && self.armed.is_none() && !self.pins_busy(),
             fault: self.stop.fault,
             halted: self.stop.halted,
+            armed: self.armed.is_some(),
+            ready: inputs.enable && self.watch.is_warm(guard),
+            homing: bits(&self.lanes, |lane| lane.homing.waits),
+            latch: self.turn_at(LATCH_BEAT).filter(|axis| self.lanes[*axis].homing.waits).map(|axis| axis as u8),
+            room: self.turn_at(PUT_BEAT).filter(|axis| *axis == put_axis).map(|axis| self.lanes[axis].room()),
             started: strobe && matches!(self.decision(&self.ticked()), Decision::Go(_)),
         }
     }
@@ -100,7 +109,7 @@ impl Engine {
             stop.call(Cause::EStop, 0, &guard);
         }
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.lanes.len());
-        if nobody && before.fault.is_none() {
+        if (nobody || inputs.broken) && before.fault.is_none() {
             stop.call(Cause::Protocol, 0, &guard);
         }
         self.look(inputs);
@@ -119,6 +128,12 @@ impl Engine {
         }
         if before.fault.is_some() {
             self.armed = None;
+        }
+        self.meet();
+        if let Some(mask) = inputs.home {
+            for (axis, lane) in self.lanes.iter_mut().enumerate() {
+                lane.homing.waits = mask >> axis & 1 == 1;
+            }
         }
         self.watch.clock(&guard, inputs, strobe, outputs.idle);
         self.stop = stop;
@@ -149,11 +164,14 @@ impl Engine {
     }
 
     /// A word is taken in its axis' turn, unless the queue is full; for an axis that does not exist, at once.
-    fn takes(&self, put: Put) -> bool {
-        let axis = u32::from(put.axis);
-        self.lanes
-            .get(usize::from(put.axis))
-            .is_none_or(|lane| self.turns && self.clock == axis * TURN + PUT_BEAT && lane.queue.len() < QUEUE)
+    fn takes(&self, axis: usize) -> bool {
+        self.lanes.get(axis).is_none_or(|lane| self.turn_at(PUT_BEAT) == Some(axis) && lane.room() > 0)
+    }
+
+    /// The axis whose turn it is, where this is that beat of it.
+    fn turn_at(&self, beat: u32) -> Option<usize> {
+        let axis = (self.clock / TURN) as usize;
+        (self.turns && self.clock % TURN == beat && axis < self.lanes.len()).then_some(axis)
     }
 
     fn put(&mut self, put: Put) {
@@ -177,19 +195,37 @@ impl Engine {
         }
     }
 
-    /// The axes after this tick, and the causes that they find, the first axis first.
-    fn ticked(&self) -> (Vec<Lane>, Vec<(Cause, usize)>) {
-        let tick = Tick {
+    fn tick(&self) -> Tick<'_> {
+        Tick {
             guard: &self.build.guard,
             phase_bits: self.build.timebase.phase_bits(),
             halted: self.stop.halted,
             ramp: self.stop.ramp,
-        };
+        }
+    }
+
+    /// How an axis looks at its limits in this tick, if it does.
+    fn look_of(&self, axis: usize) -> Option<Look> {
         let max = self.watch.tick_of_round == 1 && self.build.guard.limits == Limits::Pair;
         let looks = self.turns && (self.watch.tick_of_round == 0 || max);
+        looks.then_some(Look { max, pin: self.pins[axis] })
+    }
+
+    /// At the end of its turn an axis that waits for its limit may meet it.
+    fn meet(&mut self) {
+        let Some(axis) = self.turn_at(TURN - 1).filter(|axis| self.lanes[*axis].homing.waits) else { return };
+        if self.look_of(axis).is_some_and(|look| self.lanes[axis].hits(self.tick(), look)) {
+            self.lanes[axis].homing.waits = false;
+            self.lanes[axis].homing.meets = true;
+        }
+    }
+
+    /// The axes after this tick, and the causes that they find, the first axis first.
+    fn ticked(&self) -> (Vec<Lane>, Vec<(Cause, usize)>) {
+        let tick = self.tick();
         let mut found = Vec::new();
-        let lanes = self.lanes.iter().zip(&self.pins).enumerate().map(|(axis, (lane, pin))| {
-            let (next, cause) = lane.tick(tick, looks.then_some(Look { max, pin: *pin }));
+        let lanes = self.lanes.iter().enumerate().map(|(axis, lane)| {
+            let (next, cause) = lane.tick(tick, self.look_of(axis));
             found.extend(cause.map(|cause| (cause, axis)));
             next
         });
@@ -203,7 +239,7 @@ impl Engine {
         // What counts is what waited before this tick.
         if mask & bits(&self.lanes, |lane| lane.queue.is_empty()) != 0 {
             Decision::Unfed
-        } else if mask & bits(ticked, |lane| lane.running.is_some()) != 0 {
+        } else if mask & (bits(ticked, |lane| lane.running.is_some()) | bits(&self.lanes, |lane| lane.homing.slows)) != 0 {
             Decision::Wait
         } else {
             Decision::Go(mask)

@@ -112,6 +112,10 @@ pub struct EngineInputs {
     pub clear: bool,
     /// The host's controlled stop.
     pub stop: bool,
+    /// The host has broken the segment protocol.
+    pub broken: bool,
+    /// The host says anew which axes wait for their limit.
+    pub home: Option<u8>,
     /// The host was heard of.
     pub kick: bool,
     /// The host wants the drivers to be powered.
@@ -191,6 +195,16 @@ pub struct EngineOutputs {
     pub fault: Option<(Cause, u8)>,
     /// No axis moves any more.
     pub halted: bool,
+    /// A start is armed.
+    pub armed: bool,
+    /// The drivers have had power for long enough, and shall have it.
+    pub ready: bool,
+    /// The axes that wait for their limit.
+    pub homing: u8,
+    /// The axis that says its position because it waits for its limit.
+    pub latch: Option<u8>,
+    /// Segments that the axis of `put` (the first one, where nothing is put) has room for, where it says so.
+    pub room: Option<u8>,
     /// Axes start at the end of this cycle.
     pub started: bool,
 }

@@ -38,6 +38,8 @@ pub struct Queue {
     pub ramp: Input<Bit>,
     /// Forget all segments.
     pub clear: Input<Bit>,
+    /// In beat 12: forget what waits.
+    pub empties: Input<Bit>,
     /// The host's word is taken in this cycle.
     pub take: Input<Bit>,
     /// It commits.
@@ -64,6 +66,8 @@ pub struct Queue {
     pub fresh: Signal<Out, Word<3>>,
     /// The host cannot write.
     pub full: Signal<Out, Bit>,
+    /// Segments that there is room for.
+    pub room: Signal<Out, Word<3>>,
     /// Nothing waits.
     pub empty: Signal<Out, Bit>,
     /// The axis runs in this tick.
@@ -202,6 +206,10 @@ impl Logic for Queue {
         if self.moves.val() & self.follows.val() {
             self.next_live.next = self.live_now.val() + self.one.val();
         }
+        // The slot that the host writes stays, whatever is forgotten.
+        if self.empties.val() {
+            self.next_live.next = self.newest.val();
+        }
         self.next_newest.next = self.newest.val();
         if self.committed.q.val() {
             self.next_newest.next = self.fresh_now.val();
@@ -254,6 +262,7 @@ impl Logic for Queue {
         self.live.next = self.live_now.val();
         self.fresh.next = self.fresh_now.val();
         self.full.next = self.fresh_now.val() == self.live_now.val();
+        self.room.next = self.live_now.val() + !self.newest.val();
         self.empty.next = self.none.val();
         self.running.next = self.runs.val();
         self.sound.next = self.fits.val();

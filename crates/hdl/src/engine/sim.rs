@@ -51,6 +51,9 @@ impl<const N: usize> AnyEngine for Engine<N> {
         self.start_mask.next = Word::from(u64::from(inputs.start.unwrap_or(0)));
         self.clear.next = inputs.clear;
         self.stop.next = inputs.stop;
+        self.broken.next = inputs.broken;
+        self.home_valid.next = inputs.home.is_some();
+        self.home_mask.next = Word::from(u64::from(inputs.home.unwrap_or(0)));
         self.kick.next = inputs.kick;
         self.enable.next = inputs.enable;
         self.estop.next = inputs.estop;
@@ -67,6 +70,11 @@ impl<const N: usize> AnyEngine for Engine<N> {
             idle: self.idle.val(),
             fault: self.fault.val().then(|| (cause, self.culprits.val().value() as u8)),
             halted: self.halted.val(),
+            armed: self.armed.val(),
+            ready: self.ready.val(),
+            homing: self.homing.val().value() as u8,
+            latch: self.latch.val().then(|| self.latch_axis.val().value() as u8),
+            room: self.room_valid.val().then(|| self.room.val().value() as u8),
             started: self.started.val(),
         }
     }

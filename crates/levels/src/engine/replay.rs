@@ -77,20 +77,22 @@ impl Recording {
         self.clocks += 1;
     }
 
-    /// `count put_valid put_axis put_word put_data start_valid start_mask clear stop kick enable estop limit_min limit_max`,
+    /// `count put_valid put_axis put_word put_data start_valid start_mask clear stop broken home_valid home_mask kick enable
+    /// estop limit_min limit_max`,
     /// a line each.
     fn text(&self) -> String {
         let mut text = String::new();
         for (count, inputs) in &self.stimuli {
             let (axis, word, data) = inputs.put.map_or((0, 0, 0), |put| (put.axis, put.word, put.data));
             let (put, start) = (u8::from(inputs.put.is_some()), u8::from(inputs.start.is_some()));
-            let EngineInputs { clear, stop, kick, enable, estop, limit_min, limit_max, .. } = *inputs;
-            let [clear, stop, kick, enable, estop] = [clear, stop, kick, enable, estop].map(u8::from);
-            let [mask, min, max] = [inputs.start.unwrap_or(0), limit_min, limit_max]
+            let EngineInputs { clear, stop, broken, kick, enable, estop, limit_min, limit_max, .. } = *inputs;
+            let [clear, stop, broken, kick, enable, estop] = [clear, stop, broken, kick, enable, estop].map(u8::from);
+            let homes = u8::from(inputs.home.is_some());
+            let [mask, home, min, max] = [inputs.start.unwrap_or(0), inputs.home.unwrap_or(0), limit_min, limit_max]
                 .map(|mask| u32::from(mask) & ((1 << self.axes()) - 1));
-            let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear} {stop} {kick} {enable}");
+            let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear}");
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{count} {host} {estop} {min:x} {max:x}");
+            let _ = writeln!(text, "{count} {host} {stop} {broken} {homes} {home:x} {kick} {enable} {estop} {min:x} {max:x}");
         }
         text
     }
@@ -173,10 +175,14 @@ fn parsed(line: &str) -> Option<(u64, u64)> {
 
 /// The outputs as the benches write them.
 fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
-    let EngineOutputs { put_ready, start_ready, step, dir, enabled, idle, fault, halted, started } = *outputs;
+    let EngineOutputs { put_ready, start_ready, step, dir, enabled, idle, fault, halted, started, .. } = *outputs;
+    let EngineOutputs { armed, ready, homing, latch, room, .. } = *outputs;
     let (cause, culprits) = fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
     let flags = [put_ready, start_ready, idle, fault.is_some(), halted, started, enabled];
-    let flags = flags.into_iter().fold(0, |all, flag| all << 1 | u64::from(flag));
+    let number = |place: Option<u8>| u64::from(place.is_some()) << 3 | u64::from(place.unwrap_or(0));
+    let host = number(latch) << 6 | number(room) << 2 | u64::from(armed) << 1 | u64::from(ready);
+    let host = host << axes | u64::from(homing);
+    let flags = flags.into_iter().fold(host, |all, flag| all << 1 | u64::from(flag));
     [step, dir, culprits].into_iter().fold(flags << 3 | cause, |all, mask| all << axes | u64::from(mask))
 }
 

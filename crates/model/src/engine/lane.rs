@@ -2,7 +2,7 @@
 
 use crate::phase::{bisect, crosses};
 use crate::shaper;
-use carrystep_spec::engine::{Cause, Guard, Limits, SEGMENT_WORDS};
+use carrystep_spec::engine::{Cause, Guard, Limits, QUEUE, SEGMENT_WORDS};
 use std::collections::VecDeque;
 
 /// A segment as the queue holds it.
@@ -49,6 +49,17 @@ pub(super) struct Look {
     pub(super) pin: bool,
 }
 
+/// How far the homing of an axis has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Homing {
+    /// It waits for its limit.
+    pub(super) waits: bool,
+    /// It meets it in this tick.
+    pub(super) meets: bool,
+    /// It has met it, and slows down alone.
+    pub(super) slows: bool,
+}
+
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Lane {
     pub(super) p: u64,
@@ -59,6 +70,7 @@ pub(super) struct Lane {
     ramp: Option<bool>,
     /// Stop acceleration.
     stop: i64,
+    pub(super) homing: Homing,
     pub(super) queue: VecDeque<Segment>,
     /// Committed in this tick.
     pub(super) fresh: Option<Segment>,
@@ -86,6 +98,7 @@ impl Lane {
             unfit: false,
             ramp: None,
             stop: stop.cast_signed(),
+            homing: Homing::default(),
             queue: VecDeque::new(),
             fresh: None,
             words: [0; SEGMENT_WORDS as usize],
@@ -94,6 +107,11 @@ impl Lane {
             emitted: Stage::default(),
             shaper,
         }
+    }
+
+    /// Segments that there is room for.
+    pub(super) fn room(&self) -> u8 {
+        (QUEUE - self.queue.len()) as u8
     }
 
     /// The axis after a tick, and the cause of a stop that it finds.
@@ -111,19 +129,35 @@ impl Lane {
             None => {}
         }
         if let Some(look) = look {
-            let became = next.limits[usize::from(look.max)].look(look.pin, tick.guard.debounce);
-            let active = next.limits[usize::from(look.max)].active;
-            let toward = if look.max { 1 } else { -1 };
-            let hit = match tick.guard.limits {
-                Limits::None => false,
-                Limits::Pair => active && next.computed.sign == toward,
-                Limits::Each | Limits::One => became && next.computed.sign != 0,
-            };
-            if hit && found != Some(Cause::Overspeed) {
+            let hit = next.look(look, tick, next.computed.sign);
+            if hit && !self.homing.meets {
                 found = Some(Cause::Limit);
             }
         }
+        if self.homing.slows && next.running.is_none() {
+            next.queue.clear();
+        }
+        let slows = self.homing.meets || (self.homing.slows && next.running.is_some());
+        next.homing = Homing { meets: false, slows, ..self.homing };
         (next, found)
+    }
+
+    /// Whether this tick takes the axis into its limit.
+    pub(super) fn hits(&self, tick: Tick<'_>, look: Look) -> bool {
+        let fits = |segment: &Segment| !tick.halted && !self.unfit && segment.v != i64::MIN;
+        let sign = self.running.filter(fits).map_or(0, |segment| segment.v.signum() as i8);
+        self.clone().look(look, tick, sign)
+    }
+
+    /// Looks at a limit in a tick whose V has this sign; whether it is a hit.
+    fn look(&mut self, look: Look, tick: Tick<'_>, sign: i8) -> bool {
+        let limit = &mut self.limits[usize::from(look.max)];
+        let became = limit.look(look.pin, tick.guard.debounce);
+        match tick.guard.limits {
+            Limits::None => false,
+            Limits::Pair => limit.active && sign == if look.max { 1 } else { -1 },
+            Limits::Each | Limits::One => became && sign != 0,
+        }
     }
 
     /// The sums of a tick; `next` rests until something says otherwise.
@@ -132,7 +166,7 @@ impl Lane {
         let step = crosses(self.p, v).then(|| (v < 0, bisect(self.p, v, tick.phase_bits)));
         next.computed = Stage { step, sign: v.signum() as i8 };
         next.p = self.p.wrapping_add(v.cast_unsigned());
-        if tick.ramp {
+        if tick.ramp || self.homing.slows {
             let Some(back) = self.ramp else {
                 next.running = Some(segment);
                 next.ramp = Some(v < 0);
