@@ -18,6 +18,7 @@ mod axis;
 mod builds;
 mod edge;
 mod engine;
+mod homes;
 mod limits;
 mod promises;
 mod pulser;
@@ -114,6 +115,7 @@ pub fn all() -> Vec<Proof> {
         watch::proof(),
         queue::proof(),
         limits::proof(),
+        homes::proof(),
         turn::proof(),
         wheel::proof(),
         adder::proof(),

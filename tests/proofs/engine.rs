@@ -16,7 +16,7 @@ const BUGS: &[Bug] = &[
         becomes: "turn_beat[6] & (turn_axis",
     },
     Bug { breaks: "promise_6_nothing_taken_in_a_fault", text: "put_ready = !stops_fault &", becomes: "put_ready =" },
-    Bug { breaks: "promise_6_no_such_axis_is_told", text: "(put_valid & nobody & !stops_fault) | ", becomes: "" },
+    Bug { breaks: "promise_6_no_such_axis_is_told", text: "((put_valid & nobody) | broken)", becomes: "broken" },
     Bug {
         breaks: "promise_6_something_to_start",
         text: "unfed <= unfed | (masked & queue_empty);",
@@ -27,7 +27,7 @@ const BUGS: &[Bug] = &[
         text: "if (go | stops_fault) begin",
         becomes: "if (turn_beat[3]) begin",
     },
-    Bug { breaks: "promise_8_idle", text: "rest_2 & !armed & !pins_busy", becomes: "rest_2 & !pins_busy" },
+    Bug { breaks: "promise_8_idle", text: "rest_2 & !waits & !pins_busy", becomes: "rest_2 & !pins_busy" },
     Bug { breaks: "promise_8_idle_is_empty", text: "rest_2 <= !active & rest_1;", becomes: "rest_2 <= 1'b1;" },
     Bug {
         breaks: "promise_12_own_requests",
@@ -35,8 +35,14 @@ const BUGS: &[Bug] = &[
         becomes: ".request(wheel_events)",
     },
     Bug { breaks: "promise_12_starts_who_is_asked_to", text: ".starts(going & masked)", becomes: ".starts(going)" },
+    Bug { breaks: "promise_12_a_limit_slows_its_own_axis", text: "stops_ramp | homes_slows", becomes: "stops_ramp" },
+    Bug {
+        breaks: "promise_12_a_limit_waited_for_stops_no_other",
+        text: "limits_hit & !homes_waits & !homes_slows",
+        becomes: "limits_hit & !homes_slows",
+    },
     Bug { breaks: "promise_13_inactive", text: "rest_2 = 1'b1;", becomes: "rest_2 = 1'b0;" },
-    Bug { breaks: "promise_14_start_only_warm", text: "& enable & watch_warm", becomes: "& enable" },
+    Bug { breaks: "promise_14_start_only_warm", text: "enable & watch_warm", becomes: "enable" },
 ];
 
 pub(super) fn proof() -> Proof {

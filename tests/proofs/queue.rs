@@ -10,6 +10,8 @@ const BUGS: &[Bug] = &[
         becomes: "(word[6] | starts)",
     },
     Bug { breaks: "promise_6_in_order", text: "next_newest = fresh_now;", becomes: "next_newest = newest;" },
+    Bug { breaks: "promise_6_in_order", text: "if (empties) begin", becomes: "if (empties & starts) begin" },
+    Bug { breaks: "promise_6_room", text: "room = live_now + ~newest;", becomes: "room = live_now - newest;" },
     Bug { breaks: "promise_6_empty", text: "none = newest == live_now", becomes: "none = newest == old_live" },
     Bug { breaks: "promise_6_full", text: "full = fresh_now == live_now", becomes: "full = newest == live_now" },
     Bug { breaks: "promise_6_runs_as_told", text: "(word[7] | least)", becomes: "word[7]" },

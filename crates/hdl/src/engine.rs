@@ -27,7 +27,7 @@ use carrystep_spec::EngineBuild;
 use rust_hdl::prelude::*;
 
 pub mod adder;
-pub mod homing;
+pub mod homes;
 pub mod limits;
 pub mod pulser;
 pub mod queue;
@@ -41,7 +41,7 @@ pub mod wheel;
 pub use sim::{AnyEngine, EngineSim, engine};
 
 use adder::Adder;
-use homing::Homing;
+use homes::Homes;
 use limits::Limits;
 use pulser::Pulser;
 use queue::Queue;
@@ -138,11 +138,11 @@ pub struct Engine<const N: usize> {
     pub(crate) store: Store,
     wheel: Wheel<N>,
     limits: Limits<N>,
-    homes: Homing<N>,
+    homes: Homes<N>,
     stops: Stops<N>,
     watch: Watch,
     pulser: Lanes<Pulser, N>,
-    waits: Register<Bit>, // `armed`
+    waits: Register<Bit>,    // `armed`
     mask: Register<Word<N>>, // of the start, turning with the turns: bit 0 is the present axis
     going: Register<Bit>,
     taken: Register<Bit>,
@@ -188,6 +188,7 @@ impl<const N: usize> Engine<N> {
             store: Store::new(build.phase, &build.guard.stop),
             wheel: Wheel::new(&build.timebase),
             limits: Limits::new(&build.guard),
+            homes: Homes::new(),
             stops: Stops::new(&build.guard),
             watch: Watch::new(&build.guard),
             pulser,
@@ -250,8 +251,8 @@ impl<const N: usize> Logic for Engine<N> {
         // What the turns find.
         if self.turn.beat.val().get_bit(12) {
             self.unfed.d.next = self.unfed.q.val() | (self.masked.val() & self.queue.empty.val());
-            self.held.d.next = self.held.q.val()
-                | (self.masked.val() & (self.queue.goes_on.val() | self.homes.slows.val()));
+            self.held.d.next =
+                self.held.q.val() | (self.masked.val() & (self.queue.goes_on.val() | self.homes.slows.val()));
             self.active.d.next = self.active.q.val() | self.queue.running.val() | !self.queue.empty.val();
         }
         if self.strobe.val() {
@@ -375,7 +376,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.stops.lane.next = self.turn.lane.val();
         self.stops.runs.next = self.queue.running.val();
         self.stops.too_fast.next = self.queue.too_fast.val();
-        self.stops.limit.next = self.limits.hit.val() & !self.homes.waits.val();
+        self.stops.limit.next = self.limits.hit.val() & !self.homes.waits.val() & !self.homes.slows.val();
         self.stops.dry.next = self.queue.dry.val();
         self.stops.late.next = self.late.val();
         self.stops.pressed.next = self.watch.pressed.val();

@@ -239,7 +239,9 @@ impl Engine {
         // What counts is what waited before this tick.
         if mask & bits(&self.lanes, |lane| lane.queue.is_empty()) != 0 {
             Decision::Unfed
-        } else if mask & (bits(ticked, |lane| lane.running.is_some()) | bits(&self.lanes, |lane| lane.homing.slows)) != 0 {
+        } else if mask & (bits(ticked, |lane| lane.running.is_some()) | bits(&self.lanes, |lane| lane.homing.slows))
+            != 0
+        {
             Decision::Wait
         } else {
             Decision::Go(mask)

@@ -15,6 +15,9 @@ module promises (
     input wire [`AXES-1:0] start_mask,
     input wire clear,
     input wire stop,
+    input wire broken,
+    input wire home_valid,
+    input wire [`AXES-1:0] home_mask,
     input wire kick,
     input wire enable,
     input wire estop,
@@ -26,10 +29,10 @@ module promises (
     localparam [7:0] CLOCKS = `CLOCKS, PHASES = `PHASES, PHASE_CLOCKS = CLOCKS / PHASES, TURN = 13, TURNS = TURN * `AXES;
     (* anyconst *) reg [2:0] who;
 
-    wire put_ready, start_ready, get_valid, enabled, idle, fault, halted, started;
+    wire put_ready, start_ready, get_valid, latch, room_valid, enabled, idle, fault, halted, armed, ready, started;
     wire [31:0] get_data;
-    wire [`AXES-1:0] step, dir, culprits;
-    wire [2:0] cause;
+    wire [`AXES-1:0] step, dir, culprits, homing;
+    wire [2:0] latch_axis, room, cause;
     `DUT dut (.*);
 
     always_comb begin
@@ -55,13 +58,19 @@ module promises (
     (* inside = "dut.turn_axis" *) wire [2:0] axis;
     (* inside = "dut.turn_lane" *) wire [`AXES-1:0] lane;
     (* inside = "dut.stops_frozen" *) wire frozen;
-    (* inside = "dut.stops_ramp" *) wire ramp;
+    (* inside = "dut.queue.ramp" *) wire ramp;
+    (* inside = "dut.stops_ramp" *) wire all_ramp;
+    (* inside = "dut.homes_slows" *) wire slows;
+    (* inside = "dut.queue.empties" *) wire empties;
+    (* inside = "dut.queue_goes_on" *) wire queue_goes_on;
+    (* inside = "dut.homes_waits" *) wire waits;
+    (* inside = "dut.limits_hit" *) wire hit;
+    (* inside = "dut.stops.limit" *) wire limit;
     (* inside = "dut.stops_clearing" *) wire clearing;
     (* inside = "dut.stops.breaks" *) wire breaks;
     (* inside = "dut.watch_warm" *) wire warm;
     (* inside = "dut.watch_tick_0" *) wire tick_0;
     (* inside = "dut.watch_tick_1" *) wire tick_1;
-    (* inside = "dut.armed" *) wire armed;
     (* inside = "dut.mask" *) wire [`AXES-1:0] mask;
     (* inside = "dut.take" *) wire take;
     (* inside = "dut.queue.starts" *) wire starts;
@@ -85,7 +94,7 @@ module promises (
         {was_starts, was_halted, was_ramp, was_clearing} <= {starts, halted, ramp, clearing};
         {was_tick_0, was_tick_1} <= {tick_0, tick_1};
         if (start) asked <= (start_mask >> who) & 1;
-        was_breaking <= put_valid & put_axis >= `AXES & !fault;
+        was_breaking <= (put_valid & put_axis >= `AXES | broken) & !fault;
         was_cleared <= strobe & clearing;
     end
     wire mine = axis == who & beat[12:0] != 0;
@@ -99,7 +108,7 @@ module promises (
         promise_6_taken_in_its_turn: assert (!take || put_valid && put_ready && axis == put_axis && beat[7] && !full);
         promise_6_nothing_taken_in_a_fault: assert (!fault || !put_ready && !start_ready && !started);
         promise_6_no_such_axis_is_told: assert (!was_breaking || fault || was_cleared);
-        promise_6_start_of_nothing_is_told: assert (!started || !breaks || put_valid && put_axis >= `AXES);
+        promise_6_start_of_nothing_is_told: assert (!started || !breaks || broken || put_valid && put_axis >= `AXES);
         promise_6_a_start_is_kept: assert (!was_armed || armed || was_started || was_fault);
         promise_6_something_to_start: assert (!(mine && starts) || !word[6] && word[5:3] != word[2:0]);
 
@@ -109,6 +118,8 @@ module promises (
         promise_12_own_requests: assert (requests == (phase_start ? events : 0) && requests_back == backward);
         promise_12_own_direction: assert (signs == (strobe ? events : 0) && signs_back == backward);
         promise_12_starts_who_is_asked_to: assert (!mine || starts == (going & asked));
+        promise_12_a_limit_slows_its_own_axis: assert (ramp == (all_ramp | slows) && empties == (slows & !queue_goes_on));
+        promise_12_a_limit_waited_for_stops_no_other: assert (limit == (hit & !waits & !slows));
         promise_12_on_one_tick: assert (!started || strobe && armed);
 
         promise_13_inactive: assert (!first_clock || {step, dir, enabled, fault, halted, started, culprits} == 0 && idle);
@@ -159,6 +170,7 @@ module promises (
     (* inside = "dut.stops.ran" *) wire ran;
     (* inside = "dut.stops.found" *) wire found;
     (* inside = "dut.stops.found_freezing" *) wire found_freezing;
+    (* inside = "dut.homes.slowing" *) wire [`AXES-1:0] slowing;
     (* inside = "dut.watch.round" *) wire [9:0] round;
     wire quiet = !word[6] & word[5:3] == word[2:0];
     // The mask goes round with the turns.
@@ -184,11 +196,12 @@ module promises (
         invariant_12: assert (!(going && asked && !had_turn) || !word[6] && word[5:3] != word[2:0]);
         invariant_20: assert (masked == asked || !armed && !going);
         invariant_13: assert (!going || !halted && !armed);
-        invariant_14: assert ((!(halted || ramp || frozen) || fault) && (!found_freezing || found));
+        invariant_14: assert ((!(halted || all_ramp || frozen) || fault) && (!found_freezing || found));
         invariant_15: assert (!clearing || settled && halted);
-        invariant_16: assert ((!settled || halted) && (!halted || ramp || frozen));
+        invariant_16: assert ((!settled || halted) && (!halted || all_ramp || frozen));
         invariant_17: assert (!halted || !ran);
         invariant_19: assert (!(mine && committed && at % TURN >= 8) || word[5:3] + 3'd1 != word[2:0] + {2'd0, starts});
+        invariant_21: assert (slows == |(slowing & lane) || first_clock || (`AXES == 1 && was_beat[12]));
         invariant_18: assert (turning || !{going, taken, armed, active, unfed, held} && quiet);
     end
 `endif

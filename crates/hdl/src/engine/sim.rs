@@ -16,6 +16,8 @@ pub trait AnyEngine: Block {
     fn clock(&mut self);
     /// Asks the `get` port; its answer of the present cycle, if it speaks.
     fn get(&mut self, axis: usize, item: usize) -> Option<u32>;
+    /// What the `get` port says, whatever it is.
+    fn said(&self) -> u32;
     /// What the memory keeps.
     fn kept(&self, axis: usize, item: usize) -> u32;
 }
@@ -87,7 +89,11 @@ impl<const N: usize> AnyEngine for Engine<N> {
     fn get(&mut self, axis: usize, item: usize) -> Option<u32> {
         self.get_axis.next = Word::from(axis as u64);
         self.get_item.next = Word::from(item as u64);
-        self.get_valid.val().then(|| self.get_data.val().value() as u32)
+        self.get_valid.val().then(|| self.said())
+    }
+
+    fn said(&self) -> u32 {
+        self.get_data.val().value() as u32
     }
 
     fn kept(&self, axis: usize, item: usize) -> u32 {
@@ -125,6 +131,11 @@ impl EngineSim {
     /// What the `get` port says of an axis in the present cycle, if it speaks; `item` as in [`Engine::get_item`].
     pub fn get(&mut self, axis: usize, item: usize) -> Option<u32> {
         self.core.get(axis, item)
+    }
+
+    /// The position of the axis of `latch`, in the present cycle.
+    pub fn latched(&self) -> u32 {
+        self.core.said()
     }
 
     /// What the memory keeps of an axis; `item` as in [`Engine::get_item`].

@@ -92,7 +92,10 @@ impl Recording {
                 .map(|mask| u32::from(mask) & ((1 << self.axes()) - 1));
             let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear}");
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{count} {host} {stop} {broken} {homes} {home:x} {kick} {enable} {estop} {min:x} {max:x}");
+            let _ = writeln!(
+                text,
+                "{count} {host} {stop} {broken} {homes} {home:x} {kick} {enable} {estop} {min:x} {max:x}"
+            );
         }
         text
     }

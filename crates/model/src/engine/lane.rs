@@ -130,7 +130,7 @@ impl Lane {
         }
         if let Some(look) = look {
             let hit = next.look(look, tick, next.computed.sign);
-            if hit && !self.homing.meets {
+            if hit && !self.homing.meets && !self.homing.slows {
                 found = Some(Cause::Limit);
             }
         }

@@ -16,6 +16,7 @@ module promises (
     input wire halted,
     input wire ramp,
     input wire clear,
+    input wire empties,
     input wire take,
     input wire commit,
     input wire last,
@@ -32,7 +33,7 @@ module promises (
 );
     (* anyconst *) reg [2:0] who;
 
-    wire [2:0] live, fresh;
+    wire [2:0] live, fresh, room;
     wire full, empty, running, sound, slows, upward, steady, moves, goes_on, too_fast, dry, up, down, lost;
     `DUT dut (.*);
 
@@ -91,7 +92,7 @@ module promises (
             marks <= last ? marks | place : marks & ~place;
         end
         if (ends) begin
-            begun <= clear ? 0 : begun_then;
+            begun <= clear ? 0 : empties ? committed : begun_then;
             committed <= clear ? 0 : committed + adds;
             adds <= 0;
             runs <= fine & !rests;
@@ -130,6 +131,7 @@ module promises (
         promise_6_never_overtaken: assert (waiting <= 7 && committed - begun <= 7);
         promise_6_in_order: assert (!mine || !in_turn || live == begun_now[2:0] && fresh == committed[2:0] + 3'd1);
         promise_6_full: assert (!mine || !in_turn || full == (waiting == 7));
+        promise_6_room: assert (!mine || !in_turn || room == 7 - waiting);
         promise_6_empty: assert (!mine || !in_turn || empty == (waiting == 0));
         promise_6_runs_as_told: assert (!mine || !in_turn || {running, moves, too_fast} == {on, fine, on & !fine});
         promise_6_goes_on: assert (!ends || goes_on == (fine & !rests));
@@ -184,7 +186,7 @@ module promises (
     reg was_clash = 0;               // a word was read as it was written
     always @(posedge clock) was_clash <= write_bits != 0 & write_at == read_at;
 
-    wire signed [31:0] room = {30'd0, spare};
+    wire signed [31:0] slack = {30'd0, spare};
 
 `ifdef INVARIANTS
     always_comb begin
@@ -196,7 +198,7 @@ module promises (
         invariant_5: assert (lasts == marks);
         invariant_6: assert (!mine || beat[12:1] == 0 || mark_read == lasts[begun_now[2:0]]);
         invariant_7: assert ((mine && beat[12:1] != 0 ? dut_committed == adds : !adds) && (!adds || beat[12:8] != 0));
-        invariant_8: assert (behind_then <= 3 - room && behind_then >= room - 3);
+        invariant_8: assert (behind_then <= 3 - slack && behind_then >= slack - 3);
         invariant_9: assert (!adds || waiting < 7);
         invariant_10: assert (!asked || !was_unseen || given_up != written_off);
     end

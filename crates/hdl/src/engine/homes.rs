@@ -7,14 +7,14 @@
 //! slows    _________________________/^^^^^^^^^^^^\____   in its turns only: a ramp, until it rests
 //! ```
 
-use crate::constant::Literal;
+use crate::constant::{Literal, Parameter};
 use crate::register::{Input, Register};
 use crate::word::Word;
 use rust_hdl::prelude::*;
 
 /// The axes that wait for their limit, and those that have met it.
 #[derive(LogicBlock, Default)]
-pub struct Homing<const N: usize> {
+pub struct Homes<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// The host says anew which axes wait,
@@ -38,18 +38,32 @@ pub struct Homing<const N: usize> {
     waiting: Register<Word<N>>,
     slowing: Register<Word<N>>,
     mine: Signal<Local, Bit>,
-    mine_slows: Signal<Local, Bit>,
+    lane_next: Signal<Local, Word<N>>,
+    mine_slows: Register<Bit>, // known with the turn's first beat: the whole ramp hangs on it
     caught: Signal<Local, Bit>,
     slower: Signal<Local, Word<N>>,
     none: Literal<N, 0>,
+    by_one: Literal<1, 1>,
+    to_top: Parameter<3>,
 }
 
-impl<const N: usize> Logic for Homing<N> {
+impl<const N: usize> Homes<N> {
+    /// The homing of N axes.
+    pub fn new() -> Self {
+        Self { to_top: Parameter::new(N as u64 - 1), ..Self::default() }
+    }
+}
+
+impl<const N: usize> Logic for Homes<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, waiting, slowing);
+        dff_setup!(self, clock, waiting, slowing, mine_slows);
         self.mine.next = (self.waiting.q.val() & self.lane.val()).any();
-        self.mine_slows.next = (self.slowing.q.val() & self.lane.val()).any();
+        self.lane_next.next = self.lane.val();
+        if self.turn_ends.val() {
+            self.lane_next.next = (self.lane.val() << self.by_one.val()) | (self.lane.val() >> self.to_top.val());
+        }
+        self.mine_slows.d.next = (self.slowing.q.val() & self.lane_next.val()).any();
         self.caught.next = self.hit.val() & self.mine.val();
 
         if self.caught.val() {
@@ -72,7 +86,7 @@ impl<const N: usize> Logic for Homing<N> {
 
         self.axes.next = self.waiting.q.val();
         self.waits.next = self.mine.val();
-        self.slows.next = self.mine_slows.val();
+        self.slows.next = self.mine_slows.q.val();
     }
 }
 
@@ -82,7 +96,7 @@ mod tests {
     use crate::sim::assert_synthesizes;
 
     #[test]
-    fn homing_synthesizes() {
-        assert_synthesizes(Homing::<6>::default(), "carrystep_homing");
+    fn homes_synthesizes() {
+        assert_synthesizes(Homes::<6>::new(), "carrystep_homes");
     }
 }

@@ -1,0 +1,75 @@
+// Homing: promise 12's exception, for any axis: a limit that an axis waits for slows down that axis, and no other. Without bound.
+//
+//   from outside   AXES; `DUT, the exported homes
+//   assumed        what turn/ and limits/promises.sv prove: a turn is of one axis and ends apart from the next, the
+//                  axis' own bit is set in `lane`, hits come in the last beat of a turn
+//
+// All is said of one axis, `who`, which may be any.
+
+module promises (
+    input wire clock,
+    input wire set,
+    input wire [`AXES-1:0] mask,
+    input wire turn_ends,
+    input wire [2:0] axis,   // whose turn it is
+    input wire hit,
+    input wire goes_on
+);
+    (* anyconst *) reg [2:0] who;
+
+    wire [`AXES-1:0] lane = 32'd1 << axis;
+    wire [`AXES-1:0] axes;
+    wire waits, slows;
+    `DUT dut (.*);
+
+    reg first_clock = 1, was_turn_ends = 0;
+    reg [2:0] was_axis = 0;
+    always @(posedge clock) begin
+        first_clock <= 0;
+        {was_turn_ends, was_axis} <= {turn_ends, axis};
+    end
+    wire [2:0] follower = was_axis == `AXES - 1 ? 3'd0 : was_axis + 3'd1;
+    always_comb begin
+        assume (who < `AXES && (!hit || turn_ends));
+        assume (axis == (first_clock ? 3'd0 : was_turn_ends ? follower : was_axis));
+        assume (!turn_ends || !was_turn_ends && !first_clock);
+    end
+
+    // ---- Homing, as docs/clock-by-clock.md has it.
+
+    reg waiting = 0, slowing = 0;
+    wire ends = turn_ends & axis == who;
+    wire caught = ends & hit & waiting;
+    always @(posedge clock) begin
+        waiting <= set ? (mask >> who) & 1 : waiting & !caught;
+        if (ends) slowing <= caught | slowing & goes_on;
+    end
+
+    // ---- The promises. With the one axis there may be, its turn has no other before it in which to become known.
+
+    wire known = `AXES > 1 || !was_turn_ends;
+    always_comb begin
+        promise_12_waits_as_asked: assert (((axes >> who) & 1) == waiting);
+        promise_12_waits_in_its_turn: assert (axis != who || waits == waiting);
+        promise_12_slows_after_its_own_hit: assert (axis != who || !known || slows == slowing);
+        promise_13_inactive: assert (!first_clock || !slows && axes == 0);
+    end
+
+    // ---- Why they hold.
+
+    (* inside = "dut.slowing" *) wire [`AXES-1:0] dut_slowing;
+
+`ifdef INVARIANTS
+    always_comb begin
+        invariant_1: assert (axis < `AXES && was_axis < `AXES);
+        invariant_2: assert (((dut_slowing >> who) & 1) == slowing);
+    end
+`endif
+
+    // ---- None of it is empty.
+
+    always_comb begin
+        cover_12_slows: cover (slows && axis == who);
+        cover_12_slowed: cover (ends && slowing && !goes_on && !caught);
+    end
+endmodule
