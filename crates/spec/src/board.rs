@@ -1,17 +1,18 @@
 //! Boards as data: what is on them, which pin does what, and how their clock is made. One file of `data/boards/` each.
 
-use crate::clock::{ClockError, ClockManager};
+use crate::clock::ClockManager;
 use crate::engine::Limits;
 use crate::error::{InputError, Source};
 use serde::Serialize;
 use std::path::Path;
 use std::sync::LazyLock;
-use thiserror::Error;
 
+mod error;
 mod family;
 mod port;
 mod raw;
 
+pub use error::BoardError;
 pub use family::{Family, IoStandard, PllInput, Toolchain};
 pub use port::{OSCILLATOR, PORTS, Port, Way};
 
@@ -130,9 +131,18 @@ pub struct Wire {
     pub port: String,
     /// Pin of the package.
     pub pin: String,
-    /// Connector and label, where it is on one.
+    /// Where it is on a connector.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub label: Option<(String, String)>,
+    pub at: Option<Place>,
+}
+
+/// A place that a person can see.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Place {
+    /// The connector.
+    pub connector: String,
+    /// What is printed beside the pin.
+    pub label: String,
 }
 
 /// A pin that is driven to one level for ever.
@@ -148,69 +158,6 @@ pub struct Tie {
     pub why: String,
 }
 
-/// What a board cannot do.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum BoardError {
-    /// There is no such board.
-    #[error("no board is called '{name}'; there are {}", names())]
-    Unknown {
-        /// What was asked for.
-        name: String,
-    },
-    /// It is not sold with this part.
-    #[error("{board} has no part '{part}'; there is {}", .parts.join(", "))]
-    Part {
-        /// The board.
-        board: String,
-        /// What was asked for.
-        part: String,
-        /// Those that there are.
-        parts: Vec<String>,
-    },
-    /// More axes than it has pins for.
-    #[error("{board} has pins for {has} axes, not for {wanted}: leave out axes, or take another board")]
-    Axes {
-        /// The board.
-        board: String,
-        /// STEP and DIR pins.
-        has: usize,
-        /// What the machine has.
-        wanted: usize,
-    },
-    /// More limit switches than it has pins for.
-    #[error("{board} has pins for {low} switches at low ends and {high} at high ends, too few for {wanted}: {instead}")]
-    Limits {
-        /// The board.
-        board: String,
-        /// Pins for low ends.
-        low: usize,
-        /// Pins for high ends.
-        high: usize,
-        /// What the machine has.
-        wanted: String,
-        /// What would do.
-        instead: &'static str,
-    },
-    /// A port that is nowhere on it.
-    #[error("{board} has no pin for {port}")]
-    Port {
-        /// The board.
-        board: String,
-        /// The port.
-        port: String,
-    },
-    /// A clock that cannot be made on it.
-    #[error("{board}: {source}; it is proposed to run at {proposed}")]
-    Clock {
-        /// The board.
-        board: String,
-        /// Why not.
-        source: ClockError,
-        /// Those that it is known to make.
-        proposed: String,
-    },
-}
-
 /// All boards.
 pub fn boards() -> &'static [Board] {
     static BOARDS: LazyLock<Vec<Board>> = LazyLock::new(|| {
@@ -223,6 +170,7 @@ pub fn boards() -> &'static [Board] {
     &BOARDS
 }
 
+/// Names of all boards, for messages.
 fn names() -> String {
     let names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
     names.join(", ")

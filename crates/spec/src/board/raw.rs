@@ -1,16 +1,18 @@
 //! A board's file as it is written, and its checks.
 
 use super::port::{PORTS, Port};
-use super::{Board, Clocking, Family, IoStandard, Oscillator, Part, PllInput, Tie, Wire};
+use super::{Board, Clocking, Family, IoStandard, Oscillator, Part, Place, PllInput, Tie, Wire};
 use crate::build::Timebase;
 use crate::engine::{MAX_AXES, check_schedule};
 use crate::error::{InputError, Source};
-use serde::de::{SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use pins::Pins;
+use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
+
+mod pins;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a board")]
@@ -87,36 +89,6 @@ struct RawTie {
 struct Reserved {
     pin: Spanned<String>,
     why: String,
-}
-
-/// A pin, or one for each axis.
-enum Pins {
-    One(String),
-    Many(Vec<Spanned<String>>),
-}
-
-/// By hand: an untagged enumeration would lose the places.
-impl<'de> Deserialize<'de> for Pins {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct OneOrMany;
-        impl<'de> Visitor<'de> for OneOrMany {
-            type Value = Pins;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a pin in quotes, or a list of them")
-            }
-            fn visit_str<E: serde::de::Error>(self, pin: &str) -> Result<Pins, E> {
-                Ok(Pins::One(pin.to_owned()))
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Pins, A::Error> {
-                let mut pins = Vec::new();
-                while let Some(pin) = list.next_element()? {
-                    pins.push(pin);
-                }
-                Ok(Pins::Many(pins))
-            }
-        }
-        deserializer.deserialize_any(OneOrMany)
-    }
 }
 
 /// A table of ports.
@@ -281,12 +253,12 @@ impl Reader<'_> {
             };
             for (index, spanned) in pins.into_iter().enumerate() {
                 let bit = if port.per_axis { format!("{}[{index}]", port.name) } else { port.name.to_owned() };
-                let (pin, label) = match on_connector {
+                let (pin, at) = match on_connector {
                     false => (spanned.as_ref().clone(), None),
                     true => self.labelled(&spanned, connectors)?,
                 };
                 self.take(&Spanned::new(spanned.span(), pin.clone()), &bit)?;
-                wires.push(Wire { port: bit, pin, label });
+                wires.push(Wire { port: bit, pin, at });
             }
         }
         let place = |wire: &Wire| PORTS.iter().position(|port| wire.port.split('[').next() == Some(port.name));
@@ -307,11 +279,11 @@ impl Reader<'_> {
         &self,
         label: &Spanned<String>,
         connectors: &Connectors,
-    ) -> Result<(String, Option<(String, String)>), InputError> {
+    ) -> Result<(String, Option<Place>), InputError> {
         let text = label.as_ref();
         let on = |(connector, labels): (&String, &BTreeMap<Spanned<String>, String>)| {
             let (_, pin) = labels.iter().find(|(label, _)| label.as_ref() == text)?;
-            Some((pin.clone(), Some((connector.clone(), text.clone()))))
+            Some((pin.clone(), Some(Place { connector: connector.clone(), label: text.clone() })))
         };
         let mut found = connectors.iter().filter_map(on);
         match (found.next(), found.next()) {
