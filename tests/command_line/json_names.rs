@@ -30,6 +30,25 @@ const PLAN: &str = "passed tick_ns moves
 
 const RUN: &str = "passed core level clocks run_s faults positions files";
 
+const BOARDS: &str = "passed tried_on_hardware boards boards[].name boards[].title boards[].family
+    boards[].parts boards[].parts[].name boards[].parts[].package boards[].parts[].block_rams
+    boards[].oscillator boards[].oscillator.pin boards[].oscillator.hz boards[].oscillator.io
+    boards[].clocks boards[].clocks[].clock_hz boards[].clocks[].tick_ns boards[].clocks[].phases
+    boards[].clocks[].made_by boards[].clocks[].why boards[].io boards[].wires boards[].wires[].port
+    boards[].wires[].pin boards[].wires[].at boards[].wires[].at.connector boards[].wires[].at.label boards[].ties
+    boards[].led_low boards[].flash boards[].bitstream boards[].notes boards[].conflicts boards[].sources";
+
+const ICE40: &str = "boards[].pll boards[].parts[].logic_cells boards[].usb boards[].clocks[].made_by.ice40_pll
+    boards[].clocks[].made_by.ice40_pll.divr boards[].clocks[].made_by.ice40_pll.divf
+    boards[].clocks[].made_by.ice40_pll.divq boards[].clocks[].made_by.ice40_pll.filter_range";
+
+const TIES: &str = "boards[].ties[].port boards[].ties[].pin boards[].ties[].level boards[].ties[].why";
+
+const SPARTANS: &str = "boards[].vccaux boards[].parts[].speed boards[].bitgen boards[].clocks[].made_by.dcm
+    boards[].clocks[].made_by.dcm.multiply boards[].clocks[].made_by.dcm.divide boards[].clocks[].made_by.mmcm
+    boards[].clocks[].made_by.mmcm.multiply boards[].clocks[].made_by.mmcm.divide
+    boards[].clocks[].made_by.mmcm.out_divide";
+
 /// Every name in a document, `a.b` for b in a and `a[]` for what the list a holds.
 fn names(value: &Value, path: &str, found: &mut Vec<String>) {
     match value {
@@ -78,6 +97,15 @@ fn every_report_keeps_its_names() {
     }
     document(&folder, "plan demo/demo.toml", 0, &[PLAN, LIMITS]);
     document(&folder, "check demo/demo.vcd demo/demo.toml", 0, &["passed capture", CHECK]);
+}
+
+#[test]
+fn boards_keep_their_names() {
+    let folder = Folder::new();
+    document(&folder, "boards", 0, &[BOARDS, ICE40, TIES, SPARTANS]);
+    let one = document(&folder, "boards icebreaker", 0, &[BOARDS, ICE40]);
+    assert_eq!(one["boards"][0]["clocks"][0]["clock_hz"], 37_500_000);
+    assert_eq!(one["tried_on_hardware"], false);
 }
 
 #[test]

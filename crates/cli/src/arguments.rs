@@ -43,6 +43,10 @@ pub enum Subcommand {
     Verilog(Verilog),
     /// Run many machines and moves over all cores and report the worst of each figure.
     Sweep(Sweep),
+    /// Show the boards, or one of them: part, clock, ticks, and which pin does what.
+    Boards(Boards),
+    /// Check tools, serial ports and permissions, and name the real cause.
+    Doctor(Doctor),
 }
 
 /// Which gateware.
@@ -200,6 +204,28 @@ pub struct Sweep {
     #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "sample", "seed", "shard"])]
     pub merge: Vec<PathBuf>,
     /// One JSON document instead of the table; shards are merged from these.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep boards`
+#[derive(Debug, Args)]
+pub struct Boards {
+    /// One of them, in full; or a file of a board of your own.
+    #[arg(value_name = "BOARD")]
+    pub board: Option<String>,
+    /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep doctor`
+#[derive(Debug, Args)]
+pub struct Doctor {
+    /// Look for what this board needs; otherwise for simulators and the open tools.
+    #[arg(value_name = "BOARD")]
+    pub board: Option<String>,
+    /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
 }

@@ -1,7 +1,9 @@
 //! One file a subcommand.
 
+pub mod boards;
 pub mod check;
 pub mod demo;
+pub mod doctor;
 pub mod plan;
 pub mod profile;
 pub mod simulate;

@@ -2,6 +2,7 @@
 
 use carrystep_levels::LevelError;
 use carrystep_plan::PlanError;
+use carrystep_spec::board::BoardError;
 use carrystep_spec::{InputError, MoveFile};
 use carrystep_trace::TraceError;
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report};
@@ -102,6 +103,12 @@ fn shorten(text: &str, span: Range<usize>) -> Range<usize> {
 impl From<InputError> for Failure {
     fn from(error: InputError) -> Self {
         Self::Input(error)
+    }
+}
+
+impl From<BoardError> for Failure {
+    fn from(error: BoardError) -> Self {
+        Self::input(error.to_string())
     }
 }
 

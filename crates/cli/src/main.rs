@@ -26,6 +26,8 @@ fn main() -> ExitCode {
         Subcommand::Check(check) => commands::check::run(check),
         Subcommand::Verilog(verilog) => commands::verilog::run(verilog),
         Subcommand::Sweep(sweep) => commands::sweep::run(sweep),
+        Subcommand::Boards(boards) => commands::boards::run(boards),
+        Subcommand::Doctor(doctor) => commands::doctor::run(doctor),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

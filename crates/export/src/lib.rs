@@ -1,4 +1,4 @@
-//! Rust-HDL modules as readable Verilog, and the register map for its clients.
+//! Rust-HDL modules as readable Verilog, the register map for its clients, and what a board's toolchain needs.
 //!
 //! Rust-HDL's own output calls every module after its place in the tree and makes a module of every
 //! flip-flop. This crate reads the same checked tree and the same kernels, and writes what a person would:
@@ -8,8 +8,10 @@
 //! blocks --netlist--> ports, registers, children, kernel --kernel--> wires, blocks, clocked --module--> text
 //! ```
 
+mod board;
 mod core;
 mod expression;
+mod generated;
 mod guard;
 mod kernel;
 mod module;
@@ -19,12 +21,14 @@ mod registers;
 #[cfg(test)]
 mod tests;
 
+pub use crate::board::{BoardFile, CLOCK_NAME, Design};
 pub use crate::core::{
     CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, engine_verilog, six_axis_verilog, write_core, write_engine,
 };
-pub use crate::registers::{register_files, write_register_files};
+pub use crate::generated::{generated_files, write_generated_files};
 
 use carrystep_hdl::HdlError;
+use carrystep_spec::board::BoardError;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -45,8 +49,11 @@ pub enum ExportError {
     /// Two modules that differ want one name.
     #[error("two different modules would be called {0}")]
     SameName(String),
+    /// A board has no pin for a port, or cannot make the clock.
+    #[error(transparent)]
+    Board(#[from] BoardError),
     /// A template asks for what there is not.
-    #[error("a template of the register map: {0}")]
+    #[error("a template: {0}")]
     Template(#[from] minijinja::Error),
     /// A file could not be written.
     #[error("cannot write {}: {source}", path.display())]

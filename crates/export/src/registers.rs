@@ -1,12 +1,9 @@
 //! The register map for the clients: Rust constants, a C header, a page of documentation, all from the table in `spec`.
 
 use crate::ExportError;
-use crate::core::new_file;
 use carrystep_spec::link::registers::{self, Access, PER_AXIS, REGISTERS};
 use carrystep_spec::link::{self, ANSWER, ANSWER_DATA, CAUSE_NAMES, Constant, Field, WRITE};
 use minijinja::{Environment, Value, context};
-use std::io::Write;
-use std::path::Path;
 
 /// A file that is written from the table: where it lies in the workspace, and its template.
 const FILES: [(&str, &str); 3] = [
@@ -19,7 +16,7 @@ const FILES: [(&str, &str); 3] = [
 ///
 /// # Errors
 /// [`ExportError::Template`] where a template asks for what there is not.
-pub fn register_files() -> Result<Vec<(&'static str, String)>, ExportError> {
+pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
     let environment = Environment::new();
     let values = context! {
         constants => link::CONSTANTS.iter().chain(registers::CONSTANTS).map(constant).collect::<Vec<_>>(),
@@ -38,25 +35,6 @@ pub fn register_files() -> Result<Vec<(&'static str, String)>, ExportError> {
     };
     let render = |(path, template)| Ok((path, environment.render_str(template, &values)? + "\n"));
     FILES.into_iter().map(render).collect()
-}
-
-/// Writes each of them to its place under the workspace's `root`; each appears whole or not at all.
-///
-/// # Errors
-/// [`ExportError`] where a file cannot be made or written.
-pub fn write_register_files(root: &Path) -> Result<(), ExportError> {
-    for (path, text) in register_files()? {
-        let path = root.join(path);
-        let dir = path.parent().unwrap_or(root);
-        let write = || {
-            let mut file = new_file(dir)?;
-            file.write_all(text.as_bytes())?;
-            file.persist(&path)?;
-            Ok(())
-        };
-        write().map_err(|source| ExportError::Io { path: path.clone(), source })?;
-    }
-    Ok(())
 }
 
 const fn access(access: Access) -> &'static str {

@@ -1,9 +1,11 @@
 //! The single source of carrystep's facts: number formats, segments, build parameters, faults,
-//! driver timings, machine and move files.
+//! driver timings, boards and their clocks, machine and move files.
 //!
 //! Nothing here computes motion. Everything that two crates must agree on stands here once.
 
+pub mod board;
 pub mod build;
+pub mod clock;
 pub mod decimal;
 pub mod driver;
 pub mod engine;

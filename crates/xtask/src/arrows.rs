@@ -4,7 +4,7 @@ use crate::shell::{self, Done};
 use std::collections::BTreeSet;
 
 /// Each crate and all crates of the house that it may reach, directly or through others.
-const ALLOWED: [(&str, &[&str]); 16] = [
+const ALLOWED: [(&str, &[&str]); 17] = [
     ("spec", &[]),
     ("profile", &["spec"]),
     ("table", &["spec", "profile"]),
@@ -18,7 +18,24 @@ const ALLOWED: [(&str, &[&str]); 16] = [
     ("levels", &["spec", "profile", "model", "hdl", "export", "trace"]),
     ("sweep", &["spec"]),
     ("synthesis", &["spec", "hdl", "export"]),
-    ("cli", &["spec", "profile", "table", "reference", "plan", "model", "hdl", "export", "trace", "levels", "sweep"]),
+    ("doctor", &["spec"]),
+    (
+        "cli",
+        &[
+            "spec",
+            "profile",
+            "table",
+            "reference",
+            "plan",
+            "model",
+            "hdl",
+            "export",
+            "trace",
+            "levels",
+            "sweep",
+            "doctor",
+        ],
+    ),
     ("bench", &["spec", "profile", "plan", "model", "hdl", "export", "trace", "levels"]),
     ("xtask", &[]),
 ];

@@ -46,7 +46,7 @@ enum Chore {
         #[arg(long)]
         json: bool,
     },
-    /// Write `hdl-out/` anew from the Rust-HDL modules, and the register map for its clients.
+    /// Write `hdl-out/` anew from the Rust-HDL modules, the register map for its clients, and the boards' pages.
     Generate,
     /// Write the README's table and pictures anew from the demo (the waveform needs gtkwave and xvfb).
     Readme,

@@ -1,0 +1,112 @@
+//! `carrystep boards`: what is supported, and which pin does what.
+
+use crate::arguments::Boards;
+use crate::failure::Failure;
+use crate::output;
+use carrystep_spec::board::{Board, BoardError, Part, Place, board, boards};
+use carrystep_spec::clock::mhz;
+use serde::Serialize;
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// The truth about all of them.
+const UNTRIED: &str = "None of these boards was at hand: nothing of carrystep was ever run on one.\n";
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Shown<'a> {
+    passed: bool,
+    /// Whether carrystep was ever run on a real one.
+    tried_on_hardware: bool,
+    boards: &'a [Board],
+}
+
+/// Shows all boards, or one.
+pub fn run(arguments: &Boards) -> Result<(), Failure> {
+    let one = arguments.board.as_deref().map(find).transpose()?;
+    let shown = one.as_deref().map_or(boards(), std::slice::from_ref);
+    if arguments.json {
+        return output::print_json(&Shown { passed: true, tried_on_hardware: false, boards: shown });
+    }
+    output::print(&one.as_deref().map_or_else(list, in_full))
+}
+
+/// A board by its name, or of a file.
+pub fn find(name: &str) -> Result<Cow<'static, Board>, Failure> {
+    match board(name) {
+        Ok(board) => Ok(Cow::Borrowed(board)),
+        Err(_) if Path::new(name).extension().is_some_and(|extension| extension == "toml") => {
+            Ok(Cow::Owned(Board::load(Path::new(name))?))
+        }
+        Err(error @ BoardError::Unknown { .. }) => {
+            Err(Failure::input(format!("{error}; or the file of a board of your own, BOARD.toml")))
+        }
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// A line for each.
+fn list() -> String {
+    let mut text = format!("{:<12}  {:<9}  {:>5}  {:>4}  {:>6}  board\n", "name", "part", "MHz", "tick", "phases");
+    for board in boards() {
+        let clock = &board.clocks[0];
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{:<12}  {:<9}  {:>5}  {:>4}  {:>6}  {}",
+            board.name,
+            board.parts[0].name,
+            mhz(clock.clock_hz),
+            clock.tick_ns,
+            clock.phases,
+            board.title
+        );
+    }
+    text + "tick in ns. `carrystep boards BOARD` shows its pins, and its other parts and clocks.\n" + UNTRIED
+}
+
+/// Everything about one.
+fn in_full(board: &Board) -> String {
+    let parts: Vec<String> = board.parts.iter().map(Part::ordered).collect();
+    let mut text = format!(
+        "{}: {}, {}\nmade by      {}\noscillator   {} MHz on pin {}\nload it      {}\n\n",
+        board.name,
+        board.title,
+        parts.join(" or "),
+        board.family.toolchain(),
+        mhz(board.oscillator.hz),
+        board.oscillator.pin,
+        board.flash
+    );
+    for (index, clock) in board.clocks.iter().enumerate() {
+        let which = if index == 0 { "clock" } else { "or" };
+        let _ = writeln!(
+            text,
+            "{which:<11}  {} MHz, ticks of {} ns in {} phases: {}",
+            mhz(clock.clock_hz),
+            clock.tick_ns,
+            clock.phases,
+            clock.why
+        );
+    }
+    let _ = writeln!(text, "\n{:<12}  {:<4}  at", "port", "pin");
+    for wire in &board.wires {
+        let at = wire
+            .at
+            .as_ref()
+            .map_or_else(|| "on the board".to_owned(), |Place { connector, label }| format!("{connector}, {label}"));
+        let _ = writeln!(text, "{:<12}  {:<4}  {at}", wire.port, wire.pin);
+    }
+    for tie in &board.ties {
+        let _ = writeln!(text, "{:<12}  {:<4}  {}", tie.port, tie.pin, tie.why);
+    }
+    let _ = writeln!(text, "pins are 3.3 V\n");
+    for note in &board.notes {
+        let _ = writeln!(text, "note: {note}");
+    }
+    for conflict in &board.conflicts {
+        let _ = writeln!(text, "sources disagree: {conflict}");
+    }
+    text + UNTRIED
+}

@@ -1,0 +1,68 @@
+//! What a board cannot do: each error names what it can.
+
+use super::names;
+use crate::clock::ClockError;
+use thiserror::Error;
+
+/// What a board cannot do.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum BoardError {
+    /// There is no such board.
+    #[error("no board is called '{name}'; there are {}", names())]
+    Unknown {
+        /// What was asked for.
+        name: String,
+    },
+    /// It is not sold with this part.
+    #[error("{board} has no part '{part}'; there is {}", .parts.join(", "))]
+    Part {
+        /// The board.
+        board: String,
+        /// What was asked for.
+        part: String,
+        /// Those that there are.
+        parts: Vec<String>,
+    },
+    /// More axes than it has pins for.
+    #[error("{board} has pins for {has} axes, not for {wanted}: leave out axes, or take another board")]
+    Axes {
+        /// The board.
+        board: String,
+        /// STEP and DIR pins.
+        has: usize,
+        /// What the machine has.
+        wanted: usize,
+    },
+    /// More limit switches than it has pins for.
+    #[error("{board} has pins for {low} switches at low ends and {high} at high ends, too few for {wanted}: {instead}")]
+    Limits {
+        /// The board.
+        board: String,
+        /// Pins for low ends.
+        low: usize,
+        /// Pins for high ends.
+        high: usize,
+        /// What the machine has.
+        wanted: String,
+        /// What would do.
+        instead: &'static str,
+    },
+    /// A port that is nowhere on it.
+    #[error("{board} has no pin for {port}")]
+    Port {
+        /// The board.
+        board: String,
+        /// The port.
+        port: String,
+    },
+    /// A clock that cannot be made on it.
+    #[error("{board}: {source}; it is proposed to run at {proposed}")]
+    Clock {
+        /// The board.
+        board: String,
+        /// Why not.
+        source: ClockError,
+        /// Those that it is known to make.
+        proposed: String,
+    },
+}

@@ -1,0 +1,140 @@
+//! Families of FPGAs: who synthesises them, and what makes their clock.
+
+use crate::clock::ClockManagers;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A family.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Family {
+    /// Lattice iCE40 LP, HX and UltraPlus.
+    Ice40,
+    /// Xilinx Spartan-3.
+    Spartan3,
+    /// Xilinx Spartan-3E.
+    Spartan3e,
+    /// Xilinx Spartan-6.
+    Spartan6,
+    /// Xilinx Spartan-7.
+    Spartan7,
+}
+
+/// Who makes a bitstream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Toolchain {
+    /// yosys, nextpnr and icestorm.
+    Open,
+    /// ISE 14.7.
+    Ise,
+    /// Vivado.
+    Vivado,
+}
+
+impl Family {
+    /// Who makes its bitstreams.
+    pub const fn toolchain(self) -> Toolchain {
+        match self {
+            Self::Ice40 => Toolchain::Open,
+            Self::Spartan3 | Self::Spartan3e | Self::Spartan6 => Toolchain::Ise,
+            Self::Spartan7 => Toolchain::Vivado,
+        }
+    }
+
+    /// What yosys' `synth_xilinx` calls it; `None` for an iCE40, which has a command of its own.
+    pub const fn yosys(self) -> Option<&'static str> {
+        match self {
+            Self::Ice40 => None,
+            Self::Spartan3 => Some("xc3s"),
+            Self::Spartan3e => Some("xc3se"),
+            Self::Spartan6 => Some("xc6s"),
+            Self::Spartan7 => Some("xc7"),
+        }
+    }
+
+    /// What makes clocks in it. The DCM's ranges are those of the slowest speed grade in the low-frequency mode, by the data
+    /// sheets DS099, DS312 and DS162; the vendor's tools check them again.
+    pub const fn clock_managers(self) -> ClockManagers {
+        const fn dcm(least_in: u64, least_out: u64, most_out: u64) -> ClockManagers {
+            ClockManagers::Dcm { least_in, least_out, most_out }
+        }
+        match self {
+            Self::Ice40 => ClockManagers::Ice40,
+            Self::Spartan3 => dcm(1_000_000, 18_000_000, 210_000_000),
+            Self::Spartan3e => dcm(1_000_000, 5_000_000, 311_000_000),
+            Self::Spartan6 => dcm(1_000_000, 5_000_000, 311_000_000),
+            Self::Spartan7 => ClockManagers::Mmcm,
+        }
+    }
+}
+
+impl fmt::Display for Family {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ice40 => "iCE40",
+            Self::Spartan3 => "Spartan-3",
+            Self::Spartan3e => "Spartan-3E",
+            Self::Spartan6 => "Spartan-6",
+            Self::Spartan7 => "Spartan-7",
+        })
+    }
+}
+
+impl fmt::Display for Toolchain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Open => "yosys, nextpnr-ice40, icestorm",
+            Self::Ise => "ISE 14.7",
+            Self::Vivado => "Vivado",
+        })
+    }
+}
+
+/// What a pin is set to; it follows from its bank's voltage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum IoStandard {
+    /// 3.3 V.
+    #[serde(rename = "LVCMOS33")]
+    Lvcmos33,
+    /// 3.3 V.
+    #[serde(rename = "LVTTL")]
+    Lvttl,
+    /// 2.5 V.
+    #[serde(rename = "LVCMOS25")]
+    Lvcmos25,
+    /// 1.8 V.
+    #[serde(rename = "LVCMOS18")]
+    Lvcmos18,
+}
+
+impl IoStandard {
+    /// What UCF and XDC call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Lvcmos33 => "LVCMOS33",
+            Self::Lvttl => "LVTTL",
+            Self::Lvcmos25 => "LVCMOS25",
+            Self::Lvcmos18 => "LVCMOS18",
+        }
+    }
+
+    /// Voltage of the bank, mV.
+    pub const fn millivolts(self) -> u32 {
+        match self {
+            Self::Lvcmos33 | Self::Lvttl => 3300,
+            Self::Lvcmos25 => 2500,
+            Self::Lvcmos18 => 1800,
+        }
+    }
+}
+
+/// How the oscillator reaches an iCE40's PLL: nextpnr places one kind only, by the oscillator's pin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PllInput {
+    /// Straight from its pad: `SB_PLL40_PAD`.
+    Pad,
+    /// Over the fabric: `SB_PLL40_CORE`.
+    Core,
+}

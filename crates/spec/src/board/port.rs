@@ -1,0 +1,49 @@
+//! The ports of a board's top level: what each is for, and which way it goes.
+
+/// Which way a port goes, seen from the FPGA.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Into the FPGA.
+    In,
+    /// Into the FPGA; pulled up, so that an open wire is high.
+    PulledUp,
+    /// Out of it.
+    Out,
+}
+
+/// A port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Port {
+    /// Its name.
+    pub name: &'static str,
+    /// Which way it goes.
+    pub way: Way,
+    /// A bit for each axis.
+    pub per_axis: bool,
+    /// What it is for.
+    pub what: &'static str,
+}
+
+const fn port(name: &'static str, way: Way, per_axis: bool, what: &'static str) -> Port {
+    Port { name, way, per_axis, what }
+}
+
+/// The oscillator's port.
+pub const OSCILLATOR: &str = "oscillator";
+
+/// All ports that a board may have, but for [`OSCILLATOR`] and its ties.
+pub const PORTS: [Port; 13] = [
+    port("step", Way::Out, true, "STEP of the axis' driver"),
+    port("dir", Way::Out, true, "DIR of the axis' driver; high is backward"),
+    port("enable_n", Way::Out, false, "ENABLE of all drivers; low: they have power"),
+    port("estop", Way::PulledUp, false, "e-stop switch"),
+    port("limit_min", Way::PulledUp, true, "limit switch at the low end, or the axis' only one"),
+    port("limit_max", Way::PulledUp, true, "limit switch at the high end"),
+    port("uart_rx", Way::PulledUp, false, "UART, from the host"),
+    port("uart_tx", Way::Out, false, "UART, to the host"),
+    port("spi_cs_n", Way::PulledUp, false, "SPI chip select, low is active"),
+    port("spi_sck", Way::PulledUp, false, "SPI clock"),
+    port("spi_mosi", Way::PulledUp, false, "SPI, from the host"),
+    port("spi_miso", Way::Out, false, "SPI, to the host"),
+    port("led", Way::Out, false, "light"),
+];

@@ -1,0 +1,146 @@
+//! The boards' files: all are read, and each kind of mistake in one is refused at its place.
+
+#![allow(clippy::unwrap_used)] // a test may panic
+
+use carrystep_spec::board::{Board, Family, OSCILLATOR, PORTS, board, boards};
+use carrystep_spec::engine::Limits;
+use carrystep_spec::{InputError, Source};
+
+const ICESTICK: &str = include_str!("../data/boards/icestick.toml");
+const PAPILIO_PRO: &str = include_str!("../data/boards/papilio-pro.toml");
+
+fn read(text: &str) -> Result<Board, InputError> {
+    Board::from_source(&Source { path: "board.toml".into(), text: text.into() })
+}
+
+#[test]
+fn all_boards_are_there_once() {
+    let mut names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
+    assert_eq!(names.len(), 14);
+    assert!(names.iter().all(|name| board(name).unwrap().name == *name));
+    names.dedup();
+    assert_eq!(names.len(), 14);
+    assert_eq!(boards().iter().filter(|board| board.family == Family::Ice40).count(), 7);
+}
+
+#[test]
+fn every_board_carries_six_axes_at_every_clock_that_it_proposes() {
+    for board in boards() {
+        board.carries(6, Limits::Each).unwrap();
+        for clock in &board.clocks {
+            assert_eq!(board.clock(clock.clock_hz).unwrap(), clock.made_by, "{}", board.name);
+        }
+        assert_eq!(board.oscillator.io.millivolts(), board.io.millivolts());
+    }
+}
+
+#[test]
+fn no_pin_is_used_twice_and_every_wire_is_a_port_s() {
+    for board in boards() {
+        let pins = board.wires.iter().map(|wire| &wire.pin).chain(board.ties.iter().map(|tie| &tie.pin));
+        let mut pins: Vec<&String> = pins.chain([&board.oscillator.pin]).collect();
+        let all = pins.len();
+        pins.sort();
+        pins.dedup();
+        assert_eq!(pins.len(), all, "{}", board.name);
+        for wire in &board.wires {
+            let name = wire.port.split('[').next().unwrap();
+            assert!(PORTS.iter().any(|port| port.name == name) && name != OSCILLATOR);
+        }
+    }
+}
+
+/// Each row: what stands there, what is written instead, the words of the refusal, and the text at its place.
+#[test]
+fn a_mistake_is_refused_where_it_stands() {
+    let rows = [
+        (ICESTICK, "\"J1_4\",", "\"J1_3\",", "pin 112 is taken: step[0]", "\"J1_3\", \"J1_5\""),
+        (ICESTICK, "uart_rx = \"9\"", "uart_rx = \"21\"", "pin 21 is taken: the oscillator", "\"21\"\nuart"),
+        (ICESTICK, "estop = \"J1_10\"", "estop = \"J1_11\"", "no connector has a pin labelled 'J1_11'", "\"J1_11\""),
+        (ICESTICK, "enable_n = ", "enabled = ", "no port is called 'enabled'", "enabled = "),
+        (ICESTICK, "enable_n = \"J1_9\"", "enable_n = [\"J1_9\"]", "enable_n is one pin", "[\"J1_9\"]"),
+        (ICESTICK, "led = \"95\"", "led = 95", "expected a pin in quotes, or a list of them", "95\n"),
+        (
+            ICESTICK,
+            "clock_hz = 48_000_000",
+            "clock_hz = 40_000_000",
+            "the nearest that it makes is 39.75 MHz",
+            "40_000_000",
+        ),
+        (ICESTICK, "tick_ns = 2000", "tick_ns = 1000", "6 axes need 13 clocks each", "[[timebase]]"),
+        (ICESTICK, "pll = \"core\"\n", "", "an iCE40 needs `pll`", "\"ice40\""),
+        (ICESTICK, "family = \"ice40\"", "family = \"ice50\"", "unknown variant `ice50`", "\"ice50\""),
+        (ICESTICK, "logic_cells = 1280", "speed = 4", "an iCE40 has none", "[[part]]"),
+        (
+            ICESTICK,
+            "hz = 12_000_000",
+            "hz = 12_000_000\nio = \"LVCMOS25\"",
+            "LVCMOS25 beside pins of LVCMOS33",
+            "\"LVCMOS25\"",
+        ),
+        (ICESTICK, "usb = \"0403:6010\"", "usb = \"6010\"", "vendor and product are expected", "\"6010\""),
+        (ICESTICK, "iceprog FILE", "iceprog", "has no FILE in it", "\"iceprog\""),
+        (
+            ICESTICK,
+            "led = \"95\"",
+            "led = \"95\"\nestop = \"96\"",
+            "estop stands in [pins] and in [onboard]",
+            "estop = \"96\"",
+        ),
+        (PAPILIO_PRO, "vccaux = \"3.3\"\n", "", "a Spartan-6 needs `vccaux`", "\"spartan6\""),
+        (PAPILIO_PRO, "\nspeed = 2", "", "a Spartan needs a `speed` grade", "[[part]]"),
+        (PAPILIO_PRO, "led = \"P112\"", "led = \"P144\"", "pin P144 is taken: reserved: tied", "\"P144\""),
+    ];
+    for (text, old, new, says, place) in rows {
+        assert!(text.contains(old), "the text is gone: {old}");
+        let text = text.replacen(old, new, 1);
+        let error = read(&text).expect_err(says);
+        assert!(error.message.contains(says), "{says}: {error}");
+        let (_, span) = error.place.as_ref().unwrap();
+        assert!(text[span.start..].starts_with(place), "{says}: {error}");
+    }
+}
+
+#[test]
+fn an_axis_is_whole_and_there_is_a_host_and_an_e_stop() {
+    let rows = [
+        ("\"J1_3\", ", "5 pins for `step` and 6 for `dir`"),
+        ("uart_rx = \"9\"\n", "a host needs both pins of a UART, or all four of an SPI"),
+        ("spi_sck = \"PMOD4\"\n", "a host needs both pins of a UART, or all four of an SPI"),
+        ("estop = \"J1_10\"\n", "without a pin for the e-stop"),
+    ];
+    for (gone, says) in rows {
+        let error = read(&ICESTICK.replacen(gone, "", 1)).expect_err(says);
+        assert!(error.message.contains(says), "{error}");
+    }
+}
+
+#[test]
+fn what_a_board_cannot_do_is_said_with_what_would_do() {
+    let icestick = board("icestick").unwrap();
+    let said = |error: &dyn std::error::Error| error.to_string();
+    let unknown = said(&board("icestik").unwrap_err());
+    assert!(unknown.starts_with("no board is called 'icestik'; there are icestick, icebreaker, "), "{unknown}");
+    assert!(unknown.ends_with(", cmod-s7"), "{unknown}");
+    let s3board = board("s3board").unwrap();
+    assert_eq!(s3board.part(None).unwrap().ordered(), "xc3s400-ft256-4");
+    assert_eq!(
+        said(&s3board.part(Some("xc3s50")).unwrap_err()),
+        "s3board has no part 'xc3s50'; there is xc3s400, xc3s200, xc3s1000"
+    );
+    assert_eq!(
+        said(&icestick.carries(8, Limits::None).unwrap_err()),
+        "icestick has pins for 6 axes, not for 8: leave out axes, or take another board"
+    );
+    assert_eq!(
+        said(&icestick.carries(6, Limits::Pair).unwrap_err()),
+        "icestick has pins for 6 switches at low ends and 0 at high ends, too few for two for each of 6 axes: \
+         limits = \"each\" or \"one\" would do"
+    );
+    assert_eq!(said(&icestick.wire("limit_max[0]").unwrap_err()), "icestick has no pin for limit_max[0]");
+    assert_eq!(
+        said(&icestick.clock(40_000_000).unwrap_err()),
+        "icestick: the PLL makes no clock of 40 MHz from 12 MHz; the nearest that it makes is 39.75 MHz; it is proposed \
+         to run at 48 MHz (ticks of 2000 ns in 16 phases) or 84 MHz (ticks of 1000 ns in 4 phases)"
+    );
+}
