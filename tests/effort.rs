@@ -21,6 +21,11 @@ pub fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
+/// What a long run came to, in one line of its own that `cargo xtask long` takes into `docs/long-runs.md`.
+pub fn figures(line: &str) {
+    say(&format!("FIGURES {line}"));
+}
+
 fn asked() -> Option<u64> {
     let text = std::env::var("CARRYSTEP_CLOCKS").ok()?;
     Some(text.parse().expect("CARRYSTEP_CLOCKS is a number of clocks"))

@@ -100,7 +100,7 @@ fn run_programs(build: &EngineBuild, usual: u64, one: impl Fn(&Program, &Events)
         });
         held.unwrap_or_else(|error| panic!("{error}\n of {build:?}"));
     }
-    effort::say(&format!("{} clocks", clocks.get()));
+    effort::figures(&format!("{} clocks, no difference", clocks.get()));
 }
 
 fn in_rust_hdl(build: &EngineBuild, usual: u64) {
@@ -190,6 +190,8 @@ impl Seen {
         let Self { clocks, edges, together, causes, ramped, cleared, homed } = *self;
         let all = [[clocks, edges, together, ramped, cleared, homed].as_slice(), &causes].concat();
         assert!(all.iter().all(|count| *count > 0), "random programs miss something: {self:?}");
+        let stops: u64 = causes.iter().sum();
+        effort::figures(&format!("{edges} edges, {stops} stops of all {} causes", CAUSES.len()));
     }
 }
 

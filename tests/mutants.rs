@@ -1,4 +1,5 @@
-//! Rung 8: mutants of the exported engine against lock-step with the model.
+//! Rung 8: mutants of the exported engine against lock-step with the model; those that it does not catch are
+//! put to a proof that they are the engine, and those that are not proved to the promises of rung 7.
 //!
 //! ```text
 //! hdl-out/core/carrystep_engine.v -- yosys mutate --> one netlist that holds them all -- Verilator --> a program
@@ -6,6 +7,8 @@
 //! ```
 
 pub mod draw;
+pub mod equal;
+pub mod promises;
 pub mod stimuli;
 pub mod survivors;
 
@@ -23,24 +26,56 @@ const JOBS: usize = 2;
 /// # Panics
 /// Where a tool is missing.
 pub fn catchers<'a>(sample: &Sample, stimuli: &'a [Stimulus]) -> Vec<Option<&'a str>> {
+    let places: Vec<usize> = (0..sample.mutants.len()).collect();
+    each(&places, |place| {
+        let mutant = &sample.mutants[*place];
+        let mut fitting = stimuli.iter().filter(|stimulus| stimulus.is_for(&mutant.module));
+        let catcher = fitting.find(|stimulus| differs(sample, place + 1, stimulus)).map(|s| s.name.as_str());
+        effort::say(&format!("{} is caught by {}: {}", place + 1, catcher.unwrap_or("no recording"), mutant.name));
+        catcher
+    })
+}
+
+/// What is known of a mutant that lock-step does not catch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Judgement {
+    /// It is proved to be the engine.
+    Equal(equal::Scope),
+    /// It breaks a promise of this module.
+    Breaks(&'static str),
+    /// Neither: a person has to say why it is harmless.
+    Open,
+}
+
+/// Asks the other judges about mutants, by their places.
+///
+/// # Panics
+/// Where a tool is missing.
+pub fn judge(sample: &Sample, places: &[usize]) -> Vec<Judgement> {
+    each(places, |place| {
+        let mutant = &sample.mutants[*place];
+        let judgement = match equal::proved(sample, mutant) {
+            Some(scope) => Judgement::Equal(scope),
+            None => promises::broken(sample, mutant).map_or(Judgement::Open, Judgement::Breaks),
+        };
+        effort::say(&format!("{}: {judgement:?}: {}", place + 1, mutant.name));
+        judgement
+    })
+}
+
+/// Does something with each, a few at a time, the results in order.
+pub fn each<T: Sync, R: Send>(all: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
-    let work = || {
-        let mut found = Vec::new();
-        loop {
-            let place = next.fetch_add(1, Ordering::Relaxed);
-            let Some(mutant) = sample.mutants.get(place) else { return found };
-            let mut fitting = stimuli.iter().filter(|stimulus| stimulus.is_for(&mutant.module));
-            let catcher = fitting.find(|stimulus| differs(sample, place + 1, stimulus)).map(|s| s.name.as_str());
-            effort::say(&format!("{} is caught by {}: {}", place + 1, catcher.unwrap_or("NOTHING"), mutant.name));
-            found.push((place, catcher));
-        }
+    let job = || {
+        let take = || Some(next.fetch_add(1, Ordering::Relaxed)).filter(|place| *place < all.len());
+        std::iter::from_fn(take).map(|place| (place, work(&all[place]))).collect::<Vec<_>>()
     };
-    let mut found = std::thread::scope(|scope| {
-        let jobs: Vec<_> = (0..JOBS).map(|_| scope.spawn(work)).collect();
+    let mut done = std::thread::scope(|scope| {
+        let jobs: Vec<_> = (0..JOBS).map(|_| scope.spawn(job)).collect();
         jobs.into_iter().flat_map(|job| job.join().expect("the tools")).collect::<Vec<_>>()
     });
-    found.sort_by_key(|(place, _)| *place);
-    found.into_iter().map(|(_, catcher)| catcher).collect()
+    done.sort_by_key(|(place, _)| *place);
+    done.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Whether a mutant (0: the engine as it is) is not the model.

@@ -35,7 +35,7 @@ mod watch;
 mod wheel;
 
 pub use promises::Promises;
-pub use solver::{Question, ask, tools};
+pub use solver::{ProofError, Question, ask, tools};
 pub use table::table;
 
 use std::sync::Arc;
@@ -121,4 +121,9 @@ pub fn all() -> Vec<Proof> {
         adder::proof(),
         engine::proof(),
     ]
+}
+
+/// The exported engine that proofs are about.
+pub fn shipped_engine() -> Arc<str> {
+    builds::shipped_engine().1
 }

@@ -1,8 +1,8 @@
 //! Rung 7: the promises of docs/promises.md hold in the exported Verilog, for any inputs, for ever; what
 //! they speak of happens; and each notices the bug that is planted for it.
 
-use carrystep_tests::moves;
 use carrystep_tests::proofs::{self, Proof, Question, ask};
+use carrystep_tests::{effort, moves};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::sync::Mutex;
@@ -59,7 +59,12 @@ fn every_promise_is_proved_and_every_planted_bug_is_caught() {
     let jobs: Vec<Job<'_>> = proofs.iter().flat_map(jobs).collect();
     let failures = ask_all(&jobs);
     assert!(failures.is_empty(), "{failures}");
-    println!("\n{}\nproved: {} questions to the solver, all answered as they must be", proofs::table(), jobs.len());
+    println!("\n{}", proofs::table());
+    let bugs: usize = proofs.iter().map(|proof| proof.bugs.len()).sum();
+    effort::figures(&format!(
+        "{} questions to the solver, all answered as they must be; {bugs} planted bugs caught",
+        jobs.len()
+    ));
 }
 
 /// The page's column "proved in" is what is proved, no more and no less.

@@ -11,7 +11,10 @@ use std::process::Command;
 const SEED: u32 = 2009;
 
 /// To what mutants are made of: no constants, no gates that do nothing, memories as they are.
-const PREPARE: &str = "proc; opt -full; memory -nomap; opt -full; wreduce; opt -full; opt_clean -purge";
+const PREPARE: &str = "proc; opt -full; memory -nomap; opt -full; wreduce; opt -full";
+
+/// Away with names that no gate needs: mutants are drawn without them, promises look at some.
+const PURGE: &str = "opt_clean -purge";
 
 /// Wires that are not logic.
 const CLOCKS: [&str; 4] = ["clock", "CLK", "RD_CLK", "WR_CLK"];
@@ -23,7 +26,7 @@ pub struct Mutant {
     /// Where it is, without `carrystep_`.
     pub module: String,
     /// What yosys is told to make it.
-    command: String,
+    pub(super) command: String,
 }
 
 /// A sample, and the Verilog of them all: `+mutant=N` chooses one by its place, from 1; without it there is none.
@@ -32,6 +35,8 @@ pub struct Sample {
     pub mutants: Vec<Mutant>,
     /// The text.
     pub verilog: String,
+    /// The engine without a mutant, as yosys keeps it (RTLIL): what a mutant is made of, and compared with.
+    pub(super) netlist: String,
 }
 
 /// Draws so many mutants.
@@ -49,11 +54,11 @@ pub fn sample(verilog: &str, top: &str, count: usize) -> Sample {
     let list = format!("mutate -list 1000000 -seed {SEED} -o list");
     yosys(
         folder.path(),
-        &format!("read_verilog core.v; hierarchy -check -top {top}; {PREPARE}; write_rtlil core.il; {list}"),
+        &format!("read_verilog core.v; hierarchy -check -top {top}; {PREPARE}; write_rtlil core.il; {PURGE}; {list}"),
     );
     let mutants = draw(candidates(&read("list"), verilog), count);
     let width = usize::BITS - count.leading_zeros();
-    let mut script = "read_rtlil core.il\n".to_owned();
+    let mut script = format!("read_rtlil core.il\n{PURGE}\n");
     for (number, mutant) in (1..).zip(&mutants) {
         // Writing to a string cannot fail.
         let _ = writeln!(script, "mutate -ctrl mutant {width} {number} {}", mutant.command);
@@ -61,7 +66,23 @@ pub fn sample(verilog: &str, top: &str, count: usize) -> Sample {
     let _ = write!(script, "delete -port {top}/w:mutant\nwrite_verilog -noattr mutants.v\n");
     std::fs::write(folder.path().join("apply.ys"), script).expect("a file");
     yosys(folder.path(), "script apply.ys");
-    Sample { mutants, verilog: with_choice(&read("mutants.v"), top, width) }
+    Sample { mutants, verilog: with_choice(&read("mutants.v"), top, width), netlist: read("core.il") }
+}
+
+impl Sample {
+    /// The Verilog of one mutant by itself; without one, of the engine as it was taken apart.
+    ///
+    /// # Panics
+    /// Where yosys is missing or fails.
+    pub fn alone(&self, mutant: Option<&Mutant>) -> String {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("core.il"), &self.netlist).expect("a file");
+        let change = mutant.map(|mutant| format!("mutate {}\n", mutant.command)).unwrap_or_default();
+        let script = format!("read_rtlil core.il\n{change}write_verilog -noattr alone.v\n");
+        std::fs::write(folder.path().join("alone.ys"), script).expect("a file");
+        yosys(folder.path(), "script alone.ys");
+        std::fs::read_to_string(folder.path().join("alone.v")).expect("what yosys has written")
+    }
 }
 
 /// The input that chooses is a variable that is set once: as a port, Verilator would look at it in every clock.
@@ -76,7 +97,7 @@ fn with_choice(verilog: &str, top: &str, width: u32) -> String {
     before.to_owned() + &top_module.replacen(&wire, &choice, 1)
 }
 
-fn yosys(folder: &Path, script: &str) {
+pub(super) fn yosys(folder: &Path, script: &str) {
     let output = Command::new("yosys").args(["-q", "-p", script]).current_dir(folder).output();
     let output = output.expect("yosys is not installed: `cargo xtask tools` installs it");
     assert!(output.status.success(), "yosys: {}", String::from_utf8_lossy(&output.stderr));

@@ -2,9 +2,10 @@
 //!
 //! ```text
 //! - `watch: eq B[3] always 1: wire silent = silence == WATCHDOG;`
-//!   The constant has that bit.
+//!   Proved equal: its module, for any inputs.
 //! ```
 
+use super::equal::Scope;
 use crate::moves::root;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -15,6 +16,19 @@ const END: &str = "<!-- ... to here -->";
 
 /// What stands where nobody has found a reason yet; the test fails as long as it does.
 pub const NO_REASON: &str = "WHY IS IT HARMLESS?";
+
+/// Before what is proved, not written by a person.
+pub const PROVED: &str = "Proved equal";
+
+/// How a mutant is proved to be the engine, in words.
+pub fn proved(scope: Scope) -> String {
+    let of = match scope {
+        Scope::Module => "its module, for any inputs",
+        Scope::Memories => "its module with the memory in it, for any inputs",
+        Scope::Engine => "the whole engine, for any inputs and any words in memory",
+    };
+    format!("{PROVED}: {of}.")
+}
 
 /// Reasons by name.
 pub type Survivors = BTreeMap<String, String>;

@@ -76,6 +76,8 @@ pub enum Question {
     Covers(u32),
     /// This promise, by itself, fails within so many clocks.
     Fails(&'static str, u32),
+    /// Any of the promises fails within so many clocks.
+    Broken(u32),
 }
 
 /// Fails where a tool is missing.
@@ -107,6 +109,7 @@ pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), P
         Question::Induction(depth) => holds(promises, dir.path(), &["-i", "-t", &depth.to_string()])?,
         Question::Covers(clocks) => reached(dir.path(), clocks, promises.covers().len())?,
         Question::Fails(_, clocks) => reached(dir.path(), clocks, 1)?,
+        Question::Broken(clocks) => any_reached(dir.path(), clocks)?,
     };
     if wanted { Ok(()) } else { Err(ProofError::Refuted(said)) }
 }
@@ -130,6 +133,13 @@ fn reached(dir: &Path, clocks: u32, count: usize) -> Result<(bool, String), Proo
     let commands: Vec<String> = (0..count).map(ask).collect();
     let (fine, said) = run(dir, "yosys-abc", &["-c", &commands.join("; ")])?;
     Ok((fine && count > 0 && said.matches("was asserted in frame").count() == count, said))
+}
+
+/// Whether any assertion fails within so many clocks.
+fn any_reached(dir: &Path, clocks: u32) -> Result<(bool, String), ProofError> {
+    let ask = format!("read_aiger promises.aig; fold; orpos; bmc3 -F {clocks} -T {LIMIT}");
+    let (fine, said) = run(dir, "yosys-abc", &["-c", &ask])?;
+    Ok((fine && said.contains("was asserted in frame"), said))
 }
 
 /// The steps of yosys: the exported text as it is, the promises, and names for what they see inside.
@@ -159,11 +169,11 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
     text.push_str(&match question {
         Question::Covers(_) => "delete t:$assert c:cover_* %d\n".to_owned(),
         Question::Fails(label, _) => format!("delete t:$cover\ndelete t:$assert c:{label} %d\n"),
-        Question::Base(_) | Question::Induction(_) => "delete t:$cover\n".to_owned(),
+        Question::Base(_) | Question::Induction(_) | Question::Broken(_) => "delete t:$cover\n".to_owned(),
     });
     text.push_str(match question {
         Question::Base(_) | Question::Induction(_) => "opt_clean -purge\nwrite_smt2 promises.smt2\n",
-        Question::Covers(_) | Question::Fails(..) => TO_GATES,
+        Question::Covers(_) | Question::Fails(..) | Question::Broken(_) => TO_GATES,
     });
     text
 }

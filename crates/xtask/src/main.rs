@@ -3,6 +3,7 @@
 mod accuracy;
 mod arrows;
 mod ladder;
+mod long;
 mod readme;
 mod shell;
 mod tools;
@@ -26,6 +27,11 @@ enum Chore {
     Prove,
     /// Install the simulators, yosys and z3 that the tests need, by apt.
     Tools,
+    /// All longer runs, or those that are named, each with its row in `docs/long-runs.md`: lockstep, rust-hdl, proofs, mutants, resources.
+    Long {
+        /// The runs; none: all.
+        runs: Vec<String>,
+    },
     /// Ten million clocks of lock-step for each test of the engine, and its longest golden vectors.
     Lockstep,
     /// Run all mutants of the engine, and say which recording catches how many.
@@ -74,6 +80,7 @@ fn main() -> ExitCode {
         Chore::Test => ladder::climb(),
         Chore::Prove => ladder::prove(),
         Chore::Tools => tools::install(),
+        Chore::Long { runs } => long::run(&runs),
         Chore::Lockstep => ladder::lockstep(),
         Chore::Mutants { write } => ladder::mutants(write),
         Chore::Arrows => arrows::check(),

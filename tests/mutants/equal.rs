@@ -1,0 +1,142 @@
+//! Proofs that a mutant is the engine: from configuration on, for any inputs, without bound, by yosys and yosys-abc.
+//!
+//! The mutant and what it was made of stand side by side, with the same inputs; all outputs are compared. `scorr` merges
+//! what is equal by induction, `pdr` finds what keeps the rest equal, or a run that shows that it is not.
+//!
+//! Memories are cut out: what one reads is any word, the same on both sides; what it is asked and told is compared. Only
+//! where that is not enough, small ones are taken in as flip-flops; their outputs begin at 0 then, on both sides.
+
+use super::draw::{Mutant, Sample, yosys};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::Command;
+
+/// How much of the engine stands around the mutant; what is proved of less holds of more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scope {
+    /// Its module alone, the memories in it cut out.
+    Module,
+    /// Its module with the memories in it.
+    Memories,
+    /// The whole engine, memories cut out.
+    Engine,
+}
+
+/// Seconds for one question, four times what the slowest takes; of the whole engine only what `scorr` proves has ever been
+/// proved, in no time. A mutant for which this is not enough is not proved.
+const LIMIT: u32 = 100;
+const LIMIT_OF_ENGINE: u32 = 15;
+
+/// The top module.
+const ENGINE: &str = "carrystep_engine";
+
+/// Most bits of the memories that are taken in.
+const MOST_BITS: usize = 1024;
+
+/// The smallest scope in which a mutant is proved to be what it was made of.
+///
+/// # Panics
+/// Where a tool is missing or fails.
+pub fn proved(sample: &Sample, mutant: &Mutant) -> Option<Scope> {
+    [Scope::Module, Scope::Memories, Scope::Engine].into_iter().find(|scope| is_proved(sample, mutant, *scope))
+}
+
+/// Whether a mutant is proved to be what it was made of in this scope; not, where there is no such question.
+///
+/// # Panics
+/// Where a tool is missing or fails.
+pub fn is_proved(sample: &Sample, mutant: &Mutant, scope: Scope) -> bool {
+    let modules = Modules::of(&sample.netlist);
+    let own = format!("carrystep_{}", mutant.module);
+    let Some((top, cut)) = modules.around(&own, scope) else { return false };
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("core.il"), &sample.netlist).expect("a file");
+    let mut script = String::new();
+    for (side, change) in [("gold", ""), ("gate", &format!("mutate {}\n", mutant.command))] {
+        // Writing to a string cannot fail.
+        let _ = write!(script, "read_rtlil core.il\n{change}hierarchy -check -top {top}\n");
+        let _ = cut.iter().try_for_each(|memory| writeln!(script, "blackbox {memory}"));
+        script.push_str("flatten\n");
+        let _ = cut.iter().try_for_each(|memory| writeln!(script, "expose -evert t:{memory}"));
+        let _ = write!(script, "opt_clean\nrename {top} {side}\ndesign -stash {side}\n");
+    }
+    script.push_str(SIDE_BY_SIDE);
+    std::fs::write(folder.path().join("equal.ys"), script).expect("a file");
+    yosys(folder.path(), "script equal.ys");
+    holds(folder.path(), if top == ENGINE { LIMIT_OF_ENGINE } else { LIMIT })
+}
+
+/// One system in gates, whose one output tells a difference. What hangs free is any value, before anything is made simpler by it.
+const SIDE_BY_SIDE: &str = "design -copy-from gold -as gold gold\ndesign -copy-from gate -as gate gate\n\
+     miter -equiv -flatten gold gate miter\nhierarchy -check -top miter\nselect -assert-count 1 o:*\n\
+     setundef -undriven -anyseq\nopt -full\nmemory_map\nsetundef -init -zero\nopt -full\ntechmap\nopt -full\ndffunmap\nabc -g AND -fast\nopt_clean\n\
+     write_aiger -zinit equal.aig\n";
+
+fn holds(folder: &Path, limit: u32) -> bool {
+    let ask = format!("read_aiger equal.aig; fold; strash; scorr; pdr -T {limit}");
+    let output = Command::new("yosys-abc").args(["-c", &ask]).current_dir(folder).output();
+    let output = output.expect("yosys-abc is not installed: `cargo xtask tools` installs it");
+    let said = String::from_utf8_lossy(&output.stdout);
+    let verdicts = ["Property proved.", "was asserted in frame", "UNDECIDED"].map(|verdict| said.contains(verdict));
+    assert!(output.status.success() && verdicts.iter().filter(|said| **said).count() == 1, "yosys-abc: {said}");
+    verdicts[0]
+}
+
+/// What a netlist (RTLIL) says of its modules.
+struct Modules<'a>(BTreeMap<&'a str, Module<'a>>);
+
+#[derive(Default)]
+struct Module<'a> {
+    /// Bits of the memories that lie in it.
+    bits: usize,
+    /// Modules of which it has instances.
+    parts: Vec<&'a str>,
+}
+
+impl<'a> Modules<'a> {
+    fn of(netlist: &'a str) -> Self {
+        let mut all: BTreeMap<&str, Module<'_>> = BTreeMap::new();
+        let (mut name, mut size) = ("", None);
+        for words in netlist.lines().map(|line| line.split_whitespace().collect::<Vec<_>>()) {
+            match words[..] {
+                ["module", module] => name = module.trim_start_matches('\\'),
+                ["cell", part, _] => {
+                    all.entry(name).or_default().parts.extend(part.strip_prefix('\\'));
+                    size = None;
+                }
+                ["parameter", "\\SIZE", words] => size = words.parse::<usize>().ok(),
+                // Only a memory has both.
+                ["parameter", "\\WIDTH", width] => {
+                    let bits = width.parse::<usize>().ok().zip(size).map_or(0, |(width, size)| width * size);
+                    all.entry(name).or_default().bits += bits;
+                }
+                _ => {}
+            }
+        }
+        Self(all)
+    }
+
+    /// The module that is looked at as a whole, and the memories that are cut out of it. Never the mutant's own: it would be cut out with it.
+    fn around(&self, own: &'a str, scope: Scope) -> Option<(&'a str, Vec<&'a str>)> {
+        let has_memory = |name: &&str| self.0.get(*name).is_some_and(|module| module.bits > 0);
+        let top = if scope == Scope::Engine { ENGINE } else { own };
+        let inside: Vec<&str> = self.inside(top).into_iter().filter(has_memory).collect();
+        let bits =
+            |names: &[&str]| names.iter().filter_map(|name| self.0.get(name)).map(|module| module.bits).sum::<usize>();
+        match scope {
+            Scope::Module => (bits(&[own]) <= MOST_BITS).then_some((top, inside)),
+            Scope::Memories => (!inside.is_empty() && bits(&inside) <= MOST_BITS).then_some((top, Vec::new())),
+            Scope::Engine => (top != own && !has_memory(&own)).then_some((top, inside)),
+        }
+    }
+
+    /// All modules inside a module, however deep.
+    fn inside(&self, name: &str) -> Vec<&'a str> {
+        let parts = self.0.get(name).map(|module| module.parts.clone()).unwrap_or_default();
+        let mut all: Vec<&str> = parts.iter().flat_map(|part| self.inside(part)).chain(parts.clone()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+}
