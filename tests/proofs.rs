@@ -18,6 +18,7 @@ mod axis;
 mod builds;
 mod edge;
 mod engine;
+pub mod equivalence;
 mod limits;
 mod promises;
 mod pulser;
@@ -34,7 +35,7 @@ mod watch;
 mod wheel;
 
 pub use promises::Promises;
-pub use solver::{Question, ask, tools};
+pub use solver::{ProofError, Question, ask, tools};
 pub use table::table;
 
 use std::sync::Arc;
