@@ -18,6 +18,7 @@ mod axis;
 mod builds;
 mod edge;
 mod engine;
+pub mod equivalence;
 mod homes;
 mod limits;
 mod promises;

@@ -1,6 +1,7 @@
 //! Rung 7: the promises of docs/promises.md hold in the exported Verilog, for any inputs, for ever; what
 //! they speak of happens; and each notices the bug that is planted for it.
 
+use carrystep_tests::proofs::equivalence::{self, Asked, BUGS, EQUAL, Move, compare};
 use carrystep_tests::proofs::{self, Proof, Question, ask};
 use carrystep_tests::{effort, moves};
 use std::collections::BTreeSet;
@@ -8,6 +9,8 @@ use std::fmt::Write as _;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
+
+type Answer = Result<(), proofs::ProofError>;
 
 /// A question, and where it comes from.
 struct Job<'a> {
@@ -32,8 +35,8 @@ fn jobs(proof: &Proof) -> Vec<Job<'_>> {
     jobs
 }
 
-/// Asks all questions, on all cores; what was not answered as wanted.
-fn ask_all(jobs: &[Job<'_>]) -> String {
+/// Does all, on all cores; what was not answered as wanted.
+fn do_all<T: Sync>(jobs: &[T], name: impl Fn(&T) -> String + Sync, ask: impl Fn(&T) -> Answer + Sync) -> String {
     let next = AtomicUsize::new(0);
     let failures = Mutex::new(String::new());
     let workers = thread::available_parallelism().map_or(2, usize::from);
@@ -41,9 +44,9 @@ fn ask_all(jobs: &[Job<'_>]) -> String {
         for _ in 0..workers {
             scope.spawn(|| {
                 while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    if let Err(error) = ask(&job.proof.promises, &job.case, job.question) {
+                    if let Err(error) = ask(job) {
                         let mut failures = failures.lock().expect("no worker panics");
-                        writeln!(failures, "{}: {error}", job.name).expect("a string takes it");
+                        writeln!(failures, "{}: {error}", name(job)).expect("a string takes it");
                     }
                 }
             });
@@ -57,7 +60,7 @@ fn every_promise_is_proved_and_every_planted_bug_is_caught() {
     proofs::tools().unwrap_or_else(|error| panic!("{error}, or `cargo xtask tools`"));
     let proofs = proofs::all();
     let jobs: Vec<Job<'_>> = proofs.iter().flat_map(jobs).collect();
-    let failures = ask_all(&jobs);
+    let failures = do_all(&jobs, |job| job.name.clone(), |job| ask(&job.proof.promises, &job.case, job.question));
     assert!(failures.is_empty(), "{failures}");
     println!("\n{}", proofs::table());
     let bugs: usize = proofs.iter().map(|proof| proof.bugs.len()).sum();
@@ -65,6 +68,22 @@ fn every_promise_is_proved_and_every_planted_bug_is_caught() {
         "{} questions to the solver, all answered as they must be; {bugs} planted bugs caught",
         jobs.len()
     ));
+}
+
+/// Bounded, and for any numbers in the segments of a move.
+#[test]
+fn the_engine_is_the_parallel_axes() {
+    proofs::tools().unwrap_or_else(|error| panic!("{error}, or `cargo xtask tools`"));
+    let bugged = equivalence::move_with_bugs();
+    let mut jobs: Vec<(Move, Asked)> = equivalence::moves().into_iter().map(|pair| (pair, Asked::Equal)).collect();
+    jobs.extend(BUGS.iter().map(|(module, bug)| (bugged.with(module, bug), Asked::Differ(bug.breaks))));
+    jobs.extend(equivalence::moves().pop().map(|pair| (pair, Asked::Covers)));
+    let name = |(pair, asked): &(Move, Asked)| format!("{}: {asked:?}", pair.engine.name);
+    let failures = do_all(&jobs, name, |(pair, asked)| compare(pair, *asked));
+    assert!(failures.is_empty(), "{failures}");
+    for label in EQUAL.labels() {
+        assert!(BUGS.iter().any(|(_, bug)| bug.breaks == label), "no bug for {label}");
+    }
 }
 
 /// The page's column "proved in" is what is proved, no more and no less.

@@ -17,7 +17,7 @@ const TOOLS: [(&str, &str); 4] = [
 ];
 
 /// Seconds for one question; the slowest takes a tenth of it on an idle machine.
-const LIMIT: &str = "300";
+pub(super) const LIMIT: &str = "300";
 
 /// A word of a memory that lies in the exported module: `look #("\\dut.words", ABITS, WIDTH) name (1'b0, 1'b1, address, word);`.
 const LOOK: &str = r#"
@@ -127,7 +127,7 @@ fn holds(promises: &Promises, dir: &Path, question: &[&str]) -> Result<(bool, St
 }
 
 /// Whether so many assertions, which are all, fail within so many clocks, and all that was said.
-fn reached(dir: &Path, clocks: u32, count: usize) -> Result<(bool, String), ProofError> {
+pub(super) fn reached(dir: &Path, clocks: u32, count: usize) -> Result<(bool, String), ProofError> {
     // One after the other: asked for all at once, bmc3 of ABC 1.01 may crash.
     let ask = |output| format!("read_aiger promises.aig; fold; cone -s -O {output}; bmc3 -F {clocks} -T {LIMIT}");
     let commands: Vec<String> = (0..count).map(ask).collect();
@@ -190,7 +190,7 @@ fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
 }
 
 /// Whether it ended well, and all that it printed.
-fn run(dir: &Path, tool: &'static str, arguments: &[&str]) -> Result<(bool, String), ProofError> {
+pub(super) fn run(dir: &Path, tool: &'static str, arguments: &[&str]) -> Result<(bool, String), ProofError> {
     let install = TOOLS.into_iter().find(|(name, _)| *name == tool).map_or("", |(_, install)| install);
     let output = Command::new(tool).args(arguments).current_dir(dir).output();
     let output = output.map_err(|_| ProofError::Missing { tool, install })?;

@@ -1,0 +1,121 @@
+// The engine beside the parallel axes: the same two segments an axis, the same STEP and DIR in every clock.
+//
+//   from outside   AXES; CLOCKS in a tick, PHASES in a tick; TICKS_1 and TICKS_2 of the segments;
+//                  FREE, the bits of V, A and J that may be anything, the others are 0; both exported cores, whole
+//   assumed        nothing
+//
+// Both hosts put all segments, then start all axes on one tick. The second segment is the last. Ports that are
+// not named here stand at 0. A fault of the axes ends the comparison: the engine has to stop too, in its own way.
+
+module promises (
+    input wire clock
+);
+    localparam [31:0] TICKS_1 = `TICKS_1, TICKS_2 = `TICKS_2, CLOCKS = `CLOCKS, PHASE_CLOCKS = CLOCKS / `PHASES;
+    localparam [3:0] SEGMENTS = 2 * `AXES;
+
+    // ---- Any V, A and J: of segment 1 of each axis, then of segment 2.
+
+    (* anyconst *) reg [SEGMENTS*192-1:0] any;
+    wire [SEGMENTS*192-1:0] numbers = any & {3 * SEGMENTS{64'd0 | `FREE}};
+
+    integer i;
+
+    // ---- The engine's host: a word of each axis in a tick.
+
+    reg [5:0] put = 0;               // segment, word
+    reg [2:0] put_axis = 0;
+    wire all_put = put[4];
+    reg start = 0, begun = 0;
+    wire put_ready, start_ready;
+    wire [3:0] putting = put_axis + (put[3] ? `AXES : 0);
+    reg [255:0] put_words;
+    reg [31:0] put_data;
+    always_comb begin
+        put_words = {31'd0, put[3], 192'd0, (put[3] ? TICKS_2 : TICKS_1) - 1};
+        for (i = 0; i < SEGMENTS; i = i + 1) if (putting == i) put_words[223:32] = numbers[192*i +: 192];
+        put_data = 0;
+        for (i = 0; i < 8; i = i + 1) if (put[2:0] == i) put_data = put_words[32*i +: 32];
+    end
+    always @(posedge clock) begin
+        if (!all_put && put_ready) begin
+            put_axis <= put_axis == `AXES - 1 ? 0 : put_axis + 1;
+            if (put_axis == `AXES - 1) put <= put + 1;
+        end
+        start <= all_put && !begun;
+        if (start && start_ready) begun <= 1;
+    end
+
+    // ---- The axes' host: a segment an axis waits, the next is put when it runs.
+
+    reg [3:0] given = 0;
+    reg asks = 0;
+    wire seg_ready, axes_start_ready, offers = given != SEGMENTS;
+    wire second = given >= `AXES;
+    wire [2:0] seg_axis = second ? given - `AXES : given;
+    reg [191:0] seg_numbers;
+    always_comb begin
+        seg_numbers = 0;
+        for (i = 0; i < SEGMENTS; i = i + 1) if (given == i) seg_numbers = numbers[192*i +: 192];
+    end
+    always @(posedge clock) begin
+        if (offers && seg_ready) given <= given + 1;
+        asks <= start && start_ready && !begun || asks && !axes_start_ready;
+    end
+
+    // ---- Both.
+
+    wire [`AXES-1:0] step, dir;
+    wire [5:0] axes_step, axes_dir;
+    wire fault, started, axes_fault, axes_started, axes_idle;
+    carrystep_engine dut (
+        .clock(clock), .put_valid(!all_put), .put_axis(put_axis), .put_word(put[2:0]), .put_data(put_data),
+        .put_ready(put_ready), .start_valid(start && !begun), .start_mask({`AXES{1'b1}}), .start_ready(start_ready),
+        .kick(1'b1), .enable(1'b1), .step(step), .dir(dir), .fault(fault), .started(started)
+    );
+    carrystep_six_axis axes (
+        .clock(clock), .seg_valid(offers), .seg_axis(seg_axis), .seg_ticks(second ? TICKS_2 : TICKS_1),
+        .seg_v(seg_numbers[63:0]), .seg_a(seg_numbers[127:64]), .seg_j(seg_numbers[191:128]), .seg_last(second),
+        .seg_ready(seg_ready), .start_valid(asks), .start_mask({`AXES{1'b1}} | 6'd0), .start_ready(axes_start_ready),
+        .clear(1'b0), .step(axes_step), .dir(axes_dir), .idle(axes_idle), .fault(axes_fault), .started(axes_started)
+    );
+
+    // ---- They are the same.
+
+    wire same = !axes_fault;
+    always_comb begin
+        equal_start: assert (started == axes_started);
+        equal_step: assert (!same || step == axes_step[`AXES-1:0]);
+        equal_dir: assert (!same || dir == axes_dir[`AXES-1:0]);
+        equal_faults: assert (!same || !fault);
+        equal_stops: assert (faulty <= CLOCKS || fault);
+    end
+
+    // ---- None of it is empty: where the clocks are in the tick, and the ticks in the move.
+
+    reg [31:0] at = 0, tick = 0, faulty = 0;
+    reg [`AXES-1:0] was_step = 0, was_dir = 0, forward = 0, backward = 0;
+    wire [`AXES-1:0] rises = same ? step & ~was_step : 0;
+    reg first_clock = 1;
+    always @(posedge clock) begin
+        first_clock <= 0;
+        at <= at == CLOCKS - 1 ? 0 : at + 1;
+        if (at == CLOCKS - 1 && (started || tick != 0)) tick <= tick + 1;
+        if (axes_fault) faulty <= faulty + 1;
+        {was_step, was_dir} <= {step, dir};
+        forward <= forward | rises & ~dir;
+        backward <= backward | rises & dir;
+    end
+    // Two ticks after it was worked out, in the clock after its phase begins.
+    wire [31:0] of_tick = tick - 2;
+    wire in_order = rises != 0 && at % PHASE_CLOCKS == 1;
+
+    always_comb begin
+        cover_each_forward_and_back: cover (forward == {`AXES{1'b1}} && backward == forward);
+        cover_last_phase: cover (in_order && at / PHASE_CLOCKS == `PHASES - 1);
+        cover_turn_inside: cover (same && dir != was_dir && of_tick == TICKS_1 + 2);
+        cover_step_behind_the_boundary: cover (rises != 0 && of_tick == TICKS_1 + 1);
+        cover_step_of_last_tick: cover (in_order && of_tick == TICKS_1 + TICKS_2);
+        cover_all_over: cover (same && tick > TICKS_1 + TICKS_2 + 2 && axes_idle && forward != 0);
+        cover_stopped: cover (faulty > CLOCKS);
+    end
+endmodule
