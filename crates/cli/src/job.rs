@@ -110,12 +110,9 @@ pub fn fits_a_capture(plan: &Plan) -> Result<(), Failure> {
 }
 
 /// The engine of a file's machine, where one is asked for.
-fn engine(file: &MoveFile, core: Core, level: Level) -> Result<Option<EngineBuild>, Failure> {
+fn engine(file: &MoveFile, core: Core) -> Result<Option<EngineBuild>, Failure> {
     if core == Core::Parallel {
         return Ok(None);
-    }
-    if level == Level::Fast {
-        return Err(Failure::input("the engine has no level fast: --level model is its fastest"));
     }
     let engine = file.machine.engine();
     engine.check().map_err(|error| Failure::input(format!("{}: {error}", file.source.path.display())))?;
@@ -124,7 +121,7 @@ fn engine(file: &MoveFile, core: Core, level: Level) -> Result<Option<EngineBuil
 
 /// Runs a plan on a core at a level, checks every pulse and writes what is wanted.
 pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
-    let engine = engine(file, core, level)?;
+    let engine = engine(file, core)?;
     carrystep_levels::available(level)?;
     fits_a_capture(plan)?;
     let mut files = wanted.begin(&file.source.path)?;

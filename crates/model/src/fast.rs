@@ -13,31 +13,34 @@
 mod crossings;
 mod cubic;
 mod edges;
+mod engine;
 mod lane;
+mod passage;
 mod pins;
 
+pub(crate) use cubic::Cubic;
 pub use edges::{Change, Edge, Edges};
+pub use engine::FastEngine;
+pub(crate) use lane::Moving;
 
 use crate::SixAxis;
+use carrystep_spec::Build;
 use carrystep_spec::ports::{Inputs, Outputs};
-use carrystep_spec::{AXES, Build};
 use cubic::MOST_TICKS;
-use edges::Record;
-use lane::{FaultIn, Window};
+use passage::Passages;
 
 /// The core, and the clock cycle that it is in.
 #[derive(Debug, Clone)]
 pub struct Fast {
     core: SixAxis,
     cycle: u64,
-    /// The edges of one window, axis by axis.
-    edges: [Vec<Record>; AXES],
+    passages: Passages,
 }
 
 impl Fast {
     /// The core as it is configured, in cycle 0.
     pub fn new(build: &Build) -> Self {
-        Self { core: SixAxis::new(build), cycle: 0, edges: Default::default() }
+        Self { core: SixAxis::new(build), cycle: 0, passages: Passages::default() }
     }
 
     /// Its registers.
@@ -57,36 +60,29 @@ impl Fast {
 
     /// Goes to the next cycle.
     pub fn clock(&mut self, inputs: &Inputs, to: &mut impl Edges) {
-        let pins = |core: &SixAxis| core.lanes.map(|lane| (lane.shaper.dir, lane.shaper.position));
-        let before = pins(&self.core);
+        let before = self.core.lanes.map(|lane| lane.shaper);
         self.core.clock(inputs);
         self.cycle += 1;
-        for (axis, (before, now)) in (0..).zip(before.into_iter().zip(pins(&self.core))) {
-            let (clock, backward) = (self.cycle, now.0);
-            if now.1 != before.1 {
-                to.edge(Edge { clock, axis, change: Change::Rise, backward });
-            }
-            if now.0 != before.0 {
-                to.edge(Edge { clock, axis, change: Change::Turn, backward });
-            }
+        for ((axis, lane), before) in (0..).zip(&self.core.lanes).zip(&before) {
+            edges::changes(self.cycle, axis, before, &lane.shaper, to);
         }
     }
 
     /// Passes as many cycles as it can, `most` at the most, in which nothing but STEP, DIR and positions
     /// changes while the inputs stay; how many they were. After 0 the next cycle needs [`Fast::clock`].
     pub fn leap(&mut self, inputs: &Inputs, most: u64, to: &mut impl Edges) -> u64 {
-        if self.core.is_still(inputs) {
-            self.pass(most);
-            return most;
+        let mut clocks = most;
+        if !self.core.is_still(inputs) {
+            clocks = if self.core.only_adds(inputs) { most.min(self.clocks_to_load()) } else { 0 };
+            let mut lanes = self.core.lanes.map(|lane| lane.moving());
+            let build = &self.core.build;
+            let from = passage::From { cycle: self.cycle, clock_of_tick: self.core.clock_of_tick() };
+            let strobes;
+            (clocks, strobes) = self.passages.pass(&mut lanes, from, clocks, &build.timebase, &build.pins, to);
+            self.core.lanes.iter_mut().zip(&lanes).for_each(|(lane, moved)| lane.moved(moved, strobes));
         }
-        let mut clocks = if self.core.only_adds(inputs) { most.min(self.clocks_to_load()) } else { 0 };
-        let before = self.core.lanes;
-        while let Err(FaultIn(cycle)) = self.pass_lanes(clocks) {
-            self.core.lanes = before;
-            clocks = cycle - self.cycle;
-        }
-        self.pass(clocks);
-        edges::merge(&mut self.edges, to);
+        self.cycle += clocks;
+        self.core.pass(clocks);
         clocks
     }
 
@@ -96,24 +92,5 @@ impl Fast {
         let plain = self.core.lanes.iter().filter_map(left).min().unwrap_or(MOST_TICKS).min(MOST_TICKS - 1);
         let clocks = u64::from(self.core.build.timebase.clocks_per_tick());
         (u64::from(plain) + 1) * clocks - 1 - self.core.clock_of_tick()
-    }
-
-    fn pass_lanes(&mut self, clocks: u64) -> Result<(), FaultIn> {
-        self.edges.iter_mut().for_each(Vec::clear);
-        if clocks == 0 {
-            return Ok(());
-        }
-        let window = Window { tick: self.cycle - self.core.clock_of_tick(), from: self.cycle, to: self.cycle + clocks };
-        let build = &self.core.build;
-        for (axis, (lane, edges)) in (0..).zip(self.core.lanes.iter_mut().zip(&mut self.edges)) {
-            lane::pass(lane, axis, window, &build.timebase, build.pins[usize::from(axis)], edges)?;
-        }
-        Ok(())
-    }
-
-    /// Time goes by; the lanes are there already.
-    fn pass(&mut self, clocks: u64) {
-        self.cycle += clocks;
-        self.core.pass(clocks);
     }
 }

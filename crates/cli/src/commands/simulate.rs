@@ -16,8 +16,7 @@ pub fn run(arguments: &Simulate) -> Result<(), Failure> {
         csv: arguments.csv.clone(),
         plot: arguments.plot.clone(),
     };
-    let level = arguments.level.unwrap_or(arguments.core.fastest());
-    let done = job::run(&file, &plan, arguments.core, level, &wanted)?;
+    let done = job::run(&file, &plan, arguments.core, arguments.level, &wanted)?;
     if arguments.json {
         output::print_json(&done)?;
     } else {

@@ -33,7 +33,8 @@ pub struct EngineOutcome {
     pub fault: Option<(Cause, u8)>,
 }
 
-/// Hears of each cycle in which any output changed.
+/// Hears of each cycle in which any output changed; from the fast level not of the two `ready`s, which it
+/// tells to be 0.
 pub type EngineObserver<'a> = dyn FnMut(u64, &EngineOutputs) + 'a;
 
 impl<'a> EngineJob<'a> {
@@ -46,25 +47,8 @@ impl<'a> EngineJob<'a> {
         Self { build, program, max_clocks: (ticks + warm + 10 * segments + 100) * clocks + 4 * pins }
     }
 
-    fn host(&self) -> EngineHost {
+    pub(super) fn host(&self) -> EngineHost {
         EngineHost::feeding(&self.build.guard, self.program)
-    }
-
-    /// The cycle in which the first segments are loaded: the same at every level, so the model is asked.
-    ///
-    /// # Errors
-    /// [`LevelError::Endless`]: nothing starts.
-    pub fn origin(&self) -> Result<u64, LevelError> {
-        let mut origin = None;
-        let mut model = Engine::new(self.build);
-        let mut host = self.host();
-        let mut cycle = 0;
-        while origin.is_none() && cycle < self.max_clocks {
-            let (_, outputs) = host.step(&mut model);
-            cycle += 1;
-            origin = outputs.started.then_some(cycle);
-        }
-        origin.ok_or(LevelError::Endless(self.max_clocks))
     }
 
     /// Runs it at a level.
@@ -72,12 +56,12 @@ impl<'a> EngineJob<'a> {
     /// The Verilog of an engine is compared with the model in every output of every clock, so that what is told is both.
     ///
     /// # Errors
-    /// [`LevelError`]: there is no such level of the engine, a tool is missing or fails, the run does not end, or the Verilog differs.
+    /// [`LevelError`]: a tool is missing or fails, the run does not end, or the Verilog differs.
     pub fn run(&self, level: Level, observer: &mut EngineObserver<'_>) -> Result<EngineOutcome, LevelError> {
         let axes = 0..self.build.axes();
         let gateware = |error: &dyn std::fmt::Display| LevelError::Gateware(error.to_string());
         match level {
-            Level::Fast => Err(LevelError::Gateware("the engine has no fast model".into())),
+            Level::Fast => self.observe_fast(observer),
             Level::Model => {
                 let mut model = Engine::new(self.build);
                 let (clocks, fault) = self.drive(&mut model, observer)?;
