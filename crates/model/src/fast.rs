@@ -26,7 +26,6 @@ pub(crate) use lane::Moving;
 use crate::SixAxis;
 use carrystep_spec::Build;
 use carrystep_spec::ports::{Inputs, Outputs};
-use cubic::MOST_TICKS;
 use passage::Passages;
 
 /// The core, and the clock cycle that it is in.
@@ -89,7 +88,7 @@ impl Fast {
     /// Cycles before the strobe that ends the first segment.
     fn clocks_to_load(&self) -> u64 {
         let left = |lane: &crate::six_axis::Lane| lane.axis.running.then_some(lane.axis.left.saturating_sub(1));
-        let plain = self.core.lanes.iter().filter_map(left).min().unwrap_or(MOST_TICKS).min(MOST_TICKS - 1);
+        let plain = self.core.lanes.iter().filter_map(left).min().unwrap_or(u32::MAX);
         let clocks = u64::from(self.core.build.timebase.clocks_per_tick());
         (u64::from(plain) + 1) * clocks - 1 - self.core.clock_of_tick()
     }

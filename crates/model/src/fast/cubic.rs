@@ -4,7 +4,7 @@
 //! under 2^48, and each of the products under 2^112. Checks would cost as much as the sums.
 
 /// Most ticks in a stretch.
-pub(super) const MOST_TICKS: u32 = 1 << 13;
+pub(super) const MOST_TICKS: u32 = 1 << 16;
 
 /// V, A and J before the first tick of a stretch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

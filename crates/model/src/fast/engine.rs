@@ -3,7 +3,6 @@
 //! It leaps over clocks in which nothing happens but plain additions, ramps included. Words that are taken,
 //! loads, starts, calls of stops, limits that change and clears are left to the clock-by-clock model.
 
-use super::cubic::MOST_TICKS;
 use super::edges::{self, Edges};
 use super::passage::{From, Passages};
 use crate::Engine;
@@ -80,15 +79,13 @@ impl FastEngine {
     pub fn leap(&mut self, inputs: &EngineInputs, most: u64, to: &mut impl Edges) -> u64 {
         let mut clocks = self.core.plain_clocks(inputs, most.min(LONGEST));
         if clocks > 0 && !self.core.is_still() {
-            let (clock, per_tick) = (self.core.clock_of_tick(), self.core.clocks_per_tick());
-            let longest = u64::from(MOST_TICKS) * u64::from(per_tick) - 1 - u64::from(clock);
+            let clock_of_tick = self.core.clock_of_tick().into();
             self.axes.clear();
             self.axes.extend(self.core.moving());
             let build = self.core.build();
-            let from = From { cycle: self.cycle, clock_of_tick: clock.into() };
+            let from = From { cycle: self.cycle, clock_of_tick };
             let strobes;
-            (clocks, strobes) =
-                self.passages.pass(&mut self.axes, from, clocks.min(longest), &build.timebase, &build.pins, to);
+            (clocks, strobes) = self.passages.pass(&mut self.axes, from, clocks, &build.timebase, &build.pins, to);
             self.core.moved(&self.axes, strobes);
         }
         self.core.pass(inputs, clocks);

@@ -1,6 +1,6 @@
 //! One axis through a window of clocks: its accumulator stretch by stretch, its shaper request by request.
 
-use super::crossings::Stretch;
+use super::crossings::{BATCH, Stretch};
 use super::cubic::Cubic;
 use super::edges::Record;
 use super::pins::{Overrun, Pins};
@@ -99,7 +99,7 @@ impl Passage<'_> {
     fn request(&mut self, stage: Stage, n: u32) -> Result<(), Overrun> {
         let Some(step) = stage.step else { return Ok(()) };
         let at = self.cycle(n) + u64::from(step.phase) * u64::from(self.clocks_per_phase);
-        if (self.window.from..self.window.to).contains(&at) { self.pins.requests([at], step.backward) } else { Ok(()) }
+        if (self.window.from..self.window.to).contains(&at) { self.pins.requests(&[at], step.backward) } else { Ok(()) }
     }
 
     /// The strobe at the end of tick `n`.
@@ -143,10 +143,13 @@ impl Passage<'_> {
         let mut overrun = Ok(());
         let first = self.cycle(done + 2);
         let [per_tick, per_phase] = [self.clocks_per_tick, self.clocks_per_phase].map(u64::from);
+        let mut clocks = [0; BATCH];
         stretch.each(self.phase_bits, |ticks, phases| {
-            let cycle = |(&tick, &phase)| first + u64::from(tick) * per_tick + u64::from(phase) * per_phase;
+            for ((clock, &tick), &phase) in clocks.iter_mut().zip(ticks).zip(phases) {
+                *clock = first + u64::from(tick) * per_tick + u64::from(phase) * per_phase;
+            }
             if overrun.is_ok() {
-                overrun = self.pins.requests(ticks.iter().zip(phases).map(cycle), backward);
+                overrun = self.pins.requests(&clocks[..ticks.len()], backward);
             }
         });
         overrun
