@@ -116,6 +116,9 @@ pub struct Simulate {
     /// Write the waveform: pins, position and V beside the float profile.
     #[arg(long, value_name = "FILE")]
     pub vcd: Option<PathBuf>,
+    /// Write the same waveform as FST: a fraction of the size, at once on the screen of GTKWave.
+    #[arg(long, value_name = "FILE")]
+    pub fst: Option<PathBuf>,
     /// Write a GTKWave save file for the waveform (needs --vcd).
     #[arg(long, value_name = "FILE", requires = "vcd")]
     pub save: Option<PathBuf>,

@@ -13,8 +13,8 @@ use carrystep_plan::Plan;
 use carrystep_profile::Timeline;
 use carrystep_spec::{EngineBuild, MoveFile};
 use carrystep_trace::{
-    AxisSetup, AxisWaves, Checker, CsvWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee, VcdWriter, Waves,
-    save_file,
+    AxisSetup, AxisWaves, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee,
+    VcdWriter, Waves, save_file,
 };
 use serde::Serialize;
 use std::fmt;
@@ -148,6 +148,7 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
             .collect(),
     };
     let mut vcd = files.vcd.as_mut().map(|out| VcdWriter::new(out, waves()));
+    let mut fst = files.fst.as_mut().map(|out| FstWriter::new(out, waves()));
     let mut csv = files.csv.as_mut().map(|out| CsvWriter::new(out, &timebase, plan.build.phase, origin_ps, named()));
     let title = file.source.path.display().to_string();
     let mut plot = wanted.plot.as_ref().map(|_| {
@@ -161,6 +162,9 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
         let mut tee = Tee::new();
         tee.add(&mut checker);
         if let Some(sink) = vcd.as_mut() {
+            tee.add(sink);
+        }
+        if let Some(sink) = fst.as_mut() {
             tee.add(sink);
         }
         if let Some(sink) = csv.as_mut() {
@@ -179,7 +183,7 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
         outcome
     };
     let run_s = started.elapsed().as_secs_f64();
-    drop((vcd, csv));
+    drop((vcd, fst, csv));
 
     let check = checker.finish();
     if let (Some(out), Some(vcd)) = (&mut files.save, &wanted.vcd) {

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use serde::Serialize;
 use std::fs::File;
-use std::io::{BufWriter, ErrorKind, Write};
+use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -47,6 +47,15 @@ impl Write for Place {
         match self {
             Self::Beside(file) => file.flush(),
             Self::Itself(file) => file.flush(),
+        }
+    }
+}
+
+impl Seek for Place {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        match self {
+            Self::Beside(file) => file.seek(to),
+            Self::Itself(file) => file.seek(to),
         }
     }
 }
@@ -121,6 +130,12 @@ impl Write for OutputFile {
     }
     fn flush(&mut self) -> std::io::Result<()> {
         self.writer.flush().map_err(|error| self.named(&error))
+    }
+}
+
+impl Seek for OutputFile {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.writer.seek(to).map_err(|error| self.named(&error))
     }
 }
 

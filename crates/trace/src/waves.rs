@@ -1,4 +1,4 @@
-//! The waveform: pins, registers and the float profile beside them in one VCD.
+//! The waveform: pins, registers and the float profile beside them, in any [`Format`].
 //!
 //! Integers are what the gateware has, reals what the profile wants, so that a viewer lays one over the
 //! other. All times are those of the pins: V is shown the latency L later than the register has it,
@@ -9,12 +9,11 @@ use crate::error::TraceError;
 use crate::follow::Follower;
 use crate::ideal::tick_ps;
 use crate::speed_register::SpeedRegister;
-use crate::vcd_own::{self, OwnCapture};
+use crate::vcd_own::OwnCapture;
 use carrystep_profile::Timeline;
 use carrystep_spec::{Segment, StartPhase, Timebase};
 use std::fmt;
-use std::io::{self, Write};
-use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, Value, VarType};
+use std::io;
 
 /// Samples of the slow signals over a run, beside those at edges and segment boundaries.
 const SAMPLES: u64 = 500;
@@ -32,6 +31,59 @@ pub(crate) const SIGNALS: [(&str, u32); 7] = [
 
 /// The scope that holds a scope for each axis.
 pub(crate) const SCOPE: &str = "carrystep";
+
+/// Who made it.
+pub(crate) const VERSION: &str = concat!("carrystep ", env!("CARGO_PKG_VERSION"));
+
+/// A file format of waveforms, in ps.
+pub trait Format {
+    /// What stands for a signal.
+    type Id: Copy;
+    /// What an error calls it.
+    const NAME: &'static str;
+
+    /// Declares the signals of each axis, the scopes named after them.
+    ///
+    /// # Errors
+    /// The file cannot be written; so it is below.
+    fn declare(&mut self, own: &OwnCapture, axes: &[&str]) -> io::Result<Vec<[Self::Id; SIGNALS.len()]>>;
+
+    /// What holds at time 0.
+    ///
+    /// # Errors
+    /// As above.
+    fn initial(&mut self, values: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()>;
+
+    /// All that follows happens at this time, later than before.
+    ///
+    /// # Errors
+    /// As above.
+    fn time(&mut self, ps: u64) -> io::Result<()>;
+
+    /// A pin.
+    ///
+    /// # Errors
+    /// As above.
+    fn bit(&mut self, id: Self::Id, level: bool) -> io::Result<()>;
+
+    /// Two's complement of `bits` bits.
+    ///
+    /// # Errors
+    /// As above.
+    fn vector(&mut self, id: Self::Id, value: u64, bits: u32) -> io::Result<()>;
+
+    /// A number.
+    ///
+    /// # Errors
+    /// As above.
+    fn real(&mut self, id: Self::Id, value: f64) -> io::Result<()>;
+
+    /// The file is whole.
+    ///
+    /// # Errors
+    /// As above.
+    fn end(&mut self) -> io::Result<()>;
+}
 
 /// What the waveform shows beside the pins.
 pub struct Waves<'a> {
@@ -57,12 +109,14 @@ pub struct AxisWaves<'a> {
     pub segments: Box<dyn Iterator<Item = (u64, Segment)> + 'a>,
 }
 
-/// Writes a VCD as pin changes stream by.
-pub struct VcdWriter<'a, W: Write> {
-    out: vcd::Writer<W>,
+/// Writes a waveform as pin changes stream by.
+pub struct WaveWriter<'a, F: Format> {
+    out: F,
     own: OwnCapture,
     total_ps: u64,
     axes: Vec<AxisWriter<'a>>,
+    /// The signals of each axis, once they are declared.
+    ids: Vec<[F::Id; SIGNALS.len()]>,
     /// Index of the next sample of the regular grid.
     grid: u64,
     /// The time that stands in the file last; `None` until the header is written.
@@ -74,76 +128,53 @@ struct AxisWriter<'a> {
     timeline: &'a Timeline,
     follower: Follower<'a>,
     register: SpeedRegister<'a>,
-    ids: [IdCode; SIGNALS.len()],
     levels: [bool; 2],
     v: i64,
 }
 
-impl<W: Write> fmt::Debug for VcdWriter<'_, W> {
+impl<F: Format> fmt::Debug for WaveWriter<'_, F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("VcdWriter").field("own", &self.own).field("time", &self.time).finish_non_exhaustive()
+        f.debug_struct("WaveWriter").field("own", &self.own).field("time", &self.time).finish_non_exhaustive()
     }
 }
 
-impl<'a, W: Write> VcdWriter<'a, W> {
+impl<'a, F: Format> WaveWriter<'a, F> {
     /// A writer that has written nothing yet: the header follows with the first change.
-    pub fn new(out: W, waves: Waves<'a>) -> Self {
+    pub(crate) fn of(out: F, waves: Waves<'a>) -> Self {
         let Waves { timebase, phase, origin_ps, total_ticks, axes } = waves;
         let axes = axes.into_iter().map(|axis| AxisWriter {
             name: axis.name,
             timeline: axis.timeline,
             follower: Follower::new(axis.timeline, phase, &timebase, origin_ps),
             register: SpeedRegister::new(axis.segments),
-            ids: [IdCode::FIRST; SIGNALS.len()],
             levels: [false; 2],
             v: 0,
         });
         Self {
-            out: vcd::Writer::new(out),
+            out,
             own: OwnCapture { origin_ps, timebase },
             total_ps: total_ticks.saturating_mul(tick_ps(&timebase)),
             axes: axes.collect(),
+            ids: Vec::new(),
             grid: 0,
             time: None,
         }
     }
 
     fn header(&mut self) -> io::Result<()> {
-        let out = &mut self.out;
-        out.version(concat!("carrystep ", env!("CARGO_PKG_VERSION")))?;
-        out.comment(&self.own.to_string())?;
-        out.timescale(1, TimescaleUnit::PS)?;
-        out.add_module(SCOPE)?;
-        for axis in &mut self.axes {
-            out.add_module(axis.name)?;
-            for (id, (name, bits)) in axis.ids.iter_mut().zip(SIGNALS) {
-                *id = match bits {
-                    0 => out.add_var(VarType::Real, 64, name, None)?,
-                    1 => out.add_wire(1, name)?,
-                    // the range is a token of its own: no brackets in the name
-                    _ => {
-                        let range = ReferenceIndex::Range(i32::try_from(bits - 1).unwrap_or(0), 0);
-                        out.add_var(VarType::Wire, bits, name, Some(range))?
-                    }
-                };
+        let names: Vec<&str> = self.axes.iter().map(|axis| axis.name).collect();
+        self.ids = self.out.declare(&self.own, &names)?;
+        let (axes, ids) = (&self.axes, &self.ids);
+        self.out.initial(|out| {
+            for (axis, &[step, dir, position, v, ref reals @ ..]) in axes.iter().zip(ids) {
+                out.bit(step, axis.levels[0])?;
+                out.bit(dir, axis.levels[1])?;
+                vector(out, position, 0, 32)?;
+                vector(out, v, 0, 64)?;
+                reals.iter().try_for_each(|&id| out.real(id, 0.0))?;
             }
-            out.upscope()?;
-        }
-        out.upscope()?;
-        out.enddefinitions()?;
-        out.timestamp(0)?;
-        out.begin(SimulationCommand::Dumpvars)?;
-        for axis in &mut self.axes {
-            let [step, dir, position, v, reals @ ..] = axis.ids;
-            out.change_scalar(step, axis.levels[0])?;
-            out.change_scalar(dir, axis.levels[1])?;
-            out.change_vector(position, [Value::V0])?;
-            out.change_vector(v, [Value::V0])?;
-            for real in reals {
-                out.change_real(real, 0.0)?;
-            }
-        }
-        out.end()?;
+            Ok(())
+        })?;
         self.time = Some(0);
         Ok(())
     }
@@ -169,7 +200,7 @@ impl<'a, W: Write> VcdWriter<'a, W> {
 
     fn stamp(&mut self, ps: u64) -> io::Result<()> {
         if self.time.is_none_or(|time| ps > time) {
-            self.out.timestamp(ps)?;
+            self.out.time(ps)?;
             self.time = Some(ps);
         }
         Ok(())
@@ -202,7 +233,7 @@ impl<'a, W: Write> VcdWriter<'a, W> {
         let tick_ps = tick_ps(&self.own.timebase);
         let since = i128::from(ps) - i128::from(self.own.origin_ps);
         let axis = &mut self.axes[index];
-        let [_, _, _, v, profile_position, profile_speed, _] = axis.ids;
+        let [_, _, _, v, profile_position, profile_speed, _] = self.ids[index];
         let now = axis.register.at(u64::try_from(since).unwrap_or(0) / tick_ps);
         if now != axis.v {
             axis.v = now;
@@ -221,8 +252,8 @@ impl<'a, W: Write> VcdWriter<'a, W> {
         }
         self.advance(change.ps)?;
         let axis = &mut self.axes[index];
-        let [step, dir, position, _, _, _, error] = axis.ids;
-        self.out.change_scalar(if change.pin == Pin::Step { step } else { dir }, change.level)?;
+        let [step, dir, position, _, _, _, error] = self.ids[index];
+        self.out.bit(if change.pin == Pin::Step { step } else { dir }, change.level)?;
         if let Some(pulse) = axis.follower.change(change) {
             vector(&mut self.out, position, pulse.position, 32)?;
             if let Some(ns) = pulse.error_ns {
@@ -235,33 +266,24 @@ impl<'a, W: Write> VcdWriter<'a, W> {
 
     fn close(&mut self, ps: u64) -> io::Result<()> {
         self.advance(ps)?;
-        self.out.comment(vcd_own::END)?;
-        self.out.flush()
+        self.out.end()
     }
 }
 
-/// Two's complement of `bits` bits, without the zeros that every reader puts back.
-fn vector<W: Write>(out: &mut vcd::Writer<W>, id: IdCode, value: i64, bits: u32) -> io::Result<()> {
-    let raw = value as u64 & (u64::MAX >> (u64::BITS - bits));
-    let shown = (u64::BITS - raw.leading_zeros()).max(1) as usize;
-    // The library formats bit by bit, which takes most of the time that a waveform takes.
-    let mut text = [b'b'; 1 + u64::BITS as usize];
-    for (bit, digit) in text[1..=shown].iter_mut().rev().enumerate() {
-        *digit = b'0' + (raw >> bit & 1) as u8;
-    }
-    out.writer().write_all(&text[..=shown])?;
-    writeln!(out.writer(), " {id}")
+/// Two's complement of `bits` bits.
+fn vector<F: Format>(out: &mut F, id: F::Id, value: i64, bits: u32) -> io::Result<()> {
+    out.vector(id, value.cast_unsigned() & (u64::MAX >> (u64::BITS - bits)), bits)
 }
 
 /// To six digits behind the point: files stay small, and VCD readers take 32 characters at most.
-fn real<W: Write>(out: &mut vcd::Writer<W>, id: IdCode, value: f64) -> io::Result<()> {
+fn real<F: Format>(out: &mut F, id: F::Id, value: f64) -> io::Result<()> {
     const DIGITS: f64 = 1e6;
     let short = (value * DIGITS).round() / DIGITS;
     // no minus zero, nothing that is no number
-    out.change_real(id, if short.is_finite() && short != 0.0 { short } else { 0.0 })
+    out.real(id, if short.is_finite() && short != 0.0 { short } else { 0.0 })
 }
 
-impl<W: Write> PinSink for VcdWriter<'_, W> {
+impl<F: Format> PinSink for WaveWriter<'_, F> {
     fn initial(&mut self, level: PinChange) -> Result<(), TraceError> {
         if let Some(axis) = self.axes.get_mut(usize::from(level.axis)) {
             axis.levels[usize::from(level.pin == Pin::Dir)] = level.level;
@@ -271,10 +293,10 @@ impl<W: Write> PinSink for VcdWriter<'_, W> {
     }
 
     fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
-        self.write(change).map_err(TraceError::vcd)
+        self.write(change).map_err(|source| TraceError::Write { what: F::NAME, source })
     }
 
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {
-        self.close(ps).map_err(TraceError::vcd)
+        self.close(ps).map_err(|source| TraceError::Write { what: F::NAME, source })
     }
 }

@@ -12,6 +12,7 @@ pub fn run(arguments: &Simulate) -> Result<(), Failure> {
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
     let wanted = Wanted {
         vcd: arguments.vcd.clone(),
+        fst: arguments.fst.clone(),
         save: arguments.save.clone(),
         csv: arguments.csv.clone(),
         plot: arguments.plot.clone(),
