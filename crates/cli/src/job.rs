@@ -3,12 +3,13 @@
 use crate::arguments::Core;
 use crate::failure::Failure;
 use crate::gateware::Gateware;
+use crate::interrupt;
 use crate::progress::Progress;
 use crate::table::{self, Limits};
 use crate::wanted::Wanted;
 use carrystep_levels::engine::run::EngineJob;
 use carrystep_levels::pins::PinFeed;
-use carrystep_levels::{Job, Level};
+use carrystep_levels::{Job, Level, LevelError};
 use carrystep_plan::Plan;
 use carrystep_profile::Timeline;
 use carrystep_spec::{EngineBuild, MoveFile};
@@ -19,6 +20,7 @@ use carrystep_trace::{
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Longest run, in seconds: captures count ps in 64 bits.
@@ -126,9 +128,12 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
     fits_a_capture(plan)?;
     let mut files = wanted.begin(&file.source.path)?;
     let program = plan.program();
+    // Nobody waits for the end of a run whose output cannot be written.
+    let deaf = AtomicBool::new(false);
+    let halt = &[interrupt::watch(), &deaf];
     let gateware = match &engine {
-        None => Gateware::Parallel(Job::new(&plan.build, &program, plan.total_ticks())),
-        Some(engine) => Gateware::Engine(EngineJob::new(engine, &program, plan.total_ticks())),
+        None => Gateware::Parallel(Job { halt, ..Job::new(&plan.build, &program, plan.total_ticks()) }),
+        Some(engine) => Gateware::Engine(EngineJob { halt, ..EngineJob::new(engine, &program, plan.total_ticks()) }),
     };
     let timebase = plan.build.timebase;
     let load = gateware.origin()?;
@@ -178,7 +183,16 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
         let outcome = gateware.run(level, &mut |cycle, step, dir| {
             progress.at(cycle);
             feed.pins(cycle, step, dir);
-        })?;
+            if feed.has_failed() {
+                deaf.store(true, Ordering::Relaxed);
+            }
+        });
+        interrupt::check()?;
+        if let Err(LevelError::Halted) = outcome {
+            // The feed knows why.
+            return Err(feed.end(0).err().map_or(LevelError::Halted.into(), Failure::from));
+        }
+        let outcome = outcome?;
         feed.end(outcome.clocks)?;
         outcome
     };

@@ -1,6 +1,7 @@
 //! Where results go: standard output, and files that appear whole or not at all.
 
 use crate::failure::Failure;
+use crate::interrupt;
 use serde::Serialize;
 use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
@@ -63,6 +64,7 @@ impl Seek for Place {
 impl OutputFile {
     /// Makes the folder if need be. Whatever forbids the file is found here, before any work is done.
     pub fn create(path: &Path) -> Result<Self, Failure> {
+        interrupt::watch();
         let place = place(path).map_err(|error| cannot_write(path, &error))?;
         Ok(Self { path: path.to_owned(), writer: BufWriter::with_capacity(1 << 18, place) })
     }
@@ -87,8 +89,9 @@ impl OutputFile {
         self.writer.flush().map_err(|error| cannot_write(&self.path, &error))
     }
 
-    /// Everything is written: let it appear.
+    /// Everything is written: let it appear, unless somebody has asked us to end.
     pub fn keep(self) -> Result<PathBuf, Failure> {
+        interrupt::check()?;
         let wrong = |error: std::io::Error| cannot_write(&self.path, &error);
         let place = self.writer.into_inner().map_err(|error| wrong(error.into_error()))?;
         if let Place::Beside(file) = place {

@@ -2,7 +2,7 @@
 
 use crate::host::Host;
 use crate::replay::Replay;
-use crate::{Job, LevelError, Observer, Outcome};
+use crate::{Job, LevelError, Observer, Outcome, halted};
 use carrystep_model::Fast;
 use carrystep_model::fast::{Edge, Edges};
 use carrystep_spec::ports::Outputs;
@@ -37,13 +37,16 @@ pub(crate) fn replay(job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outco
 /// Runs a job on the fast model; the edges stream by.
 ///
 /// # Errors
-/// [`LevelError::Endless`]: the run does not end.
+/// [`LevelError::Endless`]: the run does not end; [`LevelError::Halted`]: it is to.
 pub fn run(job: &Job<'_>, listener: &mut impl Listener<Outputs>) -> Result<Outcome, LevelError> {
     let mut core = Fast::new(job.build);
     let mut host = Host::new(job.program);
     let mut quiet = 0;
     let mut origin = None;
     while core.cycle() < job.max_clocks {
+        if halted(job.halt) {
+            return Err(LevelError::Halted);
+        }
         let cycle = core.cycle();
         let fault = core.core().faults().any();
         let inputs = host.inputs(fault);

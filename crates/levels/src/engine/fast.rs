@@ -2,27 +2,33 @@
 
 use super::run::{EngineJob, EngineObserver, EngineOutcome};
 use super::{EngineHost, replay};
-use crate::LevelError;
 use crate::fast::{EdgesOnly, Listener};
 use crate::replay::Replay;
+use crate::{LevelError, halted};
 use carrystep_model::FastEngine;
 use carrystep_spec::engine::EngineOutputs;
 
 /// A host and its engine, from cycle to cycle or over many of them.
-struct Fed<'a> {
+struct Fed {
     core: FastEngine,
     host: EngineHost,
-    job: &'a EngineJob<'a>,
 }
 
-impl Fed<'_> {
-    /// Goes on by a cycle at least, `most` at the most; how many cycles, and the outputs in the first of them.
-    fn advance(&mut self, most: u64, listener: &mut impl Listener<EngineOutputs>) -> (u64, EngineOutputs) {
+impl Fed {
+    /// Goes on by a cycle at least, `most` at the most, or `most_at_rest` where nothing is left to be done; how many
+    /// cycles, and the outputs in the first of them.
+    fn advance(
+        &mut self,
+        most: u64,
+        most_at_rest: u64,
+        listener: &mut impl Listener<EngineOutputs>,
+    ) -> (u64, EngineOutputs) {
         let (inputs, outputs) = self.host.meet(|inputs| self.core.outputs(inputs));
         // They change several times a tick, whether or not anybody offers anything.
         let told = EngineOutputs { put_ready: false, start_ready: false, ..outputs };
         listener.outputs(self.core.cycle(), &told);
-        let patience = self.host.patience(&outputs).min(most);
+        let rests = self.host.is_done() && (outputs.idle || outputs.halted);
+        let patience = self.host.patience(&outputs).min(if rests { most_at_rest.min(most) } else { most });
         let cycles = if patience > 0 { self.core.leap(&inputs, patience, listener) } else { 0 };
         if cycles > 0 {
             self.host.wait(cycles);
@@ -34,22 +40,24 @@ impl Fed<'_> {
     }
 }
 
-impl<'a> EngineJob<'a> {
-    fn fed(&'a self) -> Fed<'a> {
-        Fed { core: FastEngine::new(self.build), host: self.host(), job: self }
+impl EngineJob<'_> {
+    fn fed(&self) -> Fed {
+        Fed { core: FastEngine::new(self.build), host: self.host() }
     }
 
     /// Runs it on the fast engine; the edges stream by.
     ///
     /// # Errors
-    /// [`LevelError::Endless`]: the run does not end.
+    /// [`LevelError::Endless`]: the run does not end; [`LevelError::Halted`]: it is to.
     pub fn run_fast(&self, listener: &mut impl Listener<EngineOutputs>) -> Result<EngineOutcome, LevelError> {
         let mut fed = self.fed();
         let settle = replay::settle(self.build);
         let mut quiet = 0;
-        while fed.core.cycle() < fed.job.max_clocks {
-            let most = (fed.job.max_clocks - fed.core.cycle()).min(settle - quiet);
-            let (cycles, outputs) = fed.advance(most, listener);
+        while fed.core.cycle() < self.max_clocks {
+            if halted(self.halt) {
+                return Err(LevelError::Halted);
+            }
+            let (cycles, outputs) = fed.advance(self.max_clocks - fed.core.cycle(), settle - quiet, listener);
             quiet = if fed.host.is_done() && (outputs.idle || outputs.halted) { quiet + cycles } else { 0 };
             if quiet == settle {
                 let positions = (0..self.build.axes()).map(|axis| fed.core.core().shaper(axis).position).collect();
@@ -77,7 +85,7 @@ impl<'a> EngineJob<'a> {
         while fed.core.cycle() < self.max_clocks {
             let most = self.max_clocks - fed.core.cycle();
             // A leap starts nothing.
-            if fed.advance(most, &mut EdgesOnly(())).1.started {
+            if fed.advance(most, most, &mut EdgesOnly(())).1.started {
                 return Ok(fed.core.cycle());
             }
         }
