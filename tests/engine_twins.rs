@@ -4,7 +4,7 @@
 use carrystep_levels::engine::{EngineHost, Events};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_model::{Engine, FastEngine};
-use carrystep_spec::engine::CAUSES;
+use carrystep_spec::engine::{CAUSES, EngineInputs, EngineOutputs};
 use carrystep_spec::{EngineBuild, Program};
 
 /// What two runs that are the same have come to.
@@ -43,20 +43,27 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
     let (mut fast_edges, mut slow_edges) = (Vec::new(), Vec::new());
     let mut came = Came::default();
     let mut leaps = leaps.iter().cycle();
-    let (mut quiet, mut fault) = (false, None);
+    let (mut quiet, mut fault, mut by_run) = (false, None, false);
     while came.clocks < most && !quiet {
         let (inputs, outputs) = fast_host.meet(|inputs| fast.outputs(inputs));
         let longest = *leaps.next().unwrap_or(&u64::MAX);
-        let patience = fast_host.patience(&outputs).min(most - came.clocks);
-        let leapt = if patience > 0 { fast.leap(&inputs, patience.min(longest), &mut fast_edges) } else { 0 };
-        if leapt > 0 {
-            fast_host.wait(leapt);
+        let patience = fast_host.patience(&outputs).min(most - came.clocks).min(longest);
+        // By turns: a leap or a clock, or as far as there is nothing to be heard.
+        by_run = !by_run;
+        let mut heard = None;
+        if patience > 0 && by_run {
+            heard = fast.run(&inputs, came.clocks + patience, &mut fast_edges);
+            fast_host.wait(fast.cycle() - came.clocks - u64::from(heard.is_some()));
+            heard.iter().for_each(|outputs| fast_host.advance(outputs));
+        } else if patience > 0 && fast.leap(&inputs, patience, &mut fast_edges) > 0 {
+            came.leapt += fast.cycle() - came.clocks;
+            fast_host.wait(fast.cycle() - came.clocks);
         } else {
             fast_host.advance(&outputs);
             fast.clock(&inputs, &mut fast_edges);
+            heard = Some(outputs);
         }
-        came.leapt += leapt;
-        for clock in came.clocks + 1..=came.clocks + leapt.max(1) {
+        for clock in came.clocks + 1..=fast.cycle() {
             let before: Vec<_> = (0..build.axes()).map(|axis| *slow.shaper(axis)).collect();
             let (slow_inputs, slow_outputs) = slow_host.meet(|inputs| slow.outputs(inputs));
             slow_host.advance(&slow_outputs);
@@ -68,6 +75,11 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
             if slow_inputs != inputs {
                 return Err(format!("cycle {}: inputs\n fast {inputs:?}\n slow {slow_inputs:?}", clock - 1));
             }
+            let last = clock == fast.cycle();
+            let silent = is_silent(&slow_inputs, &slow_outputs, &slow.outputs(&slow_inputs));
+            if (last && heard.is_some_and(|heard| heard != slow_outputs)) || (!silent && !(last && heard.is_some())) {
+                return Err(format!("cycle {}: heard {heard:?}, not {slow_outputs:?}", clock - 1));
+            }
             for (axis, before) in (0..).zip(before) {
                 let now = slow.shaper(axis);
                 let edge = |change| Edge { clock, axis: axis as u8, change, backward: now.dir };
@@ -75,7 +87,7 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
                 slow_edges.extend((now.dir != before.dir).then(|| edge(Change::Turn)));
             }
         }
-        came.clocks += leapt.max(1);
+        came.clocks = fast.cycle();
         if fast_edges != slow_edges {
             let pair = fast_edges.iter().zip(&slow_edges).find(|(fast, slow)| fast != slow);
             let counts = (fast_edges.len(), slow_edges.len());
@@ -94,4 +106,11 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
         quiet = slow_host.is_done() && (outputs.idle || outputs.halted);
     }
     Ok(came)
+}
+
+/// A host has nothing to hear of in a cycle with these inputs and outputs, and the outputs behind it.
+fn is_silent(inputs: &EngineInputs, now: &EngineOutputs, next: &EngineOutputs) -> bool {
+    let taken = (now.put_ready && inputs.put.is_some()) || (now.start_ready && inputs.start.is_some());
+    let state = |outputs: &EngineOutputs| (outputs.fault, outputs.halted, outputs.idle, outputs.enabled);
+    !taken && !now.started && state(now) == state(next)
 }

@@ -121,7 +121,7 @@ fn stops_at_any_clock(axes: usize, clock_hz: u64, phases: u32, limits: Limits, r
     let came = engines(&EngineBuild { guard, ..build }, 100, engine_programs::program(axes));
     // An overspeed freezes first; promises of the rest are kept by others.
     let causes = came.faults.iter().filter(|count| **count > 0).count();
-    assert!(came.leapt > came.clocks / 2 && came.edges > 1000 && causes >= 7, "{came:?}");
+    assert!(came.leapt > came.clocks / 3 && came.edges > 1000 && causes >= 7, "{came:?}");
 }
 
 #[test]

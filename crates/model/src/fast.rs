@@ -1,14 +1,16 @@
-//! The six-axis core without visiting every clock: the same states, outputs and faults as
-//! [`SixAxis`], exactly.
+//! Both cores without visiting every clock: the same states, outputs and faults as [`SixAxis`] and
+//! [`Engine`](crate::Engine), exactly.
 //!
 //! Between two loads an axis is a cubic with integer coefficients, so a *window* of clocks in which
 //! nothing but STEP, DIR and positions can change is passed at once, axis by axis. Within it each stretch
 //! of V's constant sign is searched for the ticks that step: from edge to edge by a root, guessed in
-//! floating point and put right in 128-bit integers, where edges are far apart; by adding tick after tick
+//! floating point and put right in integers, where edges are far apart; by adding tick after tick
 //! where more than one in [a few ticks](crossings) is expected, because an addition a tick is then cheaper
-//! than a root an edge. The shaper goes from request to request while it is calm. Whatever is not plain (a
-//! load, a start, a fault, a frozen core, an owed step) is left to the clock-by-clock code itself: a window
-//! ends before it. A window in which a fault turns up is taken back and passed again up to the fault.
+//! than a root an edge. What is taken several at a time by the processor is the edges of one axis, in jumps and in
+//! phases, not the axes: side by side they do not tick faster (docs/decisions/0024). The shaper goes from request
+//! to request while it is calm. Whatever is not plain (a load, a start, a fault, a frozen core, an owed step) is
+//! left to the clock-by-clock code itself: a window ends before it. A window in which a fault turns up is taken
+//! back and passed again up to the fault.
 
 mod crossings;
 mod cubic;
@@ -28,7 +30,7 @@ use carrystep_spec::Build;
 use carrystep_spec::ports::{Inputs, Outputs};
 use passage::Passages;
 
-/// The core, and the clock cycle that it is in.
+/// The parallel core, and the clock cycle that it is in.
 #[derive(Debug, Clone)]
 pub struct Fast {
     core: SixAxis,

@@ -73,7 +73,7 @@ impl Engine {
         let clears = inputs.clear && stop.settled && !self.watch.pressed();
         let starts = self.armed.is_some_and(|mask| mask & !waiting != 0 || mask & running == 0);
         let rests = if ran || waiting != 0 { 0 } else { 2 };
-        if !goes_on || clears || starts || self.rest != rests || (stop.halted && running != 0) {
+        if !goes_on || clears || starts || self.rest != rests {
             return 0;
         }
         let mut strobes = self.strobes_to_look(inputs);
