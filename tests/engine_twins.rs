@@ -77,7 +77,8 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
             }
             let last = clock == fast.cycle();
             let silent = is_silent(&slow_inputs, &slow_outputs, &slow.outputs(&slow_inputs));
-            if (last && heard.is_some_and(|heard| heard != slow_outputs)) || (!silent && !(last && heard.is_some())) {
+            let heard_now = heard.filter(|_| last);
+            if heard_now.map_or(!silent, |heard| heard != slow_outputs) {
                 return Err(format!("cycle {}: heard {heard:?}, not {slow_outputs:?}", clock - 1));
             }
             for (axis, before) in (0..).zip(before) {

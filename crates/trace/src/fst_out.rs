@@ -16,7 +16,7 @@ pub struct FstFormat<W: Write + Seek>(State<W>);
 
 enum State<W: Write + Seek> {
     New(W),
-    Body(FstBodyWriter<W>),
+    Body(Box<FstBodyWriter<W>>),
     /// Whole, or broken off.
     Over,
 }
@@ -84,7 +84,7 @@ impl<W: Write + Seek> Format for FstFormat<W> {
         let mut body = header.finish().map_err(told)?;
         // A viewer that interpolates needs both ends of a level.
         body.set_deduplicate(false);
-        self.0 = State::Body(body);
+        self.0 = State::Body(Box::new(body));
         Ok(all)
     }
 
@@ -123,6 +123,6 @@ impl<W: Write + Seek> Format for FstFormat<W> {
         let State::Body(body) = std::mem::replace(&mut self.0, State::Over) else {
             return Err(io::Error::other("nothing is declared"));
         };
-        body.finish().map_err(told)?.flush()
+        (*body).finish().map_err(told)?.flush()
     }
 }
