@@ -51,10 +51,12 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
         // By turns: a leap or a clock, or as far as there is nothing to be heard.
         by_run = !by_run;
         let mut heard = None;
-        if patience > 0 && by_run {
-            heard = fast.run(&inputs, came.clocks + patience, &mut fast_edges);
-            fast_host.wait(fast.cycle() - came.clocks - u64::from(heard.is_some()));
-            heard.iter().for_each(|outputs| fast_host.advance(outputs));
+        if by_run {
+            heard = fast.run(&inputs, came.clocks + patience.max(1), &mut fast_edges);
+            // Without patience the host goes on in this cycle, whatever it hears.
+            let goes_on = heard.or((patience == 0).then_some(outputs));
+            fast_host.wait(fast.cycle() - came.clocks - u64::from(goes_on.is_some()));
+            goes_on.iter().for_each(|outputs| fast_host.advance(outputs));
         } else if patience > 0 && fast.leap(&inputs, patience, &mut fast_edges) > 0 {
             came.leapt += fast.cycle() - came.clocks;
             fast_host.wait(fast.cycle() - came.clocks);

@@ -152,6 +152,6 @@ fn an_engine_of_many_edges() {
     let build = EngineBuild { guard, pins: vec![PinTiming::SHORTEST; 6], ..build };
     let programs = dense::program(500).prop_map(|program| (engine_programs::queued_first(program), Events::new()));
     let came = engines(&build, 100, programs);
-    let (overspeeds, underruns) = (came.faults[Cause::Overspeed as usize], came.faults[Cause::Underrun as usize]);
-    assert!(came.edges > 30_000 && overspeeds > 0 && underruns > 0, "{came:?}");
+    let underruns = came.faults[Cause::Underrun as usize];
+    assert!(came.edges > 30_000 && underruns > 0, "{came:?}");
 }
