@@ -6,37 +6,14 @@ use carrystep_levels::Level;
 use carrystep_levels::engine::replay::{self, Recording};
 use carrystep_levels::engine::{EngineCore, EngineHost, Events};
 use carrystep_model::Engine;
-use carrystep_spec::engine::{CAUSES, Cause, EngineInputs, Guard, Limits, QUEUE};
+use carrystep_spec::engine::{CAUSES, Cause, EngineInputs, Limits, QUEUE};
 use carrystep_spec::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_tests::engine_programs::build;
 use carrystep_tests::golden::{self, Case, Edge};
-use carrystep_tests::{effort, engine_programs, lockstep};
+use carrystep_tests::{effort, engine_programs};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;
-
-/// A tick of 1 us; pins as different as in the other rungs, two of them too slow for a step in every other tick;
-/// ramps of ten ticks to some hundreds; rounds so short that all of a guard happens.
-fn build(axes: usize, clock_hz: u64, phases: u32, phase: StartPhase, limits: Limits) -> EngineBuild {
-    let timebase = Timebase::new(clock_hz, 1000, phases).expect("a fine timebase");
-    let mut build = Build { timebase, ..lockstep::tight_build(phases, phase) };
-    build.pins[3].gap = 237;
-    build.pins[5].hold = 221;
-    let mut build = EngineBuild::minimal(&build, 1);
-    build.pins = build.pins.iter().copied().cycle().take(axes).collect();
-    let low = limits == Limits::Pair;
-    build.guard = Guard {
-        round: 2,
-        debounce: 3,
-        watchdog: 40,
-        enable: 2,
-        limits,
-        limit_freezes: limits == Limits::Each,
-        estop_low: low,
-        limits_low: low,
-        stop: (0..axes).map(|axis| 1 << (52 + 2 * (axis % AXES))).collect(),
-    };
-    build
-}
 
 /// Runs both until the program is over and both are quiet; the clocks it took.
 fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Result<u64, TestCaseError> {

@@ -1,9 +1,11 @@
 //! Random programs for the engine: queues filled and run dry, joint moves whose axes turn and end in one
 //! tick, and whatever the other cores are given; with the e-stop, limits, stops and silence at any clock.
 
+use crate::lockstep;
 use crate::programs::{self, all};
 use carrystep_levels::engine::{Event, Events};
-use carrystep_spec::{Command, Program, Segment};
+use carrystep_spec::engine::{Guard, Limits, QUEUE};
+use carrystep_spec::{AXES, Build, Command, EngineBuild, Program, Segment, StartPhase, Timebase};
 use proptest::prelude::*;
 
 /// Speeds up to the bound, so that axes step in almost every second tick.
@@ -79,6 +81,14 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
     (what, 0_u64..60_000, length).prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])
 }
 
+/// The same with the start behind as many rows of segments as queues hold: then the host is in time.
+pub fn queued_first(mut program: Program) -> Program {
+    program.retain(|command| !matches!(command, Command::Start { .. }));
+    let segments = program.iter().filter(|command| matches!(command, Command::Segment { .. })).count();
+    program.insert(segments.min(QUEUE * AXES), Command::Start { mask: all(AXES) });
+    program
+}
+
 /// Signs of life from a host that is heard of every so often, or falls silent.
 fn signs_of_life() -> impl Strategy<Value = Events> {
     let interval = prop_oneof![3 => 100_u64..5000, 1 => 5000_u64..12_000];
@@ -111,4 +121,28 @@ pub fn program(axes: usize) -> impl Strategy<Value = (Program, Events)> {
         1 => Just(stray),
     ];
     (prop::collection::vec(part, 1..5).prop_map(|parts| parts.concat()), events(axes))
+}
+
+/// A tick of 1 us; pins as different as in the other rungs, two of them too slow for a step in every other tick;
+/// ramps of ten ticks to some hundreds; rounds so short that all of a guard happens.
+pub fn build(axes: usize, clock_hz: u64, phases: u32, phase: StartPhase, limits: Limits) -> EngineBuild {
+    let timebase = Timebase::new(clock_hz, 1000, phases).expect("a fine timebase");
+    let mut build = Build { timebase, ..lockstep::tight_build(phases, phase) };
+    build.pins[3].gap = 237;
+    build.pins[5].hold = 221;
+    let mut build = EngineBuild::minimal(&build, 1);
+    build.pins = build.pins.iter().copied().cycle().take(axes).collect();
+    let low = limits == Limits::Pair;
+    build.guard = Guard {
+        round: 2,
+        debounce: 3,
+        watchdog: 40,
+        enable: 2,
+        limits,
+        limit_freezes: limits == Limits::Each,
+        estop_low: low,
+        limits_low: low,
+        stop: (0..axes).map(|axis| 1 << (52 + 2 * (axis % AXES))).collect(),
+    };
+    build
 }

@@ -5,6 +5,7 @@ pub mod closed_form;
 pub mod dense;
 pub mod effort;
 pub mod engine_programs;
+pub mod engine_twins;
 pub mod golden;
 pub mod lockstep;
 pub mod moves;

@@ -4,7 +4,7 @@ use crate::command::{Folder, GOOD, Ran};
 use std::fs::File;
 use std::process::{Command, Stdio};
 
-const OPTIONS: [&str; 3] = ["--vcd", "--csv", "--plot"];
+const OPTIONS: [&str; 4] = ["--vcd", "--fst", "--csv", "--plot"];
 
 #[test]
 fn paths_that_no_file_can_have() {

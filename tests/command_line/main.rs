@@ -11,6 +11,7 @@ mod bad_outputs;
 mod command;
 mod curves;
 mod engine;
+mod interrupts;
 mod json_names;
 mod profile;
 mod sweeps;

@@ -2,6 +2,7 @@
 
 use crate::moves::Moves;
 use crate::stopwatch;
+use carrystep_levels::engine::run::EngineJob;
 use carrystep_levels::{Job, Level, LevelError, fast};
 use carrystep_model::fast::{Change, Edge, Edges};
 use std::time::Instant;
@@ -37,14 +38,31 @@ pub fn fast(moves: &Moves) -> Result<(f64, Consumer), String> {
     result.map(|consumer| (seconds, consumer)).map_err(|error| error.to_string())
 }
 
-/// Clock cycles a second of a slower level over the first `clocks` of a move, by the clock on the wall: some
-/// run in a process of their own.
+/// How many times faster than its clock an engine of 80 MHz runs on the fast model; it must make the same pulses.
+pub fn engine(moves: &Moves, heard: &Consumer) -> Result<f64, String> {
+    let job = EngineJob::new(&moves.engine, &moves.program, moves.plan.total_ticks());
+    let (seconds, result) = stopwatch::least(BUDGET, || {
+        let mut listener = fast::EdgesOnly(Consumer::default());
+        job.run_fast(&mut listener).map(|outcome| (outcome, listener.0))
+    });
+    let (outcome, consumer) = result.map_err(|error| error.to_string())?;
+    if outcome.fault.is_some() || (consumer.pulses, consumer.turns) != (heard.pulses, heard.turns) {
+        return Err(format!("the engine makes other pulses: {consumer:?}, fault {:?}", outcome.fault));
+    }
+    Ok(outcome.clocks as f64 / moves.engine.timebase.clock_hz() as f64 / seconds)
+}
+
+/// Clock cycles a second of a slower level over the first `clocks` of a move: in processor time, or by the clock on
+/// the wall where the level runs in a process of its own.
 pub fn clocks_per_second(level: Level, moves: &Moves, clocks: u64) -> Result<f64, String> {
     let run = |clocks: u64| {
-        let begin = Instant::now();
+        let (begin, wall) = (stopwatch::now(), Instant::now());
         let job = Job { max_clocks: clocks, ..moves.job() };
         match carrystep_levels::run(level, &job, &mut |_, _| {}) {
-            Ok(_) | Err(LevelError::Endless(_)) => Ok(begin.elapsed().as_secs_f64()),
+            Ok(_) | Err(LevelError::Endless(_)) => match level {
+                Level::Fast | Level::Model | Level::RustHdl => Ok(stopwatch::now() - begin),
+                Level::Icarus | Level::Verilator => Ok(wall.elapsed().as_secs_f64()),
+            },
             Err(error) => Err(error.to_string()),
         }
     };

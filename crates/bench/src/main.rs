@@ -7,12 +7,13 @@ mod levels;
 mod moves;
 mod report;
 mod stopwatch;
+mod ticking;
 mod verilator;
 mod writers;
 
 use carrystep_levels::Level;
 use clap::Parser;
-use moves::{DENSITIES, Density, Moves};
+use moves::{DENSITIES, Density, Moves, STEADY};
 use report::{Report, Row};
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -21,6 +22,9 @@ use verilator::Verilated;
 
 /// Verilator below this, in clock cycles a second, is not at its best: the run shows nothing.
 const VERILATOR_AT_LEAST: f64 = 5e6;
+
+/// An edge costs no more where the fast model jumps.
+const NS_PER_EDGE_AT_MOST: f64 = 15.0;
 
 /// Side by side: the fast model, the tick model, Rust-HDL, Icarus and Verilator.
 #[derive(Parser)]
@@ -56,6 +60,13 @@ fn measure() -> Result<Report, String> {
     for (density, moves) in DENSITIES.iter().zip(&moves) {
         rows.push(row(density, moves, &toggling, &mut failures)?);
     }
+    let steady = Moves::load(&STEADY)?;
+    let (steady_seconds, heard) = levels::fast(&steady)?;
+    let edge = steady_seconds / (heard.pulses + heard.turns).max(1) as f64;
+    let (typical_seconds, heard) = levels::fast(&moves[1])?;
+    let loading = typical_seconds - edge * (heard.pulses + heard.turns) as f64;
+    let engine_times_real_time = levels::engine(&moves[0], &levels::fast(&moves[0])?.1)?;
+    let [ticked_ns_one_after_the_other, ticked_ns_side_by_side] = ticking::measure()?;
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let busy = &moves[0];
     let ports = writers::ports(busy, folder.path())?;
@@ -66,6 +77,10 @@ fn measure() -> Result<Report, String> {
     if ports.megabytes_per_second() < theirs.megabytes_per_second() / 2.0 {
         failures.push("our VCD is written at less than half the speed of Verilator's".to_owned());
     }
+    let busy_ns = rows.first().map_or(f64::INFINITY, |row| row.fast_ns_per_edge);
+    if busy_ns > NS_PER_EDGE_AT_MOST {
+        failures.push(format!("busy: {busy_ns:.1} ns an edge, {NS_PER_EDGE_AT_MOST} wanted"));
+    }
     let ratio = |name: &str| rows.iter().find(|row: &&Row| row.name == name).map_or(0.0, |row| row.ratio);
     Ok(Report {
         passed: failures.is_empty(),
@@ -74,6 +89,11 @@ fn measure() -> Result<Report, String> {
         ratio_typical: ratio("typical"),
         ratio_rest: ratio("rest"),
         rows,
+        steady_ns_per_edge: edge * 1e9,
+        typical_ns_per_load: loading * 1e9 / moves[1].loads() as f64,
+        engine_times_real_time,
+        ticked_ns_one_after_the_other,
+        ticked_ns_side_by_side,
         vcd_mb_per_s: ports.megabytes_per_second(),
         waveform_mb_per_s: waveform.megabytes_per_second(),
         verilator_vcd_mb_per_s: theirs.megabytes_per_second(),

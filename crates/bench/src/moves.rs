@@ -4,7 +4,7 @@ use carrystep_levels::{Job, Outcome, fast};
 use carrystep_model::Fast;
 use carrystep_plan::{Plan, plan};
 use carrystep_spec::ports::Inputs;
-use carrystep_spec::{Command, MoveFile, Program};
+use carrystep_spec::{Command, EngineBuild, MoveFile, Program, Timebase};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -25,9 +25,17 @@ pub const DENSITIES: [Density; 3] = [
     Density { name: "rest", what: "mostly at rest", wanted: 10_000.0 },
 ];
 
+/// Edges as dense as those of the typical move, with hardly a load: what an edge costs, and what a load.
+pub const STEADY: Density = Density { name: "steady", what: "all axes at 10 000 steps/s, few loads", wanted: 0.0 };
+
+/// The clock in which an engine of six axes has time for all their turns in a tick of 1 us.
+const ENGINE_HZ: u64 = 80_000_000;
+
 /// A planned move, ready to be run.
 pub struct Moves {
     pub plan: Plan,
+    /// The engine that makes the same pulses.
+    pub engine: EngineBuild,
     pub program: Program,
     /// How the run ends on the fast model.
     pub outcome: Outcome,
@@ -41,14 +49,23 @@ impl Moves {
         let file = MoveFile::load(&path).map_err(|error| error.to_string())?;
         let plan = plan::<f64>(&file).map_err(|error| format!("{}: {error}", path.display()))?;
         let program = plan.program();
+        let (tick_ns, phases) = (plan.build.timebase.tick_ns(), plan.build.timebase.phases());
+        let timebase = Timebase::new(ENGINE_HZ, tick_ns, phases).map_err(|error| error.to_string())?;
+        let engine = EngineBuild { timebase, ..file.machine.engine() };
+        engine.check().map_err(|error| error.to_string())?;
         let outcome = fast::run(&Job::new(&plan.build, &program, plan.total_ticks()), &mut fast::EdgesOnly(()))
             .map_err(|error| error.to_string())?;
-        Ok(Self { plan, program, outcome })
+        Ok(Self { plan, engine, program, outcome })
     }
 
     /// As any level runs it.
     pub fn job(&self) -> Job<'_> {
         Job::new(&self.plan.build, &self.program, self.plan.total_ticks())
+    }
+
+    /// How many segments are loaded.
+    pub fn loads(&self) -> usize {
+        self.program.iter().filter(|command| matches!(command, Command::Segment { .. })).count()
     }
 
     /// In which cycle each command is taken: the feed of a bench that knows no host.

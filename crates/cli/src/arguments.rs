@@ -69,14 +69,6 @@ impl Core {
             Self::Parallel => "parallel",
         }
     }
-
-    /// The level at which it runs fastest.
-    pub const fn fastest(self) -> Level {
-        match self {
-            Self::Engine => Level::Model,
-            Self::Parallel => Level::Fast,
-        }
-    }
 }
 
 /// `carrystep demo`
@@ -119,15 +111,18 @@ pub struct Simulate {
     /// Which gateware: one adder for all axes, with queues and a guard, or an adder an axis.
     #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
     pub core: Core,
-    /// Where the gateware runs; default: fast, or model for the engine, which has no fast model.
-    #[arg(long, value_name = "LEVEL", value_parser = level())]
-    pub level: Option<Level>,
+    /// Where the gateware runs.
+    #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
+    pub level: Level,
     /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
     /// Write the waveform: pins, position and V beside the float profile.
     #[arg(long, value_name = "FILE")]
     pub vcd: Option<PathBuf>,
+    /// Write the same waveform as FST: a fraction of the size, at once on the screen of GTKWave.
+    #[arg(long, value_name = "FILE")]
+    pub fst: Option<PathBuf>,
     /// Write a GTKWave save file for the waveform (needs --vcd).
     #[arg(long, value_name = "FILE", requires = "vcd")]
     pub save: Option<PathBuf>,

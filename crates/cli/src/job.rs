@@ -3,22 +3,24 @@
 use crate::arguments::Core;
 use crate::failure::Failure;
 use crate::gateware::Gateware;
+use crate::interrupt;
 use crate::progress::Progress;
 use crate::table::{self, Limits};
 use crate::wanted::Wanted;
 use carrystep_levels::engine::run::EngineJob;
 use carrystep_levels::pins::PinFeed;
-use carrystep_levels::{Job, Level};
+use carrystep_levels::{Job, Level, LevelError};
 use carrystep_plan::Plan;
 use carrystep_profile::Timeline;
 use carrystep_spec::{EngineBuild, MoveFile};
 use carrystep_trace::{
-    AxisSetup, AxisWaves, Checker, CsvWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee, VcdWriter, Waves,
-    save_file,
+    AxisSetup, AxisWaves, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee,
+    VcdWriter, Waves, save_file,
 };
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Longest run, in seconds: captures count ps in 64 bits.
@@ -110,12 +112,9 @@ pub fn fits_a_capture(plan: &Plan) -> Result<(), Failure> {
 }
 
 /// The engine of a file's machine, where one is asked for.
-fn engine(file: &MoveFile, core: Core, level: Level) -> Result<Option<EngineBuild>, Failure> {
+fn engine(file: &MoveFile, core: Core) -> Result<Option<EngineBuild>, Failure> {
     if core == Core::Parallel {
         return Ok(None);
-    }
-    if level == Level::Fast {
-        return Err(Failure::input("the engine has no level fast: --level model is its fastest"));
     }
     let engine = file.machine.engine();
     engine.check().map_err(|error| Failure::input(format!("{}: {error}", file.source.path.display())))?;
@@ -124,14 +123,17 @@ fn engine(file: &MoveFile, core: Core, level: Level) -> Result<Option<EngineBuil
 
 /// Runs a plan on a core at a level, checks every pulse and writes what is wanted.
 pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
-    let engine = engine(file, core, level)?;
+    let engine = engine(file, core)?;
     carrystep_levels::available(level)?;
     fits_a_capture(plan)?;
     let mut files = wanted.begin(&file.source.path)?;
     let program = plan.program();
+    // Nobody waits for the end of a run whose output cannot be written.
+    let deaf = AtomicBool::new(false);
+    let halt = &[interrupt::watch(), &deaf];
     let gateware = match &engine {
-        None => Gateware::Parallel(Job::new(&plan.build, &program, plan.total_ticks())),
-        Some(engine) => Gateware::Engine(EngineJob::new(engine, &program, plan.total_ticks())),
+        None => Gateware::Parallel(Job { halt, ..Job::new(&plan.build, &program, plan.total_ticks()) }),
+        Some(engine) => Gateware::Engine(EngineJob { halt, ..EngineJob::new(engine, &program, plan.total_ticks()) }),
     };
     let timebase = plan.build.timebase;
     let load = gateware.origin()?;
@@ -151,6 +153,7 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
             .collect(),
     };
     let mut vcd = files.vcd.as_mut().map(|out| VcdWriter::new(out, waves()));
+    let mut fst = files.fst.as_mut().map(|out| FstWriter::new(out, waves()));
     let mut csv = files.csv.as_mut().map(|out| CsvWriter::new(out, &timebase, plan.build.phase, origin_ps, named()));
     let title = file.source.path.display().to_string();
     let mut plot = wanted.plot.as_ref().map(|_| {
@@ -166,6 +169,9 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
         if let Some(sink) = vcd.as_mut() {
             tee.add(sink);
         }
+        if let Some(sink) = fst.as_mut() {
+            tee.add(sink);
+        }
         if let Some(sink) = csv.as_mut() {
             tee.add(sink);
         }
@@ -177,12 +183,21 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
         let outcome = gateware.run(level, &mut |cycle, step, dir| {
             progress.at(cycle);
             feed.pins(cycle, step, dir);
-        })?;
+            if feed.has_failed() {
+                deaf.store(true, Ordering::Relaxed);
+            }
+        });
+        interrupt::check()?;
+        if let Err(LevelError::Halted) = outcome {
+            // The feed knows why.
+            return Err(feed.end(0).err().map_or(LevelError::Halted.into(), Failure::from));
+        }
+        let outcome = outcome?;
         feed.end(outcome.clocks)?;
         outcome
     };
     let run_s = started.elapsed().as_secs_f64();
-    drop((vcd, csv));
+    drop((vcd, fst, csv));
 
     let check = checker.finish();
     if let (Some(out), Some(vcd)) = (&mut files.save, &wanted.vcd) {

@@ -5,6 +5,7 @@ mod commands;
 mod failure;
 mod figures;
 mod gateware;
+mod interrupt;
 mod job;
 mod output;
 mod progress;

@@ -1,9 +1,10 @@
 //! Where results go: standard output, and files that appear whole or not at all.
 
 use crate::failure::Failure;
+use crate::interrupt;
 use serde::Serialize;
 use std::fs::File;
-use std::io::{BufWriter, ErrorKind, Write};
+use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -51,9 +52,19 @@ impl Write for Place {
     }
 }
 
+impl Seek for Place {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        match self {
+            Self::Beside(file) => file.seek(to),
+            Self::Itself(file) => file.seek(to),
+        }
+    }
+}
+
 impl OutputFile {
     /// Makes the folder if need be. Whatever forbids the file is found here, before any work is done.
     pub fn create(path: &Path) -> Result<Self, Failure> {
+        interrupt::watch();
         let place = place(path).map_err(|error| cannot_write(path, &error))?;
         Ok(Self { path: path.to_owned(), writer: BufWriter::with_capacity(1 << 18, place) })
     }
@@ -78,8 +89,9 @@ impl OutputFile {
         self.writer.flush().map_err(|error| cannot_write(&self.path, &error))
     }
 
-    /// Everything is written: let it appear.
+    /// Everything is written: let it appear, unless somebody has asked us to end.
     pub fn keep(self) -> Result<PathBuf, Failure> {
+        interrupt::check()?;
         let wrong = |error: std::io::Error| cannot_write(&self.path, &error);
         let place = self.writer.into_inner().map_err(|error| wrong(error.into_error()))?;
         if let Place::Beside(file) = place {
@@ -121,6 +133,12 @@ impl Write for OutputFile {
     }
     fn flush(&mut self) -> std::io::Result<()> {
         self.writer.flush().map_err(|error| self.named(&error))
+    }
+}
+
+impl Seek for OutputFile {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.writer.seek(to).map_err(|error| self.named(&error))
     }
 }
 

@@ -1,5 +1,6 @@
 //! The engine under the same host as every core: a segment is seven words and a commit.
 
+mod fast;
 mod feed;
 pub mod replay;
 pub mod run;
@@ -181,17 +182,48 @@ impl EngineHost {
 
     /// One cycle of a core under this host: what goes in, and what comes out.
     pub fn step(&mut self, core: &mut impl EngineCore) -> (EngineInputs, EngineOutputs) {
+        let (inputs, outputs) = self.meet(|inputs| core.outputs(inputs));
+        self.advance(&outputs);
+        core.clock(&inputs);
+        (inputs, outputs)
+    }
+
+    /// What goes into a core in this cycle, and what comes out of it.
+    pub fn meet(&mut self, mut core: impl FnMut(&EngineInputs) -> EngineOutputs) -> (EngineInputs, EngineOutputs) {
         let mut inputs = self.inputs(self.fault);
-        let mut outputs = core.outputs(&inputs);
+        let mut outputs = core(&inputs);
         // The host sees this cycle's fault: ask again where it has just changed.
         if outputs.fault.is_some() != self.fault {
             self.fault = outputs.fault.is_some();
             inputs = self.inputs(self.fault);
-            outputs = core.outputs(&inputs);
+            outputs = core(&inputs);
         }
-        self.advance(&outputs);
-        core.clock(&inputs);
         (inputs, outputs)
+    }
+
+    /// How many cycles the host drives the same, as long as the outputs let it wait and there is no new fault.
+    pub fn patience(&mut self, outputs: &EngineOutputs) -> u64 {
+        let fault = outputs.fault.is_some();
+        let blocked = match self.current {
+            Some(Act::Wait(clocks)) => clocks.saturating_sub(1).into(),
+            Some(Act::Put(_)) if fault || outputs.put_ready => 0,
+            Some(Act::Start(_)) if fault || outputs.start_ready => 0,
+            Some(Act::Clear) if !fault => 0,
+            _ => u64::MAX,
+        };
+        let lasting = self.around.kick == self.awake;
+        // The last cycle before an event is one of `advance`.
+        let eventless = self.events.peek().map_or(u64::MAX, |(cycle, _)| (cycle - 1).saturating_sub(self.cycle));
+        if lasting { blocked.min(eventless) } else { 0 }
+    }
+
+    /// So many cycles of [`EngineHost::patience`] have passed.
+    pub fn wait(&mut self, cycles: u64) {
+        if let Some(Act::Wait(clocks)) = &mut self.current {
+            // Never more than its patience, which fits.
+            *clocks = clocks.saturating_sub(u32::try_from(cycles).unwrap_or(u32::MAX));
+        }
+        self.cycle += cycles;
     }
 
     /// Nothing is left.

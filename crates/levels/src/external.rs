@@ -5,7 +5,7 @@
 //! `O` and all outputs where any changed, `E` and the same in the last cycle, `X` if there was no end.
 
 use crate::tool::{self, Tool};
-use crate::{Job, LevelError, Observer, Outcome};
+use crate::{Job, LevelError, Observer, Outcome, halted};
 use carrystep_spec::ports::Outputs;
 use carrystep_spec::{AXES, Command, Faults};
 use std::fmt::Write as _;
@@ -45,6 +45,12 @@ pub(crate) fn observe(
     let mut odd = None;
     for line in child.stdout.take().map(BufReader::new).into_iter().flat_map(BufRead::lines) {
         let line = line.map_err(tool::io(format!("reading from the {} simulation", tool.name)))?;
+        if halted(job.halt) {
+            // It may be over by now.
+            let _ = child.kill();
+            child.wait().map_err(tool::io(format!("ending the {} simulation", tool.name)))?;
+            return Err(LevelError::Halted);
+        }
         match record(&line) {
             Some(('O', cycle, outputs)) => {
                 observer(cycle, &outputs);

@@ -2,15 +2,15 @@
 
 use crate::host::Host;
 use crate::replay::Replay;
-use crate::{Job, LevelError, Observer, Outcome};
+use crate::{Job, LevelError, Observer, Outcome, halted};
 use carrystep_model::Fast;
 use carrystep_model::fast::{Edge, Edges};
 use carrystep_spec::ports::Outputs;
 
 /// Who wants to hear of edges, and of the outputs wherever more than the pins may have changed.
-pub trait Listener: Edges {
+pub trait Listener<O>: Edges {
     /// The outputs in this cycle. Edges up to it have been told.
-    fn outputs(&mut self, cycle: u64, outputs: &Outputs);
+    fn outputs(&mut self, cycle: u64, outputs: &O);
 }
 
 /// Edges alone: nothing else is told.
@@ -22,13 +22,13 @@ impl<E: Edges> Edges for EdgesOnly<E> {
     }
 }
 
-impl<E: Edges> Listener for EdgesOnly<E> {
-    fn outputs(&mut self, _: u64, _: &Outputs) {}
+impl<E: Edges, O> Listener<O> for EdgesOnly<E> {
+    fn outputs(&mut self, _: u64, _: &O) {}
 }
 
 /// Runs a job on the fast model and tells every cycle in which any output changed, as any level does.
 pub(crate) fn replay(job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
-    let mut replay = Replay::new(job.build, observer);
+    let mut replay = Replay::new(&job.build.pins, observer);
     let end = run(job, &mut replay);
     replay.reach(end.as_ref().map_or(job.max_clocks, |outcome| outcome.clocks));
     end
@@ -37,13 +37,16 @@ pub(crate) fn replay(job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outco
 /// Runs a job on the fast model; the edges stream by.
 ///
 /// # Errors
-/// [`LevelError::Endless`]: the run does not end.
-pub fn run(job: &Job<'_>, listener: &mut impl Listener) -> Result<Outcome, LevelError> {
+/// [`LevelError::Endless`]: the run does not end; [`LevelError::Halted`]: it is to.
+pub fn run(job: &Job<'_>, listener: &mut impl Listener<Outputs>) -> Result<Outcome, LevelError> {
     let mut core = Fast::new(job.build);
     let mut host = Host::new(job.program);
     let mut quiet = 0;
     let mut origin = None;
     while core.cycle() < job.max_clocks {
+        if halted(job.halt) {
+            return Err(LevelError::Halted);
+        }
         let cycle = core.cycle();
         let fault = core.core().faults().any();
         let inputs = host.inputs(fault);

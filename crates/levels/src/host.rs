@@ -1,6 +1,6 @@
 //! The host that feeds a core, clock by clock: the Rust side of docs/clock-by-clock.md, "host".
 
-use crate::{Job, LevelError, Observer, Outcome};
+use crate::{Job, LevelError, Observer, Outcome, halted};
 use carrystep_spec::ports::{Inputs, Outputs};
 use carrystep_spec::{Command, Program};
 
@@ -122,6 +122,9 @@ pub(crate) fn run(core: &mut impl Core, job: &Job<'_>, observer: &mut Observer<'
     let mut quiet = 0;
     let mut origin = None;
     for cycle in 0..job.max_clocks {
+        if halted(job.halt) {
+            return Err(LevelError::Halted);
+        }
         // The host sees this cycle's fault: ask again where it has just changed.
         let mut inputs = host.inputs(fault);
         let mut outputs = core.outputs(&inputs);

@@ -18,6 +18,7 @@ use carrystep_spec::ports::Outputs;
 use carrystep_spec::{Build, Program};
 use std::fmt;
 use std::str::FromStr;
+use std::sync::atomic::{AtomicBool, Ordering};
 use thiserror::Error;
 
 /// Where a program is run.
@@ -76,6 +77,16 @@ pub struct Job<'a> {
     pub tail: u64,
     /// The run fails after this many cycles.
     pub max_clocks: u64,
+    /// Ends it before its end.
+    pub halt: Halt<'a>,
+}
+
+/// Flags of which any one ends a run with [`LevelError::Halted`]; the loops look at them wherever they come by.
+pub type Halt<'a> = &'a [&'a AtomicBool];
+
+/// Whether one of them is set.
+pub(crate) fn halted(halt: Halt<'_>) -> bool {
+    halt.iter().any(|flag| flag.load(Ordering::Relaxed))
 }
 
 impl<'a> Job<'a> {
@@ -83,7 +94,7 @@ impl<'a> Job<'a> {
     pub fn new(build: &'a Build, program: &'a Program, ticks: u64) -> Self {
         let clocks = u64::from(build.timebase.clocks_per_tick());
         let slack = 4 * clocks + build.pins.iter().map(|p| u64::from(p.width + p.gap)).max().unwrap_or(0);
-        Self { build, program, tail: slack, max_clocks: (ticks + 8) * clocks + 4 * slack }
+        Self { build, program, tail: slack, max_clocks: (ticks + 8) * clocks + 4 * slack, halt: &[] }
     }
 }
 
@@ -120,6 +131,9 @@ pub enum LevelError {
     /// The run did not come to its end.
     #[error("the run was not over after {0} clocks")]
     Endless(u64),
+    /// Somebody asked for it.
+    #[error("the run was stopped before its end")]
+    Halted,
     /// The gateware for these build parameters cannot be made.
     #[error("{0}")]
     Gateware(String),

@@ -44,6 +44,11 @@ impl<'a> PinFeed<'a> {
         (self.step, self.dir) = (step, dir);
     }
 
+    /// The sink has failed: it hears no more.
+    pub fn has_failed(&self) -> bool {
+        self.failed.is_some()
+    }
+
     /// The run is over after this many cycles.
     ///
     /// # Errors

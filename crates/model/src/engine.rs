@@ -10,12 +10,14 @@
 
 mod guard;
 mod lane;
+mod plain;
 
 use crate::shaper;
 use carrystep_spec::EngineBuild;
 use carrystep_spec::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, Limits, PUT_BEAT, Put, TURN};
 use guard::{Stop, Watch, freezes};
 use lane::{Lane, Look, Segment, Tick};
+use std::sync::Arc;
 
 /// The beat of a turn in which an axis that waits for its limit says its position.
 const LATCH_BEAT: u32 = 6;
@@ -26,7 +28,7 @@ const LOOK_BEAT: u32 = 10;
 /// The engine's state; [`Engine::outputs`] and [`Engine::clock`] are its one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Engine {
-    build: EngineBuild,
+    build: Arc<EngineBuild>,
     /// Clock in the tick.
     clock: u32,
     /// This is not the first tick: there are turns.
@@ -48,7 +50,7 @@ impl Engine {
             Lane::new(build.phase.start_value(), *stop, shaper::State::at_configuration(pins))
         };
         Self {
-            build: build.clone(),
+            build: Arc::new(build.clone()),
             clock: 0,
             turns: false,
             armed: None,
@@ -97,20 +99,21 @@ impl Engine {
     pub fn clock(&mut self, inputs: &EngineInputs) {
         let outputs = self.outputs(inputs);
         let (strobe, before) = (self.strobe(), self.stop);
-        let guard = self.build.guard.clone();
+        let build = Arc::clone(&self.build);
+        let guard = &build.guard;
         // Causes are called in the order in which they count.
         let mut stop = before;
         let busy = self.pins_busy();
         let late = self.shape();
         if late != 0 {
-            stop.call(Cause::Overrun, late, &guard);
+            stop.call(Cause::Overrun, late, guard);
         }
         if strobe && self.watch.pressed() {
-            stop.call(Cause::EStop, 0, &guard);
+            stop.call(Cause::EStop, 0, guard);
         }
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.lanes.len());
         if (nobody || inputs.broken) && before.fault.is_none() {
-            stop.call(Cause::Protocol, 0, &guard);
+            stop.call(Cause::Protocol, 0, guard);
         }
         self.look(inputs);
         if let Some(put) = inputs.put.filter(|_| outputs.put_ready && !nobody) {
@@ -120,11 +123,11 @@ impl Engine {
         if strobe {
             stop = self.end_tick(inputs, &outputs, stop, busy);
         }
-        if strobe && self.watch.misses_the_host(&guard) && !waits {
-            stop.call(Cause::Watchdog, 0, &guard);
+        if strobe && self.watch.misses_the_host(guard) && !waits {
+            stop.call(Cause::Watchdog, 0, guard);
         }
         if inputs.stop {
-            stop.call(Cause::Stop, 0, &guard);
+            stop.call(Cause::Stop, 0, guard);
         }
         if before.fault.is_some() {
             self.armed = None;
@@ -135,7 +138,7 @@ impl Engine {
                 lane.homing.waits = mask >> axis & 1 == 1;
             }
         }
-        self.watch.clock(&guard, inputs, strobe, outputs.idle);
+        self.watch.clock(guard, inputs, strobe, outputs.idle);
         self.stop = stop;
         if strobe && before.clearing {
             self.clear();
@@ -156,7 +159,7 @@ impl Engine {
         let per_phase = self.build.timebase.clocks_per_phase();
         let (phase, sub) = (self.clock / per_phase, self.clock % per_phase);
         for (lane, pins) in self.lanes.iter_mut().zip(&self.build.pins) {
-            let request = lane.emitted.step.filter(|step| sub == 0 && step.1 == phase).map(|step| step.0);
+            let request = lane.emitted.step.filter(|step| sub == 0 && step.phase == phase).map(|step| step.backward);
             let input = shaper::Input { request, sign: lane.emitted.sign, frozen: self.stop.frozen };
             lane.shaper = shaper::clock(shaper::State { overrun: false, ..lane.shaper }, input, *pins);
         }
@@ -186,13 +189,18 @@ impl Engine {
 
     /// Keeps the pin of the axis whose turn it is.
     fn look(&mut self, inputs: &EngineInputs) {
-        let guard = &self.build.guard;
         let (axis, beat) = ((self.clock / TURN) as usize, self.clock % TURN);
         if axis < self.lanes.len() && beat == LOOK_BEAT {
-            let pins = if self.watch.tick_of_round == 1 { inputs.limit_max } else { inputs.limit_min };
-            let bit = if guard.limits == Limits::One { 0 } else { axis };
-            self.pins[axis] = (pins >> bit & 1 == 1) != guard.limits_low;
+            self.pins[axis] = self.pin(inputs, axis, self.watch.tick_of_round);
         }
+    }
+
+    /// The limit's pin that an axis sees in this tick of the round; true is active.
+    fn pin(&self, inputs: &EngineInputs, axis: usize, tick_of_round: u32) -> bool {
+        let guard = &self.build.guard;
+        let pins = if tick_of_round == 1 { inputs.limit_max } else { inputs.limit_min };
+        let bit = if guard.limits == Limits::One { 0 } else { axis };
+        (pins >> bit & 1 == 1) != guard.limits_low
     }
 
     fn tick(&self) -> Tick<'_> {
@@ -251,7 +259,8 @@ impl Engine {
     /// The strobe: everything that the tick has brought takes effect. The stop that is under way then.
     fn end_tick(&mut self, inputs: &EngineInputs, outputs: &EngineOutputs, mut stop: Stop, busy: bool) -> Stop {
         let before = self.stop;
-        let guard = self.build.guard.clone();
+        let build = Arc::clone(&self.build);
+        let guard = &build.guard;
         let ticked = self.ticked();
         let decision = self.decision(&ticked);
         let (mut lanes, found) = ticked;
@@ -263,7 +272,7 @@ impl Engine {
         }
         match decision {
             Decision::Wait => {}
-            Decision::Unfed => stop.call(Cause::Protocol, 0, &guard),
+            Decision::Unfed => stop.call(Cause::Protocol, 0, guard),
             Decision::Go(mask) => {
                 self.armed = None;
                 for (axis, lane) in lanes.iter_mut().enumerate().filter(|(axis, _)| mask >> axis & 1 == 1) {
@@ -276,11 +285,11 @@ impl Engine {
             self.armed = inputs.start;
         }
         for (cause, axis) in &found {
-            stop.call(*cause, 1 << axis, &guard);
+            stop.call(*cause, 1 << axis, guard);
         }
         self.lanes = lanes;
         self.turns = true;
-        let freezes = found.iter().any(|(cause, _)| freezes(*cause, &guard));
+        let freezes = found.iter().any(|(cause, _)| freezes(*cause, guard));
         Stop {
             ramp: before.fault.is_some() || !found.is_empty(),
             halted: before.frozen || freezes || (before.ramp && !ran),

@@ -1,43 +1,47 @@
-//! The six-axis core without visiting every clock: the same states, outputs and faults as
-//! [`SixAxis`], exactly.
+//! Both cores without visiting every clock: the same states, outputs and faults as [`SixAxis`] and
+//! [`Engine`](crate::Engine), exactly.
 //!
 //! Between two loads an axis is a cubic with integer coefficients, so a *window* of clocks in which
 //! nothing but STEP, DIR and positions can change is passed at once, axis by axis. Within it each stretch
 //! of V's constant sign is searched for the ticks that step: from edge to edge by a root, guessed in
-//! floating point and put right in 128-bit integers, where edges are far apart; by adding tick after tick
+//! floating point and put right in integers, where edges are far apart; by adding tick after tick
 //! where more than one in [a few ticks](crossings) is expected, because an addition a tick is then cheaper
-//! than a root an edge. The shaper goes from request to request while it is calm. Whatever is not plain (a
-//! load, a start, a fault, a frozen core, an owed step) is left to the clock-by-clock code itself: a window
-//! ends before it. A window in which a fault turns up is taken back and passed again up to the fault.
+//! than a root an edge. What is taken several at a time by the processor is the edges of one axis, in jumps and in
+//! phases, not the axes: side by side they do not tick faster (docs/decisions/0024). The shaper goes from request
+//! to request while it is calm. Whatever is not plain (a load, a start, a fault, a frozen core, an owed step) is
+//! left to the clock-by-clock code itself: a window ends before it. A window in which a fault turns up is taken
+//! back and passed again up to the fault.
 
 mod crossings;
 mod cubic;
 mod edges;
+mod engine;
 mod lane;
+mod passage;
 mod pins;
 
+pub(crate) use cubic::Cubic;
 pub use edges::{Change, Edge, Edges};
+pub use engine::FastEngine;
+pub(crate) use lane::Moving;
 
 use crate::SixAxis;
+use carrystep_spec::Build;
 use carrystep_spec::ports::{Inputs, Outputs};
-use carrystep_spec::{AXES, Build};
-use cubic::MOST_TICKS;
-use edges::Record;
-use lane::{FaultIn, Window};
+use passage::Passages;
 
-/// The core, and the clock cycle that it is in.
+/// The parallel core, and the clock cycle that it is in.
 #[derive(Debug, Clone)]
 pub struct Fast {
     core: SixAxis,
     cycle: u64,
-    /// The edges of one window, axis by axis.
-    edges: [Vec<Record>; AXES],
+    passages: Passages,
 }
 
 impl Fast {
     /// The core as it is configured, in cycle 0.
     pub fn new(build: &Build) -> Self {
-        Self { core: SixAxis::new(build), cycle: 0, edges: Default::default() }
+        Self { core: SixAxis::new(build), cycle: 0, passages: Passages::default() }
     }
 
     /// Its registers.
@@ -57,63 +61,37 @@ impl Fast {
 
     /// Goes to the next cycle.
     pub fn clock(&mut self, inputs: &Inputs, to: &mut impl Edges) {
-        let pins = |core: &SixAxis| core.lanes.map(|lane| (lane.shaper.dir, lane.shaper.position));
-        let before = pins(&self.core);
+        let before = self.core.lanes.map(|lane| lane.shaper);
         self.core.clock(inputs);
         self.cycle += 1;
-        for (axis, (before, now)) in (0..).zip(before.into_iter().zip(pins(&self.core))) {
-            let (clock, backward) = (self.cycle, now.0);
-            if now.1 != before.1 {
-                to.edge(Edge { clock, axis, change: Change::Rise, backward });
-            }
-            if now.0 != before.0 {
-                to.edge(Edge { clock, axis, change: Change::Turn, backward });
-            }
+        for ((axis, lane), before) in (0..).zip(&self.core.lanes).zip(&before) {
+            edges::changes(self.cycle, axis, before, &lane.shaper, to);
         }
     }
 
     /// Passes as many cycles as it can, `most` at the most, in which nothing but STEP, DIR and positions
     /// changes while the inputs stay; how many they were. After 0 the next cycle needs [`Fast::clock`].
     pub fn leap(&mut self, inputs: &Inputs, most: u64, to: &mut impl Edges) -> u64 {
-        if self.core.is_still(inputs) {
-            self.pass(most);
-            return most;
+        let mut clocks = most;
+        if !self.core.is_still(inputs) {
+            clocks = if self.core.only_adds(inputs) { most.min(self.clocks_to_load()) } else { 0 };
+            let mut lanes = self.core.lanes.map(|lane| lane.moving());
+            let build = &self.core.build;
+            let from = passage::From { cycle: self.cycle, clock_of_tick: self.core.clock_of_tick() };
+            let strobes;
+            (clocks, strobes) = self.passages.pass(&mut lanes, from, clocks, &build.timebase, &build.pins, to);
+            self.core.lanes.iter_mut().zip(&lanes).for_each(|(lane, moved)| lane.moved(moved, strobes));
         }
-        let mut clocks = if self.core.only_adds(inputs) { most.min(self.clocks_to_load()) } else { 0 };
-        let before = self.core.lanes;
-        while let Err(FaultIn(cycle)) = self.pass_lanes(clocks) {
-            self.core.lanes = before;
-            clocks = cycle - self.cycle;
-        }
-        self.pass(clocks);
-        edges::merge(&mut self.edges, to);
+        self.cycle += clocks;
+        self.core.pass(clocks);
         clocks
     }
 
     /// Cycles before the strobe that ends the first segment.
     fn clocks_to_load(&self) -> u64 {
         let left = |lane: &crate::six_axis::Lane| lane.axis.running.then_some(lane.axis.left.saturating_sub(1));
-        let plain = self.core.lanes.iter().filter_map(left).min().unwrap_or(MOST_TICKS).min(MOST_TICKS - 1);
+        let plain = self.core.lanes.iter().filter_map(left).min().unwrap_or(u32::MAX);
         let clocks = u64::from(self.core.build.timebase.clocks_per_tick());
         (u64::from(plain) + 1) * clocks - 1 - self.core.clock_of_tick()
-    }
-
-    fn pass_lanes(&mut self, clocks: u64) -> Result<(), FaultIn> {
-        self.edges.iter_mut().for_each(Vec::clear);
-        if clocks == 0 {
-            return Ok(());
-        }
-        let window = Window { tick: self.cycle - self.core.clock_of_tick(), from: self.cycle, to: self.cycle + clocks };
-        let build = &self.core.build;
-        for (axis, (lane, edges)) in (0..).zip(self.core.lanes.iter_mut().zip(&mut self.edges)) {
-            lane::pass(lane, axis, window, &build.timebase, build.pins[usize::from(axis)], edges)?;
-        }
-        Ok(())
-    }
-
-    /// Time goes by; the lanes are there already.
-    fn pass(&mut self, clocks: u64) {
-        self.cycle += clocks;
-        self.core.pass(clocks);
     }
 }

@@ -13,5 +13,5 @@ pub mod shaper;
 pub mod six_axis;
 
 pub use engine::Engine;
-pub use fast::Fast;
+pub use fast::{Fast, FastEngine};
 pub use six_axis::SixAxis;

@@ -66,6 +66,14 @@ impl State {
     }
 }
 
+impl State {
+    /// No clock changes anything while no step is due and the speed keeps its sign.
+    pub(crate) const fn is_still(&self, frozen: bool) -> bool {
+        let timers = self.busy == 0 && self.hold == 0 && self.setup == 0;
+        timers && !self.step && self.owed.is_none() && (frozen || self.dir == self.want)
+    }
+}
+
 /// One clock: `state, input -> state`. The pins are registers of the state.
 #[inline]
 pub fn clock(state: State, input: Input, pins: PinTiming) -> State {

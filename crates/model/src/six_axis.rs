@@ -10,6 +10,7 @@
 //! ```
 
 use crate::axis::{self, Step};
+use crate::fast::{Cubic, Moving};
 use crate::shaper;
 use carrystep_spec::ports::{Inputs, Outputs};
 use carrystep_spec::{AXES, Build, Faults};
@@ -19,6 +20,13 @@ use carrystep_spec::{AXES, Build, Faults};
 pub(crate) struct Stage {
     pub step: Option<Step>,
     pub sign: i8,
+}
+
+impl Stage {
+    /// Nothing is on its way.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.step.is_none() && self.sign == 0
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -236,10 +244,21 @@ impl Lane {
 
     /// No clock and no strobe changes anything.
     fn is_still(&self) -> bool {
-        let pins = &self.shaper;
-        let stages = [self.computed, self.emitted].iter().all(|stage| *stage == Stage::default());
-        let timers = pins.busy == 0 && pins.hold == 0 && pins.setup == 0;
-        !self.axis.running && stages && timers && !pins.step && pins.owed.is_none() && pins.dir == pins.want
+        !self.axis.running && self.computed.is_empty() && self.emitted.is_empty() && self.shaper.is_still(false)
+    }
+
+    /// As a window sees it.
+    pub(crate) fn moving(&self) -> Moving {
+        let cubic = Cubic { v: self.axis.v, a: self.axis.a, j: self.axis.j };
+        Moving { p: self.axis.p, cubic, computed: self.computed, emitted: self.emitted, shaper: self.shaper }
+    }
+
+    /// What has become of it after so many strobes.
+    pub(crate) fn moved(&mut self, moved: &Moving, strobes: u32) {
+        let Moving { p, cubic: Cubic { v, a, .. }, computed, emitted, shaper } = *moved;
+        let left = self.axis.left - if self.axis.running { strobes } else { 0 };
+        self.axis = axis::State { p, v, a, left, ..self.axis };
+        (self.computed, self.emitted, self.shaper) = (computed, emitted, shaper);
     }
 
     fn idle(&self) -> bool {

@@ -27,10 +27,6 @@ pub enum TraceError {
 }
 
 impl TraceError {
-    pub(crate) fn vcd(source: io::Error) -> Self {
-        Self::Write { what: "the VCD", source }
-    }
-
     pub(crate) fn csv(source: csv::Error) -> Self {
         Self::Write { what: "the CSV", source: source.into() }
     }

@@ -4,7 +4,7 @@
 //! table, range included.
 
 use crate::error::TraceError;
-use crate::vcd_out::{SCOPE, SIGNALS};
+use crate::waves::{SCOPE, SIGNALS};
 use minijinja::{Environment, Value, context};
 
 const TEMPLATE: &str = include_str!("../templates/gtkwave.gtkw");

@@ -1,7 +1,7 @@
 //! Waveforms in and out, the pulse-train checker and its pictures.
 //!
 //! Pin changes stream, in time order, from a simulator or a [`VcdReader`] into any number of
-//! [`PinSink`]s: the [`Checker`], the [`VcdWriter`], the CSV, the plot.
+//! [`PinSink`]s: the [`Checker`], the [`VcdWriter`] or [`FstWriter`], the CSV, the plot.
 
 mod axis_check;
 mod checker;
@@ -9,6 +9,7 @@ mod csv_out;
 mod edge;
 mod error;
 mod follow;
+mod fst_out;
 mod gtkw;
 mod ideal;
 mod line_check;
@@ -22,6 +23,7 @@ mod thin;
 mod vcd_in;
 mod vcd_out;
 mod vcd_own;
+mod waves;
 
 pub use axis_check::AxisSetup;
 pub use checker::{Checker, Origin, Setup};
@@ -29,11 +31,13 @@ pub use csv_out::CsvWriter;
 pub use edge::{Pin, PinChange, PinSink, Tee};
 pub use error::{ReadError, TraceError};
 pub use follow::{Follower, Pulse};
+pub use fst_out::{FstFormat, FstWriter};
 pub use gtkw::save_file;
 pub use pins::{PinWatch, Shortest, Stretch};
 pub use plot::{Plot, PlotAxis, PlotSetup};
 pub use report::{AxisReport, OriginKind, Report};
 pub use signal_map::SignalMap;
 pub use vcd_in::{Played, VcdReader};
-pub use vcd_out::{AxisWaves, VcdWriter, Waves};
+pub use vcd_out::{VcdFormat, VcdWriter};
 pub use vcd_own::OwnCapture;
+pub use waves::{AxisWaves, Format, WaveWriter, Waves};

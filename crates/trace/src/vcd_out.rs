@@ -1,122 +1,38 @@
-//! The waveform: pins, registers and the float profile beside them in one VCD.
-//!
-//! Integers are what the gateware has, reals what the profile wants, so that a viewer lays one over the
-//! other. All times are those of the pins: V is shown the latency L later than the register has it,
-//! right above the edges that it makes.
+//! The waveform as VCD.
 
-use crate::edge::{Pin, PinChange, PinSink};
-use crate::error::TraceError;
-use crate::follow::Follower;
-use crate::ideal::tick_ps;
-use crate::speed_register::SpeedRegister;
 use crate::vcd_own::{self, OwnCapture};
-use carrystep_profile::Timeline;
-use carrystep_spec::{Segment, StartPhase, Timebase};
-use std::fmt;
+use crate::waves::{Format, SCOPE, SIGNALS, VERSION, WaveWriter, Waves};
 use std::io::{self, Write};
-use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, Value, VarType};
+use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, VarType};
 
-/// Samples of the slow signals over a run, beside those at edges and segment boundaries.
-const SAMPLES: u64 = 500;
-
-/// The signals of one axis, in order: name and bits, 0 for a real.
-pub(crate) const SIGNALS: [(&str, u32); 7] = [
-    ("step", 1),
-    ("dir", 1),
-    ("position", 32),
-    ("v", 64),
-    ("profile_position", 0),
-    ("profile_speed", 0),
-    ("error_ns", 0),
-];
-
-/// The scope that holds a scope for each axis.
-pub(crate) const SCOPE: &str = "carrystep";
-
-/// What the waveform shows beside the pins.
-pub struct Waves<'a> {
-    /// Clock, tick and phases of the gateware.
-    pub timebase: Timebase,
-    /// Where in a step the moves start.
-    pub phase: StartPhase,
-    /// The load of the first move plus the latency L, in ps of the capture.
-    pub origin_ps: i64,
-    /// Length of all moves together.
-    pub total_ticks: u64,
-    /// The axes, in the order of their numbers.
-    pub axes: Vec<AxisWaves<'a>>,
-}
-
-/// What the waveform of one axis shows beside its pins.
-pub struct AxisWaves<'a> {
-    /// Its name: the scope of its signals.
-    pub name: &'a str,
-    /// The float profile.
-    pub timeline: &'a Timeline,
-    /// Its segments, each with its first tick from the origin, ascending.
-    pub segments: Box<dyn Iterator<Item = (u64, Segment)> + 'a>,
-}
+/// A VCD that is being written.
+pub struct VcdFormat<W: Write>(vcd::Writer<W>);
 
 /// Writes a VCD as pin changes stream by.
-pub struct VcdWriter<'a, W: Write> {
-    out: vcd::Writer<W>,
-    own: OwnCapture,
-    total_ps: u64,
-    axes: Vec<AxisWriter<'a>>,
-    /// Index of the next sample of the regular grid.
-    grid: u64,
-    /// The time that stands in the file last; `None` until the header is written.
-    time: Option<u64>,
-}
-
-struct AxisWriter<'a> {
-    name: &'a str,
-    timeline: &'a Timeline,
-    follower: Follower<'a>,
-    register: SpeedRegister<'a>,
-    ids: [IdCode; SIGNALS.len()],
-    levels: [bool; 2],
-    v: i64,
-}
-
-impl<W: Write> fmt::Debug for VcdWriter<'_, W> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("VcdWriter").field("own", &self.own).field("time", &self.time).finish_non_exhaustive()
-    }
-}
+pub type VcdWriter<'a, W> = WaveWriter<'a, VcdFormat<W>>;
 
 impl<'a, W: Write> VcdWriter<'a, W> {
     /// A writer that has written nothing yet: the header follows with the first change.
     pub fn new(out: W, waves: Waves<'a>) -> Self {
-        let Waves { timebase, phase, origin_ps, total_ticks, axes } = waves;
-        let axes = axes.into_iter().map(|axis| AxisWriter {
-            name: axis.name,
-            timeline: axis.timeline,
-            follower: Follower::new(axis.timeline, phase, &timebase, origin_ps),
-            register: SpeedRegister::new(axis.segments),
-            ids: [IdCode::FIRST; SIGNALS.len()],
-            levels: [false; 2],
-            v: 0,
-        });
-        Self {
-            out: vcd::Writer::new(out),
-            own: OwnCapture { origin_ps, timebase },
-            total_ps: total_ticks.saturating_mul(tick_ps(&timebase)),
-            axes: axes.collect(),
-            grid: 0,
-            time: None,
-        }
+        Self::of(VcdFormat(vcd::Writer::new(out)), waves)
     }
+}
 
-    fn header(&mut self) -> io::Result<()> {
-        let out = &mut self.out;
-        out.version(concat!("carrystep ", env!("CARGO_PKG_VERSION")))?;
-        out.comment(&self.own.to_string())?;
+impl<W: Write> Format for VcdFormat<W> {
+    type Id = IdCode;
+    const NAME: &'static str = "the VCD";
+
+    fn declare(&mut self, own: &OwnCapture, axes: &[&str]) -> io::Result<Vec<[IdCode; SIGNALS.len()]>> {
+        let out = &mut self.0;
+        out.version(VERSION)?;
+        out.comment(&own.to_string())?;
         out.timescale(1, TimescaleUnit::PS)?;
         out.add_module(SCOPE)?;
-        for axis in &mut self.axes {
-            out.add_module(axis.name)?;
-            for (id, (name, bits)) in axis.ids.iter_mut().zip(SIGNALS) {
+        let mut all = Vec::new();
+        for axis in axes {
+            out.add_module(axis)?;
+            let mut ids = [IdCode::FIRST; SIGNALS.len()];
+            for (id, (name, bits)) in ids.iter_mut().zip(SIGNALS) {
                 *id = match bits {
                     0 => out.add_var(VarType::Real, 64, name, None)?,
                     1 => out.add_wire(1, name)?,
@@ -128,153 +44,46 @@ impl<'a, W: Write> VcdWriter<'a, W> {
                 };
             }
             out.upscope()?;
+            all.push(ids);
         }
         out.upscope()?;
         out.enddefinitions()?;
-        out.timestamp(0)?;
-        out.begin(SimulationCommand::Dumpvars)?;
-        for axis in &mut self.axes {
-            let [step, dir, position, v, reals @ ..] = axis.ids;
-            out.change_scalar(step, axis.levels[0])?;
-            out.change_scalar(dir, axis.levels[1])?;
-            out.change_vector(position, [Value::V0])?;
-            out.change_vector(v, [Value::V0])?;
-            for real in reals {
-                out.change_real(real, 0.0)?;
-            }
+        Ok(all)
+    }
+
+    fn initial(&mut self, values: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()> {
+        self.0.timestamp(0)?;
+        self.0.begin(SimulationCommand::Dumpvars)?;
+        values(self)?;
+        self.0.end()
+    }
+
+    fn time(&mut self, ps: u64) -> io::Result<()> {
+        self.0.timestamp(ps)
+    }
+
+    fn bit(&mut self, id: IdCode, level: bool) -> io::Result<()> {
+        self.0.change_scalar(id, level)
+    }
+
+    /// Without the zeros that every reader puts back.
+    fn vector(&mut self, id: IdCode, value: u64, _: u32) -> io::Result<()> {
+        let shown = (u64::BITS - value.leading_zeros()).max(1) as usize;
+        // The library formats bit by bit, which takes most of the time that a waveform takes.
+        let mut text = [b'b'; 1 + u64::BITS as usize];
+        for (bit, digit) in text[1..=shown].iter_mut().rev().enumerate() {
+            *digit = b'0' + (value >> bit & 1) as u8;
         }
-        out.end()?;
-        self.time = Some(0);
-        Ok(())
+        self.0.writer().write_all(&text[..=shown])?;
+        writeln!(self.0.writer(), " {id}")
     }
 
-    /// Brings the file to `ps`, with all samples on the way.
-    fn advance(&mut self, ps: u64) -> io::Result<()> {
-        if self.time.is_none() {
-            self.header()?;
-        }
-        while let Some(sample) = self.next_sample().filter(|&at| at <= ps) {
-            self.stamp(sample)?;
-            let on_grid = self.grid_time() == Some(sample);
-            self.grid += u64::from(on_grid);
-            for index in 0..self.axes.len() {
-                let at_boundary = self.boundary(index) == Some(sample);
-                if on_grid || at_boundary {
-                    self.sample(index, sample)?;
-                }
-            }
-        }
-        self.stamp(ps)
+    fn real(&mut self, id: IdCode, value: f64) -> io::Result<()> {
+        self.0.change_real(id, value)
     }
 
-    fn stamp(&mut self, ps: u64) -> io::Result<()> {
-        if self.time.is_none_or(|time| ps > time) {
-            self.out.timestamp(ps)?;
-            self.time = Some(ps);
-        }
-        Ok(())
-    }
-
-    /// ps of the capture, `ps` after the origin; never before the capture.
-    fn after_origin(&self, ps: u128) -> Option<u64> {
-        let at = i128::try_from(ps).ok()? + i128::from(self.own.origin_ps);
-        u64::try_from(at.max(0)).ok()
-    }
-
-    fn grid_time(&self) -> Option<u64> {
-        let exact = u128::from(self.total_ps) * u128::from(self.grid) / u128::from(SAMPLES);
-        self.after_origin(exact).filter(|_| self.grid <= SAMPLES)
-    }
-
-    /// When the axis' next segment starts.
-    fn boundary(&self, index: usize) -> Option<u64> {
-        let tick = self.axes.get(index)?.register.next_change()?;
-        self.after_origin(u128::from(tick) * u128::from(tick_ps(&self.own.timebase)))
-    }
-
-    fn next_sample(&self) -> Option<u64> {
-        let boundaries = (0..self.axes.len()).filter_map(|index| self.boundary(index));
-        boundaries.chain(self.grid_time()).min()
-    }
-
-    /// V and the profile at `ps`.
-    fn sample(&mut self, index: usize, ps: u64) -> io::Result<()> {
-        let tick_ps = tick_ps(&self.own.timebase);
-        let since = i128::from(ps) - i128::from(self.own.origin_ps);
-        let axis = &mut self.axes[index];
-        let [_, _, _, v, profile_position, profile_speed, _] = axis.ids;
-        let now = axis.register.at(u64::try_from(since).unwrap_or(0) / tick_ps);
-        if now != axis.v {
-            axis.v = now;
-            vector(&mut self.out, v, now, 64)?;
-        }
-        // reals are repeated where they stay: a viewer that interpolates needs both ends of a level
-        let tick = since as f64 / tick_ps as f64;
-        real(&mut self.out, profile_position, axis.timeline.position_at(tick))?;
-        real(&mut self.out, profile_speed, axis.timeline.speed_at(tick))
-    }
-
-    fn write(&mut self, change: PinChange) -> io::Result<()> {
-        let index = usize::from(change.axis);
-        if index >= self.axes.len() {
-            return Ok(());
-        }
-        self.advance(change.ps)?;
-        let axis = &mut self.axes[index];
-        let [step, dir, position, _, _, _, error] = axis.ids;
-        self.out.change_scalar(if change.pin == Pin::Step { step } else { dir }, change.level)?;
-        if let Some(pulse) = axis.follower.change(change) {
-            vector(&mut self.out, position, pulse.position, 32)?;
-            if let Some(ns) = pulse.error_ns {
-                real(&mut self.out, error, ns)?;
-            }
-            self.sample(index, change.ps)?;
-        }
-        Ok(())
-    }
-
-    fn close(&mut self, ps: u64) -> io::Result<()> {
-        self.advance(ps)?;
-        self.out.comment(vcd_own::END)?;
-        self.out.flush()
-    }
-}
-
-/// Two's complement of `bits` bits, without the zeros that every reader puts back.
-fn vector<W: Write>(out: &mut vcd::Writer<W>, id: IdCode, value: i64, bits: u32) -> io::Result<()> {
-    let raw = value as u64 & (u64::MAX >> (u64::BITS - bits));
-    let shown = (u64::BITS - raw.leading_zeros()).max(1) as usize;
-    // The library formats bit by bit, which takes most of the time that a waveform takes.
-    let mut text = [b'b'; 1 + u64::BITS as usize];
-    for (bit, digit) in text[1..=shown].iter_mut().rev().enumerate() {
-        *digit = b'0' + (raw >> bit & 1) as u8;
-    }
-    out.writer().write_all(&text[..=shown])?;
-    writeln!(out.writer(), " {id}")
-}
-
-/// To six digits behind the point: files stay small, and VCD readers take 32 characters at most.
-fn real<W: Write>(out: &mut vcd::Writer<W>, id: IdCode, value: f64) -> io::Result<()> {
-    const DIGITS: f64 = 1e6;
-    let short = (value * DIGITS).round() / DIGITS;
-    // no minus zero, nothing that is no number
-    out.change_real(id, if short.is_finite() && short != 0.0 { short } else { 0.0 })
-}
-
-impl<W: Write> PinSink for VcdWriter<'_, W> {
-    fn initial(&mut self, level: PinChange) -> Result<(), TraceError> {
-        if let Some(axis) = self.axes.get_mut(usize::from(level.axis)) {
-            axis.levels[usize::from(level.pin == Pin::Dir)] = level.level;
-            axis.follower.initial(level.pin, level.level);
-        }
-        Ok(())
-    }
-
-    fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
-        self.write(change).map_err(TraceError::vcd)
-    }
-
-    fn end(&mut self, ps: u64) -> Result<(), TraceError> {
-        self.close(ps).map_err(TraceError::vcd)
+    fn end(&mut self) -> io::Result<()> {
+        self.0.comment(vcd_own::END)?;
+        self.0.flush()
     }
 }

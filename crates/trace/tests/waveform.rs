@@ -1,4 +1,4 @@
-//! An independent reader sees in our VCD what was put in, and every name of the save file is there.
+//! An independent reader sees in our VCD what was put in, in our FST the same, and every name of the save file is there.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
@@ -96,6 +96,22 @@ fn another_reader_sees_the_same_edges_and_values() {
             let tick = (ps - ORIGIN_PS as u64) / 1_000_000;
             let expected = register.get(tick as usize).copied().unwrap_or(0);
             assert_eq!(shown, Shown::Bits(expected as u64), "tick {tick}");
+        }
+    }
+}
+
+/// Many blocks of it too.
+#[test]
+fn the_fst_is_the_vcd() {
+    for machine in [Machine::there_and_back(6), Machine::steady(60_000)] {
+        let train = machine.train();
+        let (vcd, fst) = (machine.vcd(&train), machine.fst(&train));
+        assert!(fst.len() < vcd.len() / 2, "{} bytes of FST, {} of VCD", fst.len(), vcd.len());
+        let ((mut vcd, of_vcd), (mut fst, of_fst)) = (open(vcd), open(fst));
+        assert!(of_vcd.keys().eq(of_fst.keys()), "{:?} {:?}", of_vcd.keys(), of_fst.keys());
+        assert_eq!(vcd.hierarchy().timescale(), fst.hierarchy().timescale());
+        for (name, signal) in of_vcd {
+            assert_eq!(changes(&mut fst, of_fst[&name]), changes(&mut vcd, signal), "{name}");
         }
     }
 }

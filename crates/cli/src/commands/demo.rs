@@ -31,6 +31,7 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
         .map_err(|error| Failure::Run(error.to_string()))?;
     let wanted = Wanted {
         vcd: Some(out("demo.vcd")),
+        fst: None,
         save: Some(out("demo.gtkw")),
         csv: Some(out("demo.csv")),
         plot: Some(out("demo.svg")),

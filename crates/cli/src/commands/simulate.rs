@@ -12,12 +12,12 @@ pub fn run(arguments: &Simulate) -> Result<(), Failure> {
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
     let wanted = Wanted {
         vcd: arguments.vcd.clone(),
+        fst: arguments.fst.clone(),
         save: arguments.save.clone(),
         csv: arguments.csv.clone(),
         plot: arguments.plot.clone(),
     };
-    let level = arguments.level.unwrap_or(arguments.core.fastest());
-    let done = job::run(&file, &plan, arguments.core, level, &wanted)?;
+    let done = job::run(&file, &plan, arguments.core, arguments.level, &wanted)?;
     if arguments.json {
         output::print_json(&done)?;
     } else {

@@ -3,7 +3,7 @@
 use crate::arguments::{Core, Sweep};
 use crate::failure::Failure;
 use crate::wanted::Wanted;
-use crate::{job, output};
+use crate::{interrupt, job, output};
 use carrystep_levels::Level;
 use carrystep_plan::{PlanError, plan};
 use carrystep_sweep::{Case, Report, SweepError, SweepFile, Verdict};
@@ -21,6 +21,8 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
             let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr_with_hz(10));
             let report = carrystep_sweep::run(&sweep, arguments.shard, judge, || bar.inc(1));
             bar.finish_and_clear();
+            // The cases that were left have not been judged.
+            interrupt::check()?;
             report
         }
         None => Report::merge(arguments.merge.iter().map(read).collect::<Result<Vec<_>, _>>()?)?,

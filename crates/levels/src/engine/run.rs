@@ -2,7 +2,7 @@
 
 use super::replay::{self, Recording};
 use super::{EngineCore, EngineHost};
-use crate::{Level, LevelError};
+use crate::{Halt, Level, LevelError, halted};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_spec::engine::{Cause, EngineOutputs};
@@ -20,6 +20,8 @@ pub struct EngineJob<'a> {
     pub program: &'a Program,
     /// The run fails after this many cycles.
     pub max_clocks: u64,
+    /// Ends it before its end.
+    pub halt: Halt<'a>,
 }
 
 /// How a run ended.
@@ -33,7 +35,8 @@ pub struct EngineOutcome {
     pub fault: Option<(Cause, u8)>,
 }
 
-/// Hears of each cycle in which any output changed.
+/// Hears of each cycle in which any output changed; from the fast level not of the two `ready`s, which it
+/// tells to be 0.
 pub type EngineObserver<'a> = dyn FnMut(u64, &EngineOutputs) + 'a;
 
 impl<'a> EngineJob<'a> {
@@ -43,28 +46,12 @@ impl<'a> EngineJob<'a> {
         let warm = u64::from(build.guard.enable + 1) * u64::from(build.guard.round);
         let pins = build.pins.iter().map(|pins| u64::from(pins.width + pins.gap)).max().unwrap_or(0);
         let clocks = u64::from(build.timebase.clocks_per_tick());
-        Self { build, program, max_clocks: (ticks + warm + 10 * segments + 100) * clocks + 4 * pins }
+        let max_clocks = (ticks + warm + 10 * segments + 100) * clocks + 4 * pins;
+        Self { build, program, max_clocks, halt: &[] }
     }
 
-    fn host(&self) -> EngineHost {
+    pub(super) fn host(&self) -> EngineHost {
         EngineHost::feeding(&self.build.guard, self.program)
-    }
-
-    /// The cycle in which the first segments are loaded: the same at every level, so the model is asked.
-    ///
-    /// # Errors
-    /// [`LevelError::Endless`]: nothing starts.
-    pub fn origin(&self) -> Result<u64, LevelError> {
-        let mut origin = None;
-        let mut model = Engine::new(self.build);
-        let mut host = self.host();
-        let mut cycle = 0;
-        while origin.is_none() && cycle < self.max_clocks {
-            let (_, outputs) = host.step(&mut model);
-            cycle += 1;
-            origin = outputs.started.then_some(cycle);
-        }
-        origin.ok_or(LevelError::Endless(self.max_clocks))
     }
 
     /// Runs it at a level.
@@ -72,12 +59,12 @@ impl<'a> EngineJob<'a> {
     /// The Verilog of an engine is compared with the model in every output of every clock, so that what is told is both.
     ///
     /// # Errors
-    /// [`LevelError`]: there is no such level of the engine, a tool is missing or fails, the run does not end, or the Verilog differs.
+    /// [`LevelError`]: a tool is missing or fails, the run does not end or is halted, or the Verilog differs.
     pub fn run(&self, level: Level, observer: &mut EngineObserver<'_>) -> Result<EngineOutcome, LevelError> {
         let axes = 0..self.build.axes();
         let gateware = |error: &dyn std::fmt::Display| LevelError::Gateware(error.to_string());
         match level {
-            Level::Fast => Err(LevelError::Gateware("the engine has no fast model".into())),
+            Level::Fast => self.observe_fast(observer),
             Level::Model => {
                 let mut model = Engine::new(self.build);
                 let (clocks, fault) = self.drive(&mut model, observer)?;
@@ -93,7 +80,10 @@ impl<'a> EngineJob<'a> {
             Level::Icarus | Level::Verilator => {
                 let verilog =
                     carrystep_export::engine_verilog(self.build, "a simulation").map_err(|error| gateware(&error))?;
-                let recording = Recording::of(self.build, self.host(), self.max_clocks);
+                let recording = Recording::of(self.build, self.host(), self.max_clocks, self.halt);
+                if halted(self.halt) {
+                    return Err(LevelError::Halted);
+                }
                 if recording.clocks == self.max_clocks {
                     return Err(LevelError::Endless(self.max_clocks));
                 }
@@ -118,6 +108,9 @@ impl<'a> EngineJob<'a> {
         let settle = replay::settle(self.build);
         let (mut quiet, mut before) = (0, None);
         for cycle in 0..self.max_clocks {
+            if halted(self.halt) {
+                return Err(LevelError::Halted);
+            }
             let (_, outputs) = host.step(core);
             if before != Some(outputs) {
                 observer(cycle, &outputs);

@@ -58,6 +58,49 @@ impl Watch {
     }
 }
 
+/// What lets `fast` pass many clocks at once.
+impl Watch {
+    /// With these inputs, and this `idle`, nothing changes but what is counted in rounds.
+    pub(super) fn is_steady(&self, guard: &Guard, inputs: &EngineInputs, idle: bool, stop: &Stop) -> bool {
+        let estop = inputs.estop != guard.estop_low;
+        let seen = [self.first, self.now, self.held].iter().all(|&seen| seen == estop);
+        seen && (!estop || (stop.frozen && stop.fault.is_some()))
+            && (!inputs.kick || self.silence == 0)
+            && self.enabled == (inputs.enable || (self.enabled && !idle))
+            && (self.enabled || self.warm == 0)
+    }
+
+    /// Strobes before the one at which the host is missed.
+    pub(super) fn strobes_to_silence(&self, guard: &Guard) -> u64 {
+        if guard.watchdog == 0 { u64::MAX } else { self.strobes_to(guard, guard.watchdog - self.silence) }
+    }
+
+    /// Strobes before the first at which the drivers are warm.
+    pub(super) fn strobes_to_warmth(&self, guard: &Guard) -> u64 {
+        self.strobes_to(guard, guard.enable - self.warm)
+    }
+
+    /// Strobes before the first that finds a counter at its top, which is so many rounds away.
+    fn strobes_to(&self, guard: &Guard, rounds: u32) -> u64 {
+        u64::from(rounds) * u64::from(guard.round) - if rounds == 0 { 0 } else { u64::from(self.tick_of_round) }
+    }
+
+    /// Strobes before the first in this tick of a round.
+    pub(super) const fn strobes_to_look(&self, guard: &Guard, tick_of_round: u32) -> u64 {
+        ((tick_of_round + guard.round - self.tick_of_round) % guard.round) as u64
+    }
+
+    /// So many strobes go by.
+    pub(super) fn pass(&mut self, guard: &Guard, kick: bool, strobes: u64) {
+        let ticks = u64::from(self.tick_of_round) + strobes;
+        let (rounds, round) = (ticks / u64::from(guard.round), u64::from(guard.round));
+        let counted = |count: u32, top: u32| (u64::from(count) + rounds).min(top.into()) as u32;
+        self.tick_of_round = (ticks % round) as u32;
+        self.silence = if kick { 0 } else { counted(self.silence, guard.watchdog) };
+        self.warm = if self.enabled { counted(self.warm, guard.enable) } else { 0 };
+    }
+}
+
 /// A stop under way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Stop {

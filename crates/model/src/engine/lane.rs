@@ -1,7 +1,9 @@
 //! One axis of the engine: what a tick makes of it.
 
+use crate::axis::Step;
 use crate::phase::{bisect, crosses};
 use crate::shaper;
+use crate::six_axis::Stage;
 use carrystep_spec::engine::{Cause, Guard, Limits, QUEUE, SEGMENT_WORDS};
 use std::collections::VecDeque;
 
@@ -9,10 +11,10 @@ use std::collections::VecDeque;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Segment {
     /// Ticks after the next one.
-    left: u32,
-    v: i64,
-    a: i64,
-    j: i64,
+    pub(super) left: u32,
+    pub(super) v: i64,
+    pub(super) a: i64,
+    pub(super) j: i64,
     last: bool,
 }
 
@@ -25,19 +27,11 @@ impl Segment {
     }
 }
 
-/// What a tick leaves for the pins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Stage {
-    /// Backward, and the phase.
-    pub(super) step: Option<(bool, u32)>,
-    pub(super) sign: i8,
-}
-
 /// A limit switch: what is believed, and how many looks speak against it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Limit {
-    active: bool,
-    against: u32,
+    pub(super) active: bool,
+    pub(super) against: u32,
 }
 
 /// A look at a limit in a tick.
@@ -67,9 +61,9 @@ pub(super) struct Lane {
     /// The running segment's V + A did not fit.
     pub(super) unfit: bool,
     /// In a ramp: backward.
-    ramp: Option<bool>,
+    pub(super) ramp: Option<bool>,
     /// Stop acceleration.
-    stop: i64,
+    pub(super) stop: i64,
     pub(super) homing: Homing,
     pub(super) queue: VecDeque<Segment>,
     /// Committed in this tick.
@@ -163,7 +157,7 @@ impl Lane {
     /// The sums of a tick; `next` rests until something says otherwise.
     fn add(&self, next: &mut Self, segment: Segment, tick: Tick<'_>) -> Option<Cause> {
         let Segment { left, v, a, j, last } = segment;
-        let step = crosses(self.p, v).then(|| (v < 0, bisect(self.p, v, tick.phase_bits)));
+        let step = crosses(self.p, v).then(|| Step { backward: v < 0, phase: bisect(self.p, v, tick.phase_bits) });
         next.computed = Stage { step, sign: v.signum() as i8 };
         next.p = self.p.wrapping_add(v.cast_unsigned());
         if tick.ramp || self.homing.slows {

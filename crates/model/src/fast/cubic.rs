@@ -8,7 +8,7 @@ pub(super) const MOST_TICKS: u32 = 1 << 16;
 
 /// V, A and J before the first tick of a stretch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Cubic {
+pub(crate) struct Cubic {
     pub v: i64,
     pub a: i64,
     pub j: i64,
@@ -31,6 +31,9 @@ const fn wide(x: i64, y: i64) -> i128 {
 }
 
 impl Cubic {
+    /// Nothing moves.
+    pub const REST: Self = Self { v: 0, a: 0, j: 0 };
+
     /// V before tick `n`, counted from 0.
     pub const fn speed(self, n: u32) -> i128 {
         (self.v as i128).wrapping_add(wide(n as i64, self.a)).wrapping_add(wide(pairs(n), self.j))

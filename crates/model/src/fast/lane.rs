@@ -1,11 +1,24 @@
 //! One axis through a window of clocks: its accumulator stretch by stretch, its shaper request by request.
 
-use super::crossings::Stretch;
+use super::crossings::{BATCH, Stretch};
 use super::cubic::Cubic;
 use super::edges::Record;
 use super::pins::{Overrun, Pins};
-use crate::six_axis::{Lane, Stage};
+use crate::axis::Step;
+use crate::phase::{bisect, crosses};
+use crate::shaper;
+use crate::six_axis::Stage;
 use carrystep_spec::{PinTiming, Timebase};
+
+/// What strobes that only add, and the clocks between them, change of an axis.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Moving {
+    pub p: u64,
+    pub cubic: Cubic,
+    pub computed: Stage,
+    pub emitted: Stage,
+    pub shaper: shaper::State,
+}
 
 /// Clocks that are passed at once; every strobe among them only adds.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +51,7 @@ struct Passage<'a> {
 
 /// Brings an axis through a window; its edges go to the end of `edges`.
 pub(super) fn pass(
-    lane: &mut Lane,
+    lane: &mut Moving,
     axis: u8,
     window: Window,
     timebase: &Timebase,
@@ -86,19 +99,26 @@ impl Passage<'_> {
     fn request(&mut self, stage: Stage, n: u32) -> Result<(), Overrun> {
         let Some(step) = stage.step else { return Ok(()) };
         let at = self.cycle(n) + u64::from(step.phase) * u64::from(self.clocks_per_phase);
-        if (self.window.from..self.window.to).contains(&at) { self.pins.requests([at], step.backward) } else { Ok(()) }
+        if (self.window.from..self.window.to).contains(&at) { self.pins.requests(&[at], step.backward) } else { Ok(()) }
     }
 
-    /// The strobe at the end of tick `n`, as it is written in the contract.
-    fn tick(&mut self, lane: &mut Lane, n: u32) -> Result<(), FaultIn> {
-        lane.tick(false, false, self.phase_bits);
-        if lane.overspeed { Err(FaultIn(self.cycle(n + 1) - 1)) } else { Ok(()) }
+    /// The strobe at the end of tick `n`.
+    fn tick(&mut self, lane: &mut Moving, n: u32) -> Result<(), FaultIn> {
+        let Cubic { v, a, j } = lane.cubic;
+        let Some(faster) = v.checked_add(a).filter(|&faster| faster != i64::MIN) else {
+            return Err(FaultIn(self.cycle(n + 1) - 1));
+        };
+        let step = crosses(lane.p, v).then(|| Step { backward: v < 0, phase: bisect(lane.p, v, self.phase_bits) });
+        lane.emitted = lane.computed;
+        lane.computed = Stage { step, sign: v.signum() as i8 };
+        lane.p = lane.p.wrapping_add(v.cast_unsigned());
+        lane.cubic = Cubic { v: faster, a: a.wrapping_add(j), j };
+        Ok(())
     }
 
     /// The first `ticks` strobes; all that they bring forth reaches the pins within the window.
-    fn add(&mut self, lane: &mut Lane, ticks: u32) -> Result<(), FaultIn> {
-        let cubic = |lane: &Lane| Cubic { v: lane.axis.v, a: lane.axis.a, j: lane.axis.j };
-        if !cubic(lane).stays_in_range(ticks) {
+    fn add(&mut self, lane: &mut Moving, ticks: u32) -> Result<(), FaultIn> {
+        if !lane.cubic.stays_in_range(ticks) {
             for n in 0..ticks {
                 self.tick(lane, n)?;
                 self.emit(lane.computed, n + 2)?;
@@ -107,17 +127,13 @@ impl Passage<'_> {
         }
         let mut done = 0;
         while done < ticks {
-            let cubic = cubic(lane);
+            let cubic = lane.cubic;
             let length = cubic.same_sign(ticks - done);
             self.pins.sign(self.cycle(done + 2), cubic.v.signum() as i8)?;
-            self.requests(Stretch::new(lane.axis.p, cubic, length), done, cubic.v < 0)?;
-            let Cubic { v, a, .. } = cubic.after(length);
-            let p = lane.axis.p.wrapping_add(cubic.distance_wrapping(length));
-            lane.axis = crate::axis::State { p, v, a, ..lane.axis };
+            self.requests(Stretch::new(lane.p, cubic, length), done, cubic.v < 0)?;
+            lane.p = lane.p.wrapping_add(cubic.distance_wrapping(length));
+            lane.cubic = cubic.after(length);
             done += length;
-        }
-        if lane.axis.running {
-            lane.axis.left -= ticks;
         }
         Ok(())
     }
@@ -127,10 +143,13 @@ impl Passage<'_> {
         let mut overrun = Ok(());
         let first = self.cycle(done + 2);
         let [per_tick, per_phase] = [self.clocks_per_tick, self.clocks_per_phase].map(u64::from);
+        let mut clocks = [0; BATCH];
         stretch.each(self.phase_bits, |ticks, phases| {
-            let cycle = |(&tick, &phase)| first + u64::from(tick) * per_tick + u64::from(phase) * per_phase;
+            for ((clock, &tick), &phase) in clocks.iter_mut().zip(ticks).zip(phases) {
+                *clock = first + u64::from(tick) * per_tick + u64::from(phase) * per_phase;
+            }
             if overrun.is_ok() {
-                overrun = self.pins.requests(ticks.iter().zip(phases).map(cycle), backward);
+                overrun = self.pins.requests(&clocks[..ticks.len()], backward);
             }
         });
         overrun

@@ -37,24 +37,38 @@ impl<'a> Pins<'a> {
         Self { axis, pins, edges, sign, calm, state, at, busy, hold, setup }
     }
 
-    /// Steps are asked for in these clocks.
+    /// Steps are asked for in these clocks, which ascend.
     #[inline]
-    pub fn requests(&mut self, clocks: impl IntoIterator<Item = u64>, backward: bool) -> Result<(), Overrun> {
+    pub fn requests(&mut self, clocks: &[u64], backward: bool) -> Result<(), Overrun> {
+        let period = u64::from(self.pins.width + self.pins.gap);
+        let (Some(first), Some(last)) = (clocks.first(), clocks.last()) else { return Ok(()) };
+        let ready = self.calm && backward == self.state.dir && *first >= self.busy.max(self.setup);
+        if !ready || clocks.windows(2).fold(false, |close, pair| close | (pair[1] - pair[0] < period)) {
+            return clocks.iter().try_for_each(|at| self.request(*at, backward));
+        }
         let axis = self.axis;
         let record = |at| Edge { clock: at + 1, axis, change: Change::Rise, backward }.record();
-        let period = u64::from(self.pins.width + self.pins.gap);
-        for at in clocks {
-            if self.calm && backward == self.state.dir && at >= self.busy && at >= self.setup {
-                self.edges.push(record(at));
-                self.busy = at + period;
-                self.hold = at + u64::from(self.pins.hold);
-                self.state.step = true;
-                self.state.position = self.state.position.wrapping_add(if backward { -1 } else { 1 });
-            } else {
-                self.hard_request(at, backward)?;
-            }
-        }
+        self.edges.extend(clocks.iter().map(|&at| record(at)));
+        self.made(*last, clocks.len() as i32, backward);
         Ok(())
+    }
+
+    /// A step is asked for.
+    fn request(&mut self, at: u64, backward: bool) -> Result<(), Overrun> {
+        if !self.calm || backward != self.state.dir || at < self.busy.max(self.setup) {
+            return self.hard_request(at, backward);
+        }
+        self.edges.push(Edge { clock: at + 1, axis: self.axis, change: Change::Rise, backward }.record());
+        self.made(at, 1, backward);
+        Ok(())
+    }
+
+    /// So many steps were made as they were asked for, the last of them in clock `at`.
+    fn made(&mut self, at: u64, steps: i32, backward: bool) {
+        self.busy = at + u64::from(self.pins.width + self.pins.gap);
+        self.hold = at + u64::from(self.pins.hold);
+        self.state.step = true;
+        self.state.position = self.state.position.wrapping_add(if backward { -steps } else { steps });
     }
 
     /// From clock `at` on the speed has this sign.

@@ -4,6 +4,7 @@
 use carrystep_profile::{Constant, Leg, Ramp, Timeline};
 use carrystep_spec::{Segment, StartPhase, Timebase};
 use carrystep_trace::*;
+use std::io::Cursor;
 use std::sync::Arc;
 
 pub const ORIGIN_PS: i64 = 123_456_789;
@@ -134,6 +135,12 @@ impl Machine {
         let mut bytes = Vec::new();
         play(train, &mut VcdWriter::new(&mut bytes, self.waves()));
         bytes
+    }
+
+    pub fn fst(&self, train: &[PinChange]) -> Vec<u8> {
+        let mut file = Cursor::new(Vec::new());
+        play(train, &mut FstWriter::new(&mut file, self.waves()));
+        file.into_inner()
     }
 
     pub fn plot_setup(&self) -> PlotSetup<'_> {

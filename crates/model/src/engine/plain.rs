@@ -1,0 +1,228 @@
+//! What lets `fast` pass many clocks of the engine at once: how long nothing happens but plain additions, and
+//! what goes on by itself meanwhile.
+//!
+//! Whatever is not told here (a word that is taken, a load, a stop that is called, a limit that changes, an
+//! axis that comes to rest) is left to [`Engine::clock`].
+
+use super::lane::{Lane, Limit};
+use super::{Engine, LOOK_BEAT, bits};
+use crate::engine::guard::Stop;
+use crate::fast::{Cubic, Moving};
+use carrystep_spec::engine::{EngineInputs, Limits, PUT_BEAT, QUEUE, TURN};
+
+impl Engine {
+    /// Clocks of a tick.
+    pub(crate) fn clocks_per_tick(&self) -> u32 {
+        self.build.timebase.clocks_per_tick()
+    }
+
+    /// The build parameters.
+    pub fn build(&self) -> &carrystep_spec::EngineBuild {
+        &self.build
+    }
+
+    /// The clock in the tick.
+    pub(crate) fn clock_of_tick(&self) -> u32 {
+        self.clock
+    }
+
+    /// For so many cycles, `most` at the most, these inputs change nothing, and strobes do nothing but add.
+    pub(crate) fn plain_clocks(&self, inputs: &EngineInputs, most: u64) -> u64 {
+        if !self.is_steady(inputs) {
+            return 0;
+        }
+        let per_tick = u64::from(self.clocks_per_tick());
+        let to_strobe = per_tick - 1 - u64::from(self.clock);
+        let mut strobes = self.plain_strobes(inputs);
+        if self.lanes.iter().any(|lane| lane.homing.waits) {
+            // An axis meets its limit before the strobe.
+            let Some(before) = strobes.checked_sub(1) else { return 0 };
+            strobes = before;
+        }
+        let to_event = strobes.saturating_mul(per_tick).saturating_add(to_strobe);
+        most.min(to_event).min(self.clocks_to_put(inputs))
+    }
+
+    /// Nothing happens before the next strobe but on the pins.
+    fn is_steady(&self, inputs: &EngineInputs) -> bool {
+        let (guard, stop, fault) = (&self.build.guard, &self.stop, self.stop.fault.is_some());
+        let busy = self.pins_busy();
+        let idle = self.rest == 2 && self.armed.is_none() && !busy;
+        let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.lanes.len());
+        self.turns
+            && (fault || !(inputs.stop || inputs.broken || nobody))
+            && inputs.home.is_none()
+            && !self.lanes.iter().any(|lane| lane.homing.meets || lane.homing.slows)
+            && !(fault && self.armed.is_some())
+            // `idle` would come with the last pulse's end.
+            && !(self.rest == 2 && busy)
+            && self.watch.is_steady(guard, inputs, idle, stop)
+            && self.lanes.iter().all(|lane| !lane.shaper.overrun && (!stop.frozen || lane.is_still(true)))
+    }
+
+    /// Clocks before the one in which the offered word is taken.
+    fn clocks_to_put(&self, inputs: &EngineInputs) -> u64 {
+        let Some(put) = inputs.put.filter(|_| self.stop.fault.is_none()) else { return u64::MAX };
+        if self.lanes[usize::from(put.axis)].queue.len() >= QUEUE {
+            return u64::MAX;
+        }
+        let (beat, per_tick) = (u32::from(put.axis) * TURN + PUT_BEAT, self.clocks_per_tick());
+        ((beat + per_tick - self.clock) % per_tick).into()
+    }
+
+    /// Strobes before the first that does more than to add.
+    fn plain_strobes(&self, inputs: &EngineInputs) -> u64 {
+        let (guard, stop, fault) = (&self.build.guard, &self.stop, self.stop.fault.is_some());
+        let running = bits(&self.lanes, |lane| lane.running.is_some());
+        let waiting = bits(&self.lanes, |lane| !lane.queue.is_empty());
+        let ran = running != 0 && !stop.halted;
+        let halted = stop.frozen || (stop.ramp && !ran);
+        let goes_on = Stop { ramp: fault, halted, settled: stop.halted, clearing: false, ..*stop } == *stop;
+        let clears = inputs.clear && stop.settled && !self.watch.pressed();
+        let starts = self.armed.is_some_and(|mask| mask & !waiting != 0 || mask & running == 0);
+        let rests = if ran || waiting != 0 { 0 } else { 2 };
+        if !goes_on || clears || starts || self.rest != rests {
+            return 0;
+        }
+        let mut strobes = self.strobes_to_look(inputs);
+        if !fault && self.rest < 2 && !inputs.kick {
+            strobes = strobes.min(self.watch.strobes_to_silence(guard));
+        }
+        if !fault && self.armed.is_none() && inputs.start.is_some() && inputs.enable && self.watch.enabled {
+            strobes = strobes.min(self.watch.strobes_to_warmth(guard));
+        }
+        self.lanes.iter().map(|lane| lane.plain_strobes(stop.ramp)).fold(strobes, u64::min)
+    }
+
+    /// Strobes before a look at a limit that does more than to count.
+    fn strobes_to_look(&self, inputs: &EngineInputs) -> u64 {
+        let guard = &self.build.guard;
+        let stopped = self.stop.fault.is_some() && !guard.limit_freezes;
+        let mut strobes = u64::MAX;
+        for (axis, lane) in self.lanes.iter().enumerate() {
+            let seen_now = self.pin(inputs, axis, self.watch.tick_of_round);
+            if self.clock > look_clock(axis) && self.pins[axis] != seen_now {
+                return 0;
+            }
+            for end in self.looks() {
+                let limit = lane.limits[end as usize];
+                let first = self.watch.strobes_to_look(guard, end);
+                // A limit that is active would stop what moves toward it.
+                let hits = guard.limits == Limits::Pair && limit.active && lane.running.is_some() && !stopped;
+                let looks = if hits { 0 } else { limit.plain_looks(self.pin(inputs, axis, end), guard.debounce) };
+                strobes = strobes.min(looks.saturating_mul(guard.round.into()).saturating_add(first));
+            }
+        }
+        strobes
+    }
+
+    /// The ticks of a round in which limits are looked at: the low ends, the high ends.
+    fn looks(&self) -> std::ops::Range<u32> {
+        0..if self.build.guard.limits == Limits::Pair { 2 } else { 1 }
+    }
+
+    /// Time goes by: all but what the axes do.
+    pub(crate) fn pass(&mut self, inputs: &EngineInputs, clocks: u64) {
+        let per_tick = u64::from(self.clocks_per_tick());
+        let (begin, round) = (u64::from(self.clock), u64::from(self.build.guard.round));
+        let end = begin + clocks;
+        let strobes = end / per_tick;
+        for axis in 0..self.lanes.len() {
+            for look in self.looks() {
+                let first = self.watch.strobes_to_look(&self.build.guard, look);
+                let looks = strobes.saturating_sub(first).div_ceil(round);
+                let pin = self.pin(inputs, axis, look);
+                self.lanes[axis].limits[look as usize].pass(pin, looks);
+            }
+            let at = u64::from(look_clock(axis));
+            let seen = end.checked_sub(at + 1).map(|since| since / per_tick);
+            if let Some(tick) = seen.filter(|tick| tick * per_tick + at >= begin) {
+                let tick_of_round = ((u64::from(self.watch.tick_of_round) + tick) % round) as u32;
+                self.pins[axis] = self.pin(inputs, axis, tick_of_round);
+            }
+        }
+        self.watch.pass(&self.build.guard, inputs.kick, strobes);
+        self.clock = (end % per_tick) as u32;
+    }
+
+    /// No axis moves, no timer runs.
+    pub(crate) fn is_still(&self) -> bool {
+        self.lanes.iter().all(|lane| lane.is_still(self.stop.frozen))
+    }
+
+    /// The axes as windows see them.
+    pub(crate) fn moving(&self) -> impl Iterator<Item = Moving> {
+        self.lanes.iter().map(|lane| lane.moving(self.stop.ramp))
+    }
+
+    /// What has become of them after so many strobes.
+    pub(crate) fn moved(&mut self, moved: &[Moving], strobes: u32) {
+        let ramp = self.stop.ramp;
+        self.lanes.iter_mut().zip(moved).for_each(|(lane, moved)| lane.moved(moved, ramp, strobes));
+    }
+}
+
+/// The clock of a tick in which an axis looks at its limit.
+const fn look_clock(axis: usize) -> u32 {
+    axis as u32 * TURN + LOOK_BEAT
+}
+
+impl Lane {
+    /// Strobes that only add.
+    fn plain_strobes(&self, ramp: bool) -> u64 {
+        let stop = self.stop.unsigned_abs();
+        match (self.running, self.ramp) {
+            _ if self.unfit || self.fresh.is_some() => 0,
+            (None, None) => u64::MAX,
+            (Some(segment), _) if segment.v == i64::MIN => 0,
+            (Some(segment), None) if !ramp => segment.left.into(),
+            // It rests in the tick in which V would change its sign.
+            (Some(segment), Some(back)) if ramp => (segment.v.unsigned_abs() - u64::from(back)) / stop,
+            _ => 0,
+        }
+    }
+
+    /// No clock and no strobe changes anything.
+    fn is_still(&self, frozen: bool) -> bool {
+        self.running.is_none()
+            && [self.computed, self.emitted].iter().all(|stage| stage.is_empty())
+            && self.shaper.is_still(frozen)
+    }
+
+    fn moving(&self, ramp: bool) -> Moving {
+        let cubic = self.running.map_or(Cubic::REST, |segment| match self.ramp {
+            Some(back) if ramp => Cubic { v: segment.v, a: if back { self.stop } else { -self.stop }, j: 0 },
+            _ => Cubic { v: segment.v, a: segment.a, j: segment.j },
+        });
+        Moving { p: self.p, cubic, computed: self.computed, emitted: self.emitted, shaper: self.shaper }
+    }
+
+    fn moved(&mut self, moved: &Moving, ramp: bool, strobes: u32) {
+        Moving { p: self.p, cubic: _, computed: self.computed, emitted: self.emitted, shaper: self.shaper } = *moved;
+        if let Some(segment) = &mut self.running {
+            segment.v = moved.cubic.v;
+            if !ramp {
+                segment.a = moved.cubic.a;
+                segment.left -= strobes;
+            }
+        }
+    }
+}
+
+impl Limit {
+    /// Looks at a pin that stays until it is believed.
+    fn plain_looks(self, pin: bool, debounce: u32) -> u64 {
+        if pin == self.active { u64::MAX } else { (debounce - 1 - self.against).into() }
+    }
+
+    /// So many [`Limit::plain_looks`].
+    fn pass(&mut self, pin: bool, looks: u64) {
+        // At most what `plain_looks` allows, which fits.
+        let looks = u32::try_from(looks).unwrap_or(u32::MAX);
+        match (looks, pin == self.active) {
+            (0, _) => {}
+            (_, true) => self.against = 0,
+            (_, false) => self.against += looks,
+        }
+    }
+}

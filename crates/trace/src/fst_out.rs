@@ -1,0 +1,128 @@
+//! The waveform as FST, which GTKWave opens at once however long it is.
+
+use crate::vcd_own::OwnCapture;
+use crate::waves::{Format, SCOPE, SIGNALS, VERSION, WaveWriter, Waves};
+use fst_writer::{
+    FstBodyWriter, FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalId, FstSignalType, FstVarDirection,
+    FstVarType, FstWriteError,
+};
+use std::io::{self, Seek, Write};
+
+/// Changes are kept in memory up to so many bytes, then written as a block.
+const BLOCK: usize = 1 << 20;
+
+/// An FST that is being written.
+pub struct FstFormat<W: Write + Seek>(State<W>);
+
+enum State<W: Write + Seek> {
+    New(W),
+    Body(Box<FstBodyWriter<W>>),
+    /// Whole, or broken off.
+    Over,
+}
+
+/// Writes an FST as pin changes stream by.
+pub type FstWriter<'a, W> = WaveWriter<'a, FstFormat<W>>;
+
+impl<'a, W: Write + Seek> FstWriter<'a, W> {
+    /// A writer that has written nothing yet: the header follows with the first change.
+    pub fn new(out: W, waves: Waves<'a>) -> Self {
+        Self::of(FstFormat(State::New(out)), waves)
+    }
+}
+
+/// What the system says, where it was asked.
+fn told(error: FstWriteError) -> io::Error {
+    match error {
+        FstWriteError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}
+
+impl<W: Write + Seek> FstFormat<W> {
+    fn body(&mut self) -> io::Result<&mut FstBodyWriter<W>> {
+        match &mut self.0 {
+            State::Body(body) => Ok(body),
+            State::New(_) | State::Over => Err(io::Error::other("nothing is declared")),
+        }
+    }
+}
+
+impl<W: Write + Seek> Format for FstFormat<W> {
+    type Id = FstSignalId;
+    const NAME: &'static str = "the FST";
+
+    fn declare(&mut self, own: &OwnCapture, axes: &[&str]) -> io::Result<Vec<[FstSignalId; SIGNALS.len()]>> {
+        let State::New(out) = std::mem::replace(&mut self.0, State::Over) else {
+            return Err(io::Error::other("declared twice"));
+        };
+        let info = FstInfo {
+            start_time: 0,
+            timescale_exponent: -12,
+            version: format!("{VERSION}: {own}"),
+            date: String::new(), // the same run is the same file
+            file_type: FstFileType::Verilog,
+        };
+        let mut header = FstHeaderWriter::new(out, &info).map_err(told)?;
+        header.scope(SCOPE, "", FstScopeType::Module).map_err(told)?;
+        let mut all = Vec::new();
+        for axis in axes {
+            header.scope(axis, "", FstScopeType::Module).map_err(told)?;
+            let mut ids = Vec::new();
+            for (name, bits) in SIGNALS {
+                let (name, signal, kind) = match bits {
+                    0 => (name.to_owned(), FstSignalType::real(), FstVarType::Real),
+                    1 => (name.to_owned(), FstSignalType::bit_vec(1), FstVarType::Wire),
+                    _ => (format!("{name} [{}:0]", bits - 1), FstSignalType::bit_vec(bits), FstVarType::Wire),
+                };
+                ids.push(header.var(name, signal, kind, FstVarDirection::Output, None).map_err(told)?);
+            }
+            header.up_scope().map_err(told)?;
+            all.extend(<[FstSignalId; SIGNALS.len()]>::try_from(ids));
+        }
+        header.up_scope().map_err(told)?;
+        let mut body = header.finish().map_err(told)?;
+        // A viewer that interpolates needs both ends of a level.
+        body.set_deduplicate(false);
+        self.0 = State::Body(Box::new(body));
+        Ok(all)
+    }
+
+    fn initial(&mut self, values: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()> {
+        // What comes before the first time is what a block begins with.
+        values(self)?;
+        self.time(0)
+    }
+
+    fn time(&mut self, ps: u64) -> io::Result<()> {
+        let body = self.body()?;
+        if body.size() > BLOCK {
+            body.flush().map_err(told)?;
+        }
+        body.time_change(ps).map_err(told)
+    }
+
+    fn bit(&mut self, id: FstSignalId, level: bool) -> io::Result<()> {
+        self.body()?.signal_change(id, if level { b"1" } else { b"0" }).map_err(told)
+    }
+
+    fn vector(&mut self, id: FstSignalId, value: u64, bits: u32) -> io::Result<()> {
+        let mut text = [b'0'; u64::BITS as usize];
+        let text = &mut text[..bits as usize];
+        for (bit, digit) in text.iter_mut().rev().enumerate() {
+            *digit = b'0' + (value >> bit & 1) as u8;
+        }
+        self.body()?.signal_change(id, text).map_err(told)
+    }
+
+    fn real(&mut self, id: FstSignalId, value: f64) -> io::Result<()> {
+        self.body()?.signal_change(id, &value.to_le_bytes()).map_err(told)
+    }
+
+    fn end(&mut self) -> io::Result<()> {
+        let State::Body(body) = std::mem::replace(&mut self.0, State::Over) else {
+            return Err(io::Error::other("nothing is declared"));
+        };
+        (*body).finish().map_err(told)?.flush()
+    }
+}

@@ -1,0 +1,69 @@
+//! Runs that are broken off: by Ctrl-C, or by a disk that fills long before their end. They say so, are no success,
+//! and leave nothing behind.
+
+use crate::command::{Folder, GOOD, Ran};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+/// Far more than anybody would wait for, at any level: a run that is not broken off does not end.
+fn endless() -> String {
+    GOOD.replace(
+        "profile = \"ranade\"\nto = { x = 2 }",
+        "profile = \"constant\"\ntime = 1_000_000\nto = { x = 150_000_000 }",
+    )
+}
+
+/// Begins a run, and waits until it has begun the file that it writes into.
+fn begin(folder: &Folder, arguments: &str) -> Child {
+    let before = folder.files().len();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
+    command.args(arguments.split(' ')).current_dir(folder.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    while folder.files().len() == before && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child
+}
+
+fn end(child: Child) -> Ran {
+    let output = child.wait_with_output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let status = output.status.code().expect("no signal ended the command");
+    Ran { status, stdout: text(output.stdout), stderr: text(output.stderr) }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_says_so_and_leaves_nothing() {
+    let folder = Folder::with_move(endless());
+    for signal in ["-INT", "-TERM"] {
+        for arguments in [
+            "simulate move.toml --vcd a.vcd",
+            "simulate move.toml --fst a.fst --json",
+            "simulate move.toml --core engine --csv a.csv",
+            "simulate move.toml --level model --vcd a.vcd --save a.gtkw",
+            "simulate move.toml --level rust-hdl --vcd a.vcd",
+            "simulate move.toml --core engine --level model --vcd a.vcd",
+        ] {
+            let child = begin(&folder, arguments);
+            assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+            let ran = end(child);
+            assert_eq!((ran.status, ran.stdout.as_str()), (1, ""), "{arguments}");
+            assert_eq!(ran.stderr, "error: interrupted: nothing is kept\n", "{arguments}");
+            assert_eq!(folder.files(), ["move.toml"], "{arguments}");
+        }
+    }
+}
+
+/// The device is full from the first block on.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_that_fills_ends_the_run() {
+    let folder = Folder::with_move(endless());
+    std::os::unix::fs::symlink("/dev/full", folder.path("full")).unwrap();
+    for (option, core) in [("--vcd", "parallel"), ("--fst", "parallel"), ("--csv", "engine")] {
+        let ran = folder.run(&format!("simulate move.toml {option} full --core {core}"));
+        ran.refuses("full: No space left on device");
+        assert_eq!(folder.files(), ["full", "move.toml"], "{option}");
+    }
+}
