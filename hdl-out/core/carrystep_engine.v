@@ -1132,18 +1132,28 @@ module carrystep_homes (
     output wire         slows
 );
     localparam [5:0] NONE = 6'd0;
+    localparam BY_ONE = 1'b1;
+    localparam [2:0] TO_TOP = 3'd5;
 
     reg [5:0] waiting = 6'd0;
     reg [5:0] slowing = 6'd0;
+    reg mine_slows = 1'b0;
+    reg [5:0] lane_next;
     reg [5:0] slower;
 
     wire mine = (waiting & lane) != 6'd0;
-    wire mine_slows = (slowing & lane) != 6'd0;
     wire caught = hit & mine;
 
     assign axes = waiting;
     assign waits = mine;
     assign slows = mine_slows;
+
+    always @(*) begin
+        lane_next = lane;
+        if (turn_ends) begin
+            lane_next = (lane << BY_ONE) | (lane >> TO_TOP);
+        end
+    end
 
     always @(*) begin
         slower = NONE;
@@ -1153,6 +1163,7 @@ module carrystep_homes (
     end
 
     always @(posedge clock) begin
+        mine_slows <= (slowing & lane_next) != 6'd0;
         if (caught) begin
             waiting <= waiting & ~lane;
         end
@@ -2390,7 +2401,7 @@ module carrystep_engine (
         .lane(turn_lane),
         .runs(queue_running),
         .too_fast(queue_too_fast),
-        .limit(limits_hit & !homes_waits),
+        .limit(limits_hit & !homes_waits & !homes_slows),
         .dry(queue_dry),
         .late(late),
         .pressed(watch_pressed),
