@@ -114,6 +114,9 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
 /// A host has nothing to hear of in a cycle with these inputs and outputs, and the outputs behind it.
 fn is_silent(inputs: &EngineInputs, now: &EngineOutputs, next: &EngineOutputs) -> bool {
     let taken = (now.put_ready && inputs.put.is_some()) || (now.start_ready && inputs.start.is_some());
-    let state = |outputs: &EngineOutputs| (outputs.fault, outputs.halted, outputs.idle, outputs.enabled);
+    let state = |outputs: &EngineOutputs| {
+        let EngineOutputs { fault, halted, idle, enabled, homing, .. } = *outputs;
+        (fault, halted, idle, enabled, homing)
+    };
     !taken && !now.started && state(now) == state(next)
 }

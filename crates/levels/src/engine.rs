@@ -211,7 +211,7 @@ impl EngineHost {
             Some(Act::Clear) if !fault => 0,
             _ => u64::MAX,
         };
-        let lasting = self.around.kick == self.awake;
+        let lasting = self.around.kick == self.awake && !self.around.broken && self.around.home.is_none();
         // The last cycle before an event is one of `advance`.
         let eventless = self.events.peek().map_or(u64::MAX, |(cycle, _)| (cycle - 1).saturating_sub(self.cycle));
         if lasting { blocked.min(eventless) } else { 0 }

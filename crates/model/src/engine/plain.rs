@@ -108,7 +108,8 @@ impl Engine {
                 let limit = lane.limits[end as usize];
                 let first = self.watch.strobes_to_look(guard, end);
                 // A limit that is active would stop what moves toward it.
-                let hits = guard.limits == Limits::Pair && limit.active && lane.running.is_some() && !stopped;
+                let counts = !stopped || lane.homing.waits;
+                let hits = guard.limits == Limits::Pair && limit.active && lane.running.is_some() && counts;
                 let looks = if hits { 0 } else { limit.plain_looks(self.pin(inputs, axis, end), guard.debounce) };
                 strobes = strobes.min(looks.saturating_mul(guard.round.into()).saturating_add(first));
             }
