@@ -2,6 +2,7 @@
 
 use super::Stimulus;
 use carrystep_levels::engine::{Event, Events};
+use carrystep_spec::engine::EngineOutputs;
 use carrystep_spec::{AXES, Command, EngineBuild, Program, Segment};
 
 /// Clocks of a tick of `sim/engine.toml`.
@@ -29,6 +30,7 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
     all.extend(starts_that_stop(build));
     all.extend(coincidences(build));
     all.push(bounces(build));
+    all.push(homing(build));
     all.extend((0..AXES).map(|axis| last_step(build, axis)));
     all.push(silence(build));
     all
@@ -111,6 +113,31 @@ fn bounces(build: &EngineBuild) -> Stimulus {
     }
     let program = [cruise(4_000, both_ways(1 << 55)), again(20_000)].concat();
     Stimulus::new(build, "limits that bounce", &program, &events).only_for(&GUARDS)
+}
+
+/// The host tries every set of axes; then all wait for their limits, the odd ones for the low ends, and meet them one after
+/// the other, with segments in their queues.
+fn homing(build: &EngineBuild) -> Stimulus {
+    let mut events: Events = (0..64).map(|axes: u8| (100 * u64::from(axes), Event::Home(axes))).collect();
+    let ends = (0..AXES as u8).map(|axis| THEN + 9 * ROUND * u64::from(axis)).zip(0..AXES as u8);
+    let (mut low, mut high) = (0, 0);
+    for (at, axis) in ends {
+        let end = if axis % 2 == 0 { &mut high } else { &mut low };
+        *end |= 1 << axis;
+        events.extend([(at, Event::LimitMin(low)), (at, Event::LimitMax(high))]);
+    }
+    events.extend([(120 * ROUND, Event::LimitMin(0)), (120 * ROUND, Event::LimitMax(0))]);
+    let row = |ticks, last| {
+        let segment = move |v| Segment { ticks, v, a: 0, j: 0, last };
+        (0..).zip(both_ways(1 << 54)).map(move |(axis, v)| Command::Segment { axis, segment: segment(v) })
+    };
+    let mut program: Program = row(3_000, false).chain(row(3_000, false)).chain(row(3_000, true)).collect();
+    program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 900_000 }]);
+    program.extend(cruise(40, both_ways(-(1 << 59))));
+    let stimulus = Stimulus::new(build, "homing", &program, &events);
+    let met = |(_, outputs): &(u64, EngineOutputs)| outputs.homing == 0 && outputs.fault.is_none();
+    assert!(stimulus.recording.outputs.last().is_some_and(met), "all axes meet their limits");
+    stimulus
 }
 
 /// What a host must not do.

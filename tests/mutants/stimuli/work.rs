@@ -14,6 +14,7 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
         Stimulus::new(build, "moves", &drawn(&moves(), 8).concat(), &quiet),
         Stimulus::new(build, "starts", &starts(), &quiet),
         Stimulus::new(build, "turns", &turns(), &quiet),
+        Stimulus::new(build, "rests in every slot", &rests(), &quiet),
         Stimulus::new(build, "knife edges", &drawn(&knife_edges(), 20).concat(), &quiet),
         Stimulus::new(build, "crashes", &drawn(&crash(), 40).concat(), &quiet),
         Stimulus::new(build, "power", &power().0, &power().1),
@@ -25,6 +26,19 @@ fn curve(bits: u32, ticks: u32) -> impl Strategy<Value = (i64, i64, i64)> {
     let (most, ticks) = (i64::MAX >> (63 - bits), i64::from(ticks));
     let within = |most: i64| -most..=most;
     (within(most / 2), within(most / 4 / ticks), within(most / 4 / ticks / ticks))
+}
+
+/// Axis k comes to rest with its live segment in slot k, where the memory also keeps what outlasts a move.
+fn rests() -> Program {
+    let segment = |axis: u8, place: u8| {
+        let v = -(0x0123_4567_89ab_cdef >> (axis % 3)) - (i64::from(place) << 40);
+        let segment = Segment { ticks: 200, v, a: 0, j: 0, last: place == 7 + axis };
+        Command::Segment { axis, segment }
+    };
+    let rows = |places: std::ops::Range<u8>| {
+        places.flat_map(move |place| (0..6).filter(move |axis| place <= 7 + axis).map(move |axis| segment(axis, place)))
+    };
+    rows(0..7).chain([Command::Start { mask: 0x3f }]).chain(rows(7..13)).collect()
 }
 
 /// A segment of each axis.
