@@ -8,8 +8,10 @@
 
 mod build_id;
 pub mod registers;
+mod uart;
 
 pub use build_id::BuildId;
+pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};
 
 use crate::engine::{CAUSES, Cause};
 
