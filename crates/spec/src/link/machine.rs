@@ -1,0 +1,109 @@
+//! The little machine at the gateware's end of the link: its instructions, as they lie in its program memory.
+//!
+//! A byte comes every hundred clocks or so: time enough for a program, which takes a block RAM, where the
+//! same talk as gates takes hundreds of cells. It has an accumulator A, an index X, and no arithmetic but exclusive or and X + 1.
+//!
+//! ```text
+//! clock     | fetch | address | execute |       three clocks an instruction; a wait and a CRC step hold the third
+//!
+//! bit    15    14     13    12   11       10 9 8       7 .. 0
+//!        sets  stores jumps does xor      source       operand      A <= value, or A xor value
+//!                                .        last tx X    operand      data[operand or X] <= A, or the answer's
+//!                                invert   condition    target       pc <= target
+//!                                put      start -     broken   wait .. tax: what the operand's bits do
+//! ```
+
+/// One instruction, encoded.
+pub type Code = u16;
+
+/// A takes a value.
+pub const SETS: Code = 1 << 15;
+/// A is stored.
+pub const STORES: Code = 1 << 14;
+/// The program goes on elsewhere, if the condition holds.
+pub const JUMPS: Code = 1 << 13;
+/// Something is done.
+pub const DOES: Code = 1 << 12;
+
+/// Of [`SETS`]: the value is xored to A.
+pub const XOR: Code = 1 << 11;
+/// Of [`SETS`] from data and of [`STORES`]: at X, not at the operand.
+pub const INDEXED: Code = 1 << 8;
+/// Of [`STORES`]: into the answer.
+pub const TO_ANSWER: Code = 1 << 9;
+/// With [`TO_ANSWER`]: it is the last byte; the answer goes.
+pub const LAST: Code = 1 << 10;
+/// Of [`JUMPS`]: if the condition does not hold.
+pub const UNLESS: Code = 1 << 11;
+
+/// Where a value comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// The data memory, at the operand.
+    Data = 0,
+    /// The data memory, at X.
+    DataAtX = 1,
+    /// The ring of received bytes, at X.
+    Received = 2,
+    /// X.
+    X = 3,
+    /// The low byte of the CRC.
+    Crc = 4,
+    /// The facts at X, the byte of the operand (0 is the lowest).
+    Facts = 5,
+    /// The engine: 0 state, 1 room, 2 culprits, 3 homing.
+    Engine = 6,
+}
+
+/// What a jump asks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Condition {
+    /// Nothing.
+    Always = 0,
+    /// A = 0.
+    Zero = 1,
+    /// Bit 7 of X.
+    X7 = 2,
+    /// Bit 6 of X.
+    X6 = 3,
+    /// No received byte at X.
+    Nothing = 4,
+    /// The last answer is still on its way.
+    Sending = 5,
+    /// The engine has a fault.
+    Fault = 6,
+    /// The engine takes a start.
+    Startable = 7,
+}
+
+/// Of [`DOES`]: X <= A.
+pub const TAX: Code = 1 << 0;
+/// X <= X + 1.
+pub const INX: Code = 1 << 1;
+/// The CRC goes on by eight bits.
+pub const CRC_STEP: Code = 1 << 2;
+/// With [`CRC_STEP`]: A is fed to it; without, its next byte comes down.
+pub const CRC_FEED: Code = 1 << 3;
+/// The CRC begins.
+pub const CRC_BEGIN: Code = 1 << 4;
+/// Not over before a turn of an axis is, or before what is offered is taken.
+pub const WAIT: Code = 1 << 5;
+/// The control register's bit that clears.
+pub const CLEAR_BIT: u8 = 1 << 2;
+/// A is the control register; with [`KICK`] the axes that wait for their limit.
+pub const CONTROL: Code = 1 << 6;
+/// The host was heard of.
+pub const KICK: Code = 1 << 7;
+/// The segment protocol is broken.
+pub const BROKEN: Code = 1 << 8;
+/// A start of the axes of A is offered.
+pub const STARTS: Code = 1 << 10;
+/// A word of a segment is offered: X is its place, axis 3 | word 3.
+pub const PUTS: Code = 1 << 11;
+
+/// Where the data memory keeps a request: its sequence number, then its address.
+pub const REQUEST: u8 = 0x1e;
+/// And its words, which the engine sees as eight words of 32 bits.
+pub const WORDS: u8 = 0x20;
+/// First address past what a request may fill.
+pub const REQUEST_END: u8 = 0x80;
