@@ -8,6 +8,7 @@ use carrystep_levels::engine::{EngineCore, EngineHost, Event, Events};
 use carrystep_model::Engine;
 use carrystep_spec::engine::{Cause, Guard, Limits};
 use carrystep_spec::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_tests::planted;
 
 /// When the limit is met: all axes have cruised for some hundred ticks.
 const THEN: u64 = 30_000;
@@ -137,8 +138,7 @@ fn the_verilog_goes_home_in_the_same_clock() {
     assert!(!caught(|verilog| verilog));
 }
 
-/// What is wrong then, the text of the Verilog, what it becomes.
-const BUGS: [(&str, &str, &str); 5] = [
+const BUGS: [planted::Bug; 5] = [
     ("a limit that is waited for stops all", "limits_hit & !homes_waits &", "limits_hit &"),
     ("the limit is met once more on the way", "& !homes_slows", ""),
     ("all axes slow down", "mine_slows <= (slowing & lane_next)", "mine_slows <= (slowing)"),
@@ -148,11 +148,5 @@ const BUGS: [(&str, &str, &str); 5] = [
 
 #[test]
 fn bugs_in_homing_are_caught() {
-    for (name, text, becomes) in BUGS {
-        let plant = |verilog: String| {
-            assert!(verilog.contains(text), "{name}: the text is gone");
-            verilog.replace(text, becomes)
-        };
-        assert!(caught(plant), "nobody catches: {name}");
-    }
+    planted::assert_all_caught(&BUGS, |plant| caught(plant));
 }

@@ -6,6 +6,7 @@ use carrystep_levels::engine::replay::{self, Recording};
 use carrystep_levels::engine::{Event, Events};
 use carrystep_spec::engine::{Cause, Guard, Limits};
 use carrystep_spec::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_tests::planted;
 
 /// Axes 1, 3 and 5 go backward.
 const BACKWARD: u8 = 0b10_1010;
@@ -143,8 +144,7 @@ fn the_verilog_stops_in_the_same_clock() {
     assert_eq!(caught(|verilog| verilog), None);
 }
 
-/// What is wrong then, the text of the Verilog, what it becomes.
-const BUGS: [(&str, &str, &str); 6] = [
+const BUGS: [planted::Bug; 6] = [
     ("a ramp speeds up", "assign upward = word[14];", "assign upward = !word[14];"),
     ("a ramp begins before it knows the way", "assign steady = ramp & !word[15];", "assign steady = 1'b0;"),
     ("a later cause takes the place of the first", "if (calls & !called) begin", "if (calls) begin"),
@@ -155,11 +155,5 @@ const BUGS: [(&str, &str, &str); 6] = [
 
 #[test]
 fn bugs_in_the_guard_are_caught() {
-    for (name, text, becomes) in BUGS {
-        let plant = |verilog: String| {
-            assert!(verilog.contains(text), "{name}: the text is gone");
-            verilog.replace(text, becomes)
-        };
-        assert!(caught(plant).is_some(), "nobody catches: {name}");
-    }
+    planted::assert_all_caught(&BUGS, |plant| caught(plant).is_some());
 }

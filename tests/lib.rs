@@ -10,6 +10,7 @@ pub mod golden;
 pub mod lockstep;
 pub mod moves;
 pub mod mutants;
+pub mod planted;
 pub mod programs;
 pub mod proofs;
 pub mod random_moves;

@@ -12,6 +12,7 @@
 use crate::SynthesisError;
 use crate::cells::{self, pattern};
 use crate::ice40::Netlist;
+use crate::inverses::with_inverses;
 use crate::tool::{self, YOSYS};
 use std::collections::BTreeMap;
 
@@ -36,7 +37,11 @@ pub fn verilog_and_netlist(core: &str, netlist: &Netlist, verilog: &str) -> Resu
          splitnets -ports {top}; select -set kept t:*dff* %co1:+[Q] x:* %u; select -set logic w:* @kept %d; rename -hide @logic",
         to_words(top)
     );
-    prove(top, &gold, core, &with_inverses(verilog))
+    let folder = tool::folder()?;
+    tool::write(folder.path(), "core.v", core)?;
+    tool::yosys(folder.path(), &format!("read_verilog core.v; {}; write_json words.json", to_words(top)))?;
+    let words = tool::read(folder.path(), "words.json")?;
+    prove(top, &gold, core, &with_inverses(verilog, &words, netlist.json()))
 }
 
 /// The netlist against the bitstream that has been read back.
@@ -88,17 +93,6 @@ fn cells_in(file: &str, top: &str) -> String {
         "read_verilog cells.v {file}; blackbox SB_RAM40_4K; hierarchy -top {top}; proc; flatten; {CUT}; opt_clean; \
          splitnets -ports"
     )
-}
-
-/// A register that starts at 1 is stored inverted, as `NAME_$_NOT__Y_A`: `NAME` is given back to its inverse.
-fn with_inverses(netlist: &str) -> String {
-    let inverse = pattern(r"(?m)^  wire \\?((\w+(?:\.\w+)*)_\$_NOT__Y_A) ?;$");
-    let names = inverse.captures_iter(netlist).map(|found| (found[1].to_owned(), found[2].to_owned()));
-    let missing =
-        names.filter(|(_, name)| !netlist.contains(&format!(" {name};")) && !netlist.contains(&format!("\\{name} ;")));
-    let wires: String =
-        missing.map(|(inverse, name)| format!("  (* keep *) wire \\{name} = ~\\{inverse} ;\n")).collect();
-    netlist.replacen("endmodule", &format!("{wires}endmodule"), 1)
 }
 
 /// Proves that two designs are one.

@@ -44,7 +44,7 @@ pub struct Placed {
 /// Synthesises Verilog.
 ///
 /// What `synth_ice40` does, but that names are given before logic is mapped as well: a register that starts at 1
-/// is stored inverted, and is known afterwards by `NAME_$_NOT__Y_A`, which [`crate::equivalence`] looks for.
+/// is stored inverted, and is mostly known afterwards by `NAME_$_NOT__Y_A`, which the proofs look for.
 ///
 /// # Errors
 /// [`SynthesisError`]: yosys is missing, refuses the text, or a file cannot be used.
@@ -67,6 +67,11 @@ impl Netlist {
     /// [`SynthesisError`]: yosys' models are not found.
     pub fn simulated(&self) -> Result<String, SynthesisError> {
         cells::with_models(&self.verilog)
+    }
+
+    /// Itself, as yosys' JSON.
+    pub(crate) fn json(&self) -> &str {
+        &self.json
     }
 
     /// What it takes, without placing it.

@@ -12,6 +12,7 @@ mod cells;
 pub mod equivalence;
 mod error;
 pub mod ice40;
+mod inverses;
 mod read_back;
 pub mod resources;
 mod tool;

@@ -202,6 +202,7 @@ module promises (
         invariant_17: assert (!halted || !ran);
         invariant_19: assert (!(mine && committed && at % TURN >= 8) || word[5:3] + 3'd1 != word[2:0] + {2'd0, starts});
         invariant_21: assert (slows == |(slowing & lane) || (`AXES == 1 && was_beat[12]));
+        invariant_22: assert (!was_beat[12] || at % TURN == 0 && at != 0 && at <= TURNS);
         invariant_18: assert (turning || !{going, taken, armed, active, unfed, held} && quiet);
     end
 `endif

@@ -123,7 +123,8 @@ impl Lane {
             None => {}
         }
         if let Some(look) = look {
-            let hit = next.look(look, tick, next.computed.sign);
+            let sign = next.computed.sign;
+            let hit = next.limits[usize::from(look.max)].hit(look, tick, sign);
             if hit && !self.homing.meets && !self.homing.slows {
                 found = Some(Cause::Limit);
             }
@@ -140,18 +141,8 @@ impl Lane {
     pub(super) fn hits(&self, tick: Tick<'_>, look: Look) -> bool {
         let fits = |segment: &Segment| !tick.halted && !self.unfit && segment.v != i64::MIN;
         let sign = self.running.filter(fits).map_or(0, |segment| segment.v.signum() as i8);
-        self.clone().look(look, tick, sign)
-    }
-
-    /// Looks at a limit in a tick whose V has this sign; whether it is a hit.
-    fn look(&mut self, look: Look, tick: Tick<'_>, sign: i8) -> bool {
-        let limit = &mut self.limits[usize::from(look.max)];
-        let became = limit.look(look.pin, tick.guard.debounce);
-        match tick.guard.limits {
-            Limits::None => false,
-            Limits::Pair => limit.active && sign == if look.max { 1 } else { -1 },
-            Limits::Each | Limits::One => became && sign != 0,
-        }
+        let mut limit = self.limits[usize::from(look.max)];
+        limit.hit(look, tick, sign)
     }
 
     /// The sums of a tick; `next` rests until something says otherwise.
@@ -194,6 +185,16 @@ impl Lane {
 }
 
 impl Limit {
+    /// Looks in a tick whose V has this sign; whether the axis is stopped.
+    fn hit(&mut self, look: Look, tick: Tick<'_>, sign: i8) -> bool {
+        let became = self.look(look.pin, tick.guard.debounce);
+        match tick.guard.limits {
+            Limits::None => false,
+            Limits::Pair => self.active && sign == if look.max { 1 } else { -1 },
+            Limits::Each | Limits::One => became && sign != 0,
+        }
+    }
+
     /// Looks once; whether it has become active.
     fn look(&mut self, pin: bool, debounce: u32) -> bool {
         if pin == self.active {

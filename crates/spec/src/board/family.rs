@@ -53,8 +53,8 @@ impl Family {
         }
     }
 
-    /// What makes clocks in it. The DCM's ranges are those of the slowest speed grade in the low-frequency mode, by the data
-    /// sheets DS099, DS312 and DS162; the vendor's tools check them again.
+    /// What makes clocks in it. The DCM's ranges are meant to be those of the slowest speed grade in the low-frequency mode. They
+    /// are as remembered: look them up in the data sheets (DS099, DS312, DS162) before counting on a clock near their ends.
     pub const fn clock_managers(self) -> ClockManagers {
         const fn dcm(least_in: u64, least_out: u64, most_out: u64) -> ClockManagers {
             ClockManagers::Dcm { least_in, least_out, most_out }
