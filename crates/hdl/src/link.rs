@@ -143,7 +143,7 @@ impl<const N: usize> Logic for UartLink<N> {
         self.uart_in.line.next = self.rx.val();
         self.machine.received.next = self.uart_in.valid.val();
         self.machine.received_data.next = self.uart_in.data.val();
-        self.uart_out.data.next = self.machine.answer.val();
+        self.uart_out.data.next = self.machine.a.val();
         self.uart_out.valid.next = self.machine.answer_valid.val();
         self.machine.answer_take.next = self.uart_out.take.val();
         self.tx.next = self.uart_out.line.val();

@@ -16,8 +16,10 @@ use rust_hdl::prelude::*;
 pub struct Check {
     /// The clock.
     pub clock: Input<Clock>,
-    /// All ones.
+    /// All ones,
     pub begins: Input<Bit>,
+    /// or, with `feed`, this.
+    pub word: Input<Word<32>>,
     /// Eight bits further,
     pub step: Input<Bit>,
     /// with this byte fed to it,
@@ -54,7 +56,10 @@ impl Logic for Check {
                 self.sum.d.next = (self.sum.q.val() >> self.by_one.val()) ^ self.polynomial.val();
             }
         }
-        if self.begins.val() {
+        if self.begins.val() & self.feed.val() {
+            self.sum.d.next = self.word.val();
+        }
+        if self.begins.val() & !self.feed.val() {
             self.sum.d.next = self.ones.val();
         }
         self.over.next = self.count.q.val() == self.last.val();

@@ -22,15 +22,13 @@ pub struct Machine<const N: usize> {
     pub received: Input<Bit>,
     /// this one.
     pub received_data: Input<Word<8>>,
-    /// A byte of the answer,
-    pub answer: Signal<Out, Word<8>>,
-    /// which is offered until it is taken.
+    /// A is a byte of the answer, which is offered until it is taken.
     pub answer_valid: Signal<Out, Bit>,
     /// The offered byte is taken in this cycle.
     pub answer_take: Input<Bit>,
     /// X: where the facts are read; also which axis and word are put.
     pub x: Signal<Out, Word<8>>,
-    /// A: the axes of a start, and those that wait for their limit.
+    /// A: the byte; the axes of a start, and those that wait for their limit.
     pub a: Signal<Out, Word<8>>,
     /// The facts at X.
     pub facts: Input<Word<32>>,
@@ -82,15 +80,12 @@ pub struct Machine<const N: usize> {
     data: Memory<8, 8>,
     words: Memory<3, 32>,
     ring: Memory<8, 8>,
-    sent: Memory<5, 9>,
     check: Check,
     stage: Register<Word<2>>,
     pc: Register<Word<8>>,
     sum: Register<Word<8>>,   // A
     index: Register<Word<8>>, // X
     written: Register<Word<8>>,
-    sends: Register<Word<5>>,
-    sending: Register<Bit>,
     space: Register<Word<3>>, // `room`
     control: Register<Word<2>>,
     clears: Register<Bit>, // `clear`
@@ -107,30 +102,22 @@ pub struct Machine<const N: usize> {
     over: Signal<Local, Bit>,
     state: Signal<Local, Word<8>>,
     place: Signal<Local, Word<8>>,
-    fact_high: Signal<Local, Word<16>>,
-    fact: Signal<Local, Word<8>>,
     port: Signal<Local, Word<8>>,
     value: Signal<Local, Word<8>>,
     holds: Signal<Local, Bit>,
     empty: Signal<Local, Bit>,
     stored: Signal<Local, Bit>,
     in_words: Signal<Local, Bit>,
-    goes: Signal<Local, Bit>,     // a byte to the answer,
-    ends: Signal<Local, Bit>,     // its last one
-    sent_all: Signal<Local, Bit>, // which is taken
     mask: Signal<Local, Word<32>>,
     fetch: Literal<2, 0>,
     execute: Literal<2, 2>,
     next_stage: Literal<2, 1>,
     one: Literal<8, 1>,
-    one_sent: Literal<5, 1>,
-    first: Literal<5, 0>,
     from_data: Literal<3, 0>,
     from_data_at_x: Literal<3, 1>,
     from_ring: Literal<3, 2>,
     from_x: Literal<3, 3>,
     from_check: Literal<3, 4>,
-    from_facts: Literal<3, 5>,
     of_words: Literal<3, 1>,
     byte_0: Literal<32, 0x0000_00ff>,
     byte_1: Literal<32, 0x0000_ff00>,
@@ -140,9 +127,6 @@ pub struct Machine<const N: usize> {
     none: Literal<8, 0>,
     no_code: Literal<16, 0>,
     all: Literal<8, 0xff>,
-    nothing: Literal<9, 0>,
-    everything: Literal<9, 0x1ff>,
-    last: Literal<9, 0x100>,
     at_5: Literal<4, 5>,
     at_8: Literal<5, 8>,
     bit_0: Literal<8, 1>,
@@ -156,9 +140,8 @@ pub struct Machine<const N: usize> {
     if_x7: Literal<3, 2>,
     if_x6: Literal<3, 3>,
     if_nothing: Literal<3, 4>,
-    if_sending: Literal<3, 5>,
-    if_fault: Literal<3, 6>,
-    if_startable: Literal<3, 7>,
+    if_fault: Literal<3, 5>,
+    if_startable: Literal<3, 6>,
 }
 
 impl<const N: usize> Machine<N> {
@@ -172,7 +155,6 @@ impl<const N: usize> Machine<N> {
             data: Memory::of_words(&data),
             words: Memory::of_bits(),
             ring: Memory::of_words(&[]),
-            sent: Memory::of_words(&[]),
             ..Self::default()
         }
     }
@@ -181,8 +163,8 @@ impl<const N: usize> Machine<N> {
 impl<const N: usize> Logic for Machine<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, stage, pc, sum, index, written, sends, sending, space, control, clears);
-        clock!(self, clock, program, data, words, ring, sent, check);
+        dff_setup!(self, clock, stage, pc, sum, index, written, space, control, clears);
+        clock!(self, clock, program, data, words, ring, check);
 
         // The instruction, and what it does.
         self.program.read_address.next = self.pc.q.val();
@@ -218,6 +200,9 @@ impl<const N: usize> Logic for Machine<N> {
         if self.code.val().get_bit(11) {
             self.waited.next = self.put_ready.val() | self.fault.val();
         }
+        if self.code.val().get_bit(9) {
+            self.waited.next = self.answer_take.val();
+        }
         if self.code.val().get_bit(10) {
             self.waited.next = self.start_ready.val() | self.fault.val();
         }
@@ -243,9 +228,6 @@ impl<const N: usize> Logic for Machine<N> {
         if self.code.val().get_bits::<3>(8) == self.if_nothing.val() {
             self.holds.next = self.empty.val();
         }
-        if self.code.val().get_bits::<3>(8) == self.if_sending.val() {
-            self.holds.next = self.sending.q.val();
-        }
         if self.code.val().get_bits::<3>(8) == self.if_fault.val() {
             self.holds.next = self.fault.val();
         }
@@ -260,14 +242,6 @@ impl<const N: usize> Logic for Machine<N> {
         }
 
         // The value.
-        self.fact_high.next = self.facts.val().get_bits::<16>(0);
-        if self.code.val().get_bit(1) {
-            self.fact_high.next = self.facts.val().get_bits::<16>(16);
-        }
-        self.fact.next = self.fact_high.val().get_bits::<8>(0);
-        if self.code.val().get_bit(0) {
-            self.fact.next = self.fact_high.val().get_bits::<8>(8);
-        }
         self.port.next = self.state.val();
         if self.code.val().get_bit(0) {
             self.port.next = bit_cast::<8, 3>(self.space.q.val());
@@ -292,9 +266,6 @@ impl<const N: usize> Logic for Machine<N> {
         }
         if self.code.val().get_bits::<3>(8) == self.from_check.val() {
             self.value.next = self.check.low.val();
-        }
-        if self.code.val().get_bits::<3>(8) == self.from_facts.val() {
-            self.value.next = self.fact.val();
         }
         if self.sets.val() {
             self.sum.d.next = self.value.val();
@@ -349,6 +320,7 @@ impl<const N: usize> Logic for Machine<N> {
         self.check.step.next = self.steps.val();
         self.check.feed.next = self.code.val().get_bit(3);
         self.check.data.next = self.sum.q.val();
+        self.check.word.next = self.facts.val();
 
         // Bytes that come.
         self.ring.read_address.next = self.index.q.val();
@@ -358,33 +330,6 @@ impl<const N: usize> Logic for Machine<N> {
         if self.received.val() {
             self.ring.write_bits.next = self.all.val();
             self.written.d.next = self.written.q.val() + self.one.val();
-        }
-
-        // Bytes that go: written one by one, then read one by one.
-        self.goes.next = self.stores.val() & self.code.val().get_bit(9);
-        self.ends.next = self.goes.val() & self.code.val().get_bit(10);
-        self.sent.read_address.next = self.sends.q.val();
-        self.sent.write_address.next = self.sends.q.val();
-        self.sent.write_data.next = bit_cast::<9, 8>(self.sum.q.val());
-        if self.ends.val() {
-            self.sent.write_data.next = bit_cast::<9, 8>(self.sum.q.val()) | self.last.val();
-            self.sending.d.next = true;
-        }
-        self.sent.write_bits.next = self.nothing.val();
-        if self.goes.val() {
-            self.sent.write_bits.next = self.everything.val();
-        }
-        self.answer.next = self.sent.read_data.val().get_bits::<8>(0);
-        self.answer_valid.next = self.sending.q.val();
-        self.sent_all.next = self.answer_take.val() & self.sent.read_data.val().get_bit(8);
-        if self.sent_all.val() {
-            self.sending.d.next = false;
-        }
-        if self.goes.val() | self.answer_take.val() {
-            self.sends.d.next = self.sends.q.val() + self.one_sent.val();
-        }
-        if self.ends.val() | self.sent_all.val() {
-            self.sends.d.next = self.first.val();
         }
 
         // The engine.
@@ -399,6 +344,7 @@ impl<const N: usize> Logic for Machine<N> {
         self.kick.next = self.does.val() & self.code.val().get_bit(7) & !self.code.val().get_bit(6);
         self.broken.next = self.does.val() & self.code.val().get_bit(8);
         self.clear.next = self.clears.q.val();
+        self.answer_valid.next = self.waits.val() & self.code.val().get_bit(9);
         self.start_valid.next = self.does.val() & self.code.val().get_bit(10);
         self.put_valid.next = self.does.val() & self.code.val().get_bit(11);
         self.put_data.next = self.words.read_data.val();

@@ -1,7 +1,7 @@
 //! Turns a program with names into what lies in the link machine's memories.
 
 use super::machine::{
-    ACTS, Code, Condition, INDEXED, INX, JUMPS, LAST, SETS, STORES, Source, TAX, TO_ANSWER, UNLESS, XOR,
+    ACTS, Code, Condition, INDEXED, GOES, INX, JUMPS, SETS, STORES, Source, TAX, UNLESS, WAIT, XOR,
 };
 use std::collections::BTreeMap;
 
@@ -109,9 +109,9 @@ impl Assembler {
         self.program.push(STORES | INDEXED | ACTS | INX);
     }
 
-    /// The next byte of the answer <= A; the last one sends it.
-    pub(super) fn answer(&mut self, last: bool) {
-        self.program.push(STORES | TO_ANSWER | if last { LAST } else { 0 });
+    /// A goes to the host.
+    pub(super) fn send(&mut self) {
+        self.acts(GOES | WAIT);
     }
 
     /// Does all of this.

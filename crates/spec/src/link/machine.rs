@@ -8,9 +8,9 @@
 //!
 //! bit    15     14     13     12     11       10 9 8       7 .. 0
 //!        sets                        xor      source       operand      A <= value, or A xor value
-//!               stores                        last ans X   operand      data[operand or X] <= A; or the answer's next byte
+//!               stores                              X   operand      data[operand or X] <= A
 //!                      jumps         invert   condition    target       pc <= target
-//!                             acts   put      start cl br  wait .. tax  what these bits do
+//!                             acts   put      start go br  wait .. tax  what these bits do
 //! ```
 //!
 //! Of `acts` the two that change X go together with a value or a store whose operand says nothing else.
@@ -31,10 +31,6 @@ pub const ACTS: Code = 1 << 12;
 pub const XOR: Code = 1 << 11;
 /// Of [`STORES`]: at X, not at the operand.
 pub const INDEXED: Code = 1 << 8;
-/// Of [`STORES`]: it is the next byte of the answer.
-pub const TO_ANSWER: Code = 1 << 9;
-/// With [`TO_ANSWER`]: it is the last one; the answer goes.
-pub const LAST: Code = 1 << 10;
 /// Of [`JUMPS`]: if the condition does not hold.
 pub const UNLESS: Code = 1 << 11;
 
@@ -51,10 +47,8 @@ pub enum Source {
     X = 3,
     /// The low byte of the CRC.
     Crc = 4,
-    /// The facts at X, the byte of the operand (0 is the lowest).
-    Facts = 5,
     /// The engine, what the operand says ([`STATE`] and so on).
-    Engine = 6,
+    Engine = 5,
 }
 
 /// Of [`Source::Engine`]: byte 3 of an answer.
@@ -79,12 +73,10 @@ pub enum Condition {
     X6 = 3,
     /// No received byte at X.
     Nothing = 4,
-    /// The last answer is still on its way.
-    Sending = 5,
     /// The engine has a fault.
-    Fault = 6,
+    Fault = 5,
     /// The engine takes a start.
-    Startable = 7,
+    Startable = 6,
 }
 
 /// X <= A.
@@ -95,7 +87,7 @@ pub const INX: Code = 1 << 1;
 pub const CRC_STEP: Code = 1 << 2;
 /// With [`CRC_STEP`]: A is fed to it; without, its next byte comes down.
 pub const CRC_FEED: Code = 1 << 3;
-/// The CRC begins.
+/// The CRC begins; with [`CRC_FEED`] its register takes the facts at X instead.
 pub const CRC_BEGIN: Code = 1 << 4;
 /// Not over before what is offered is taken, or the engine has a fault; where nothing is offered: before the
 /// scan of all axes' items comes round ([`SCAN`] turns).
@@ -108,6 +100,8 @@ pub const KICK: Code = 1 << 7;
 pub const BROKEN: Code = 1 << 8;
 /// With [`CONTROL`]: the engine shall clear, until the control register is written anew.
 pub const CLEARING: Code = 1 << 9;
+/// With [`WAIT`]: A goes to the host.
+pub const GOES: Code = 1 << 9;
 /// A start of the axes of A is offered.
 pub const STARTS: Code = 1 << 10;
 /// A word of a segment is offered: X is its place, axis 3 | word 3.

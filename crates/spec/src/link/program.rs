@@ -12,7 +12,7 @@
 //! ```
 
 use super::assembler::{Assembler, Image};
-use super::machine::Condition::{Fault, Nothing, Sending, Startable, X6, X7, Zero};
+use super::machine::Condition::{Fault, Nothing, Startable, X6, X7, Zero};
 use super::machine::{
     BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, HOMING, INX, KICK, PUTS, REQUEST, REQUEST_END,
     ROOM, STARTS, STATE, Source, TAX, WAIT, WORDS,
@@ -259,8 +259,6 @@ fn execute(a: &mut Assembler) {
 /// Gathers the answer.
 fn answer(a: &mut Assembler) {
     a.label("answer");
-    // The one before is still on its way: this one is left out.
-    a.jump_if(Sending, "begin");
     // The register that is asked for; after a write the position of its axis.
     a.load(ADDRESS);
     a.acts(TAX);
@@ -282,9 +280,11 @@ fn answer(a: &mut Assembler) {
     a.store(ANSWER + 5);
     a.load_from(Source::Engine, HOMING);
     a.store(ANSWER + 6);
+    a.acts(CRC_BEGIN | CRC_FEED);
     for byte in 0..4 {
-        a.load_from(Source::Facts, byte);
+        a.load_from(Source::Crc, 0);
         a.store(ANSWER + ANSWER_DATA as u8 + byte);
+        a.acts(CRC_STEP);
     }
     for (at, from) in [SEQUENCE, ADDRESS, NEXT].into_iter().enumerate() {
         a.load(from);
@@ -306,7 +306,7 @@ fn send(a: &mut Assembler) {
     a.acts(TAX);
     a.load_number(END);
     a.label("put");
-    a.answer(false);
+    a.send();
     a.jump_if(X7, "last");
     a.next(Source::DataAtX);
     a.store(BYTE);
@@ -319,13 +319,13 @@ fn send(a: &mut Assembler) {
     for (then, label) in [(ESC_END, "escape an END"), (ESC_ESC, "escape an ESC")] {
         a.label(label);
         a.load_number(ESC);
-        a.answer(false);
+        a.send();
         a.load_number(then);
         a.jump("put");
     }
     a.label("last");
     a.load_number(END);
-    a.answer(true);
+    a.send();
     a.jump("begin");
 }
 
