@@ -12,6 +12,7 @@ pub mod constant;
 pub mod edge;
 pub mod engine;
 pub mod lanes;
+pub mod link;
 pub mod memory;
 pub mod register;
 pub mod sequencer;

@@ -6,11 +6,16 @@
 //! answer    sequence 1 | address 1 | next 1 | state 1 | free 1 | culprits 1 | homing 1 | data 4 | CRC 4
 //! ```
 
+mod assembler;
 mod build_id;
+pub mod machine;
+mod program;
 pub mod registers;
 mod uart;
 
+pub use assembler::Image;
 pub use build_id::BuildId;
+pub use program::image;
 pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};
 
 use crate::engine::{CAUSES, Cause};

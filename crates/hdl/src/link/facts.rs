@@ -1,0 +1,101 @@
+//! What can be read: the build's facts, and what the engine has last said of each axis.
+//!
+//! ```text
+//! address   0 .. 31     facts, written when the gateware is made
+//!           64 + 8 axis + item    0 1 P   2 position   3 discarded   4 the position at the limit
+//! ```
+//!
+//! All items are asked for in turn, all the time; so they are never older than a few ticks. An axis that waits for its
+//! limit says its position in each of its turns, and the last one stays.
+
+use crate::constant::Literal;
+use crate::memory::Memory;
+use crate::register::{Input, Register};
+use crate::word::{Word, bit_cast};
+use rust_hdl::prelude::*;
+
+/// The memory of facts.
+#[derive(LogicBlock, Default)]
+pub struct Facts {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// What is read,
+    pub address: Input<Word<7>>,
+    /// and says this in the next cycle.
+    pub data: Signal<Out, Word<32>>,
+    /// The engine is asked about this axis,
+    pub get_axis: Signal<Out, Word<3>>,
+    /// this item,
+    pub get_item: Signal<Out, Word<2>>,
+    /// and says this,
+    pub get_data: Input<Word<32>>,
+    /// in this cycle.
+    pub get_valid: Input<Bit>,
+    /// It says the position of an axis that waits for its limit,
+    pub latch: Input<Bit>,
+    /// namely of this one.
+    pub latch_axis: Input<Word<3>>,
+    /// The last item of the last axis is.
+    pub scanned: Signal<Out, Bit>,
+    words: Memory<7, 32>,
+    asked: Register<Word<5>>,
+    place: Signal<Local, Word<7>>,
+    bits: Signal<Local, Word<32>>,
+    one: Literal<5, 1>,
+    last_item: Literal<5, 31>,
+    at_3: Literal<3, 3>,
+    of_axes: Literal<7, 0x40>,
+    latched: Literal<7, 0x44>,
+    none: Literal<32, 0>,
+    all: Literal<32, 0xffff_ffff>,
+}
+
+impl Facts {
+    /// The memory with these facts, by address.
+    pub fn new(facts: &[(u8, u32)]) -> Self {
+        let words: Vec<_> =
+            facts.iter().map(|&(address, fact)| (usize::from(address), Word::from(u64::from(fact)))).collect();
+        Self { words: Memory::of_words(&words), ..Self::default() }
+    }
+}
+
+impl Logic for Facts {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, asked);
+        clock!(self, clock, words);
+        if self.get_valid.val() {
+            self.asked.d.next = self.asked.q.val() + self.one.val();
+        }
+        self.scanned.next = self.get_valid.val() & (self.asked.q.val() == self.last_item.val());
+        self.get_item.next = self.asked.q.val().get_bits::<2>(0);
+        self.get_axis.next = self.asked.q.val().get_bits::<3>(2);
+
+        self.words.read_address.next = self.address.val();
+        self.data.next = self.words.read_data.val();
+        self.place.next = self.of_axes.val()
+            | (bit_cast::<7, 3>(self.asked.q.val().get_bits::<3>(2)) << self.at_3.val())
+            | bit_cast::<7, 2>(self.asked.q.val().get_bits::<2>(0));
+        if self.latch.val() {
+            self.place.next = self.latched.val() | (bit_cast::<7, 3>(self.latch_axis.val()) << self.at_3.val());
+        }
+        self.words.write_address.next = self.place.val();
+        self.words.write_data.next = self.get_data.val();
+        self.bits.next = self.none.val();
+        if self.latch.val() | self.get_valid.val() {
+            self.bits.next = self.all.val();
+        }
+        self.words.write_bits.next = self.bits.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn facts_synthesizes() {
+        assert_synthesizes(Facts::new(&[(0, 7)]), "carrystep_facts");
+    }
+}

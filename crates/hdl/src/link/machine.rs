@@ -1,0 +1,367 @@
+//! The little machine that reads requests, does what they ask for and writes answers: `carrystep_spec::link::machine`
+//! says what its instructions are, `carrystep_spec::link::program` what it does.
+//!
+//! ```text
+//! stage     | fetch | address | execute |       the program memory, the data memory, what comes of it
+//! ```
+
+use super::check::Check;
+use crate::constant::Literal;
+use crate::memory::Memory;
+use crate::register::{Input, Register};
+use crate::word::{Word, bit_cast};
+use carrystep_spec::link::Image;
+use rust_hdl::prelude::*;
+
+/// The machine for N axes.
+#[derive(LogicBlock, Default)]
+pub struct Machine<const N: usize> {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// A byte was received,
+    pub received: Input<Bit>,
+    /// this one.
+    pub received_data: Input<Word<8>>,
+    /// A is a byte of the answer, which is offered until it is taken.
+    pub answer_valid: Signal<Out, Bit>,
+    /// The offered byte is taken in this cycle.
+    pub answer_take: Input<Bit>,
+    /// X: where the facts are read; also which axis and word are put.
+    pub x: Signal<Out, Word<8>>,
+    /// A: the byte; the axes of a start, and those that wait for their limit.
+    pub a: Signal<Out, Word<8>>,
+    /// The facts at X.
+    pub facts: Input<Word<32>>,
+    /// A word of a segment is offered,
+    pub put_valid: Signal<Out, Bit>,
+    /// this one.
+    pub put_data: Signal<Out, Word<32>>,
+    /// It is taken in this cycle.
+    pub put_ready: Input<Bit>,
+    /// A start is offered.
+    pub start_valid: Signal<Out, Bit>,
+    /// It is taken in this cycle.
+    pub start_ready: Input<Bit>,
+    /// The engine is to clear.
+    pub clear: Signal<Out, Bit>,
+    /// The segment protocol is broken.
+    pub broken: Signal<Out, Bit>,
+    /// The axes of A wait for their limit.
+    pub home_valid: Signal<Out, Bit>,
+    /// The host was heard of.
+    pub kick: Signal<Out, Bit>,
+    /// The drivers are to be powered.
+    pub enable: Signal<Out, Bit>,
+    /// All axes are to stop.
+    pub stop: Signal<Out, Bit>,
+    /// All items of all axes have been asked for.
+    pub scanned: Input<Bit>,
+    /// A stop has been called.
+    pub fault: Input<Bit>,
+    /// No axis moves any more.
+    pub halted: Input<Bit>,
+    /// All axes are done.
+    pub idle: Input<Bit>,
+    /// Starts can be taken.
+    pub ready: Input<Bit>,
+    /// A start is armed.
+    pub armed: Input<Bit>,
+    /// Why.
+    pub cause: Input<Word<3>>,
+    /// The axis of X has room for so many segments,
+    pub room: Input<Word<3>>,
+    /// in this cycle.
+    pub room_valid: Input<Bit>,
+    /// The axes that a stop came from.
+    pub culprits: Input<Word<N>>,
+    /// The axes that wait for their limit.
+    pub homing: Input<Word<N>>,
+    program: Memory<8, 16>,
+    data: Memory<8, 8>,
+    words: Memory<3, 32>,
+    ring: Memory<8, 8>,
+    check: Check,
+    stage: Register<Word<2>>,
+    pc: Register<Word<8>>,
+    sum: Register<Word<8>>,   // A
+    index: Register<Word<8>>, // X
+    written: Register<Word<8>>,
+    space: Register<Word<3>>, // `room`
+    control: Register<Word<2>>,
+    clears: Register<Bit>, // `clear`
+    code: Signal<Local, Word<16>>,
+    executes: Signal<Local, Bit>,
+    sets: Signal<Local, Bit>,
+    stores: Signal<Local, Bit>,
+    jumps: Signal<Local, Bit>,
+    acts: Signal<Local, Bit>,
+    does: Signal<Local, Bit>, // and neither sets nor stores
+    waits: Signal<Local, Bit>,
+    waited: Signal<Local, Bit>,
+    steps: Signal<Local, Bit>,
+    over: Signal<Local, Bit>,
+    state: Signal<Local, Word<8>>,
+    place: Signal<Local, Word<8>>,
+    port: Signal<Local, Word<8>>,
+    value: Signal<Local, Word<8>>,
+    holds: Signal<Local, Bit>,
+    empty: Signal<Local, Bit>,
+    stored: Signal<Local, Bit>,
+    in_words: Signal<Local, Bit>,
+    mask: Signal<Local, Word<32>>,
+    fetch: Literal<2, 0>,
+    execute: Literal<2, 2>,
+    next_stage: Literal<2, 1>,
+    one: Literal<8, 1>,
+    from_data: Literal<3, 0>,
+    from_data_at_x: Literal<3, 1>,
+    from_ring: Literal<3, 2>,
+    from_x: Literal<3, 3>,
+    from_check: Literal<3, 4>,
+    of_words: Literal<3, 1>,
+    byte_0: Literal<32, 0x0000_00ff>,
+    byte_1: Literal<32, 0x0000_ff00>,
+    byte_2: Literal<32, 0x00ff_0000>,
+    byte_3: Literal<32, 0xff00_0000>,
+    no_bytes: Literal<32, 0>,
+    none: Literal<8, 0>,
+    no_code: Literal<16, 0>,
+    all: Literal<8, 0xff>,
+    at_5: Literal<4, 5>,
+    at_8: Literal<5, 8>,
+    bit_0: Literal<8, 1>,
+    bit_1: Literal<8, 2>,
+    bit_2: Literal<8, 4>,
+    bit_3: Literal<8, 8>,
+    bit_4: Literal<8, 16>,
+    at_16: Literal<5, 16>,
+    at_24: Literal<5, 24>,
+    if_zero: Literal<3, 1>,
+    if_x7: Literal<3, 2>,
+    if_x6: Literal<3, 3>,
+    if_nothing: Literal<3, 4>,
+    if_fault: Literal<3, 5>,
+    if_startable: Literal<3, 6>,
+}
+
+impl<const N: usize> Machine<N> {
+    /// The machine with this in its memories.
+    pub fn new(image: &Image) -> Self {
+        let program: Vec<_> =
+            image.program.iter().enumerate().map(|(at, code)| (at, Word::from(u64::from(*code)))).collect();
+        let data: Vec<_> = image.data.iter().enumerate().map(|(at, byte)| (at, Word::from(u64::from(*byte)))).collect();
+        Self {
+            program: Memory::of_words(&program),
+            data: Memory::of_words(&data),
+            words: Memory::of_bits(),
+            ring: Memory::of_words(&[]),
+            ..Self::default()
+        }
+    }
+}
+
+impl<const N: usize> Logic for Machine<N> {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, stage, pc, sum, index, written, space, control, clears);
+        clock!(self, clock, program, data, words, ring, check);
+
+        // The instruction, and what it does.
+        self.program.read_address.next = self.pc.q.val();
+        self.program.write_address.next = self.none.val();
+        self.program.write_data.next = self.no_code.val();
+        self.program.write_bits.next = self.no_code.val();
+        self.code.next = self.program.read_data.val();
+        self.executes.next = self.stage.q.val() == self.execute.val();
+        self.sets.next = self.executes.val() & self.code.val().get_bit(15);
+        self.stores.next = self.executes.val() & self.code.val().get_bit(14);
+        self.jumps.next = self.code.val().get_bit(13);
+        self.acts.next = self.executes.val() & self.code.val().get_bit(12);
+        self.does.next = self.acts.val() & !self.code.val().get_bit(15) & !self.code.val().get_bit(14);
+        self.steps.next = self.does.val() & self.code.val().get_bit(2);
+        self.waits.next = self.does.val() & self.code.val().get_bit(5);
+        self.state.next = bit_cast::<8, 3>(self.cause.val()) << self.at_5.val();
+        if self.fault.val() {
+            self.state.next = self.state.val() | self.bit_0.val();
+        }
+        if self.halted.val() {
+            self.state.next = self.state.val() | self.bit_1.val();
+        }
+        if self.idle.val() {
+            self.state.next = self.state.val() | self.bit_2.val();
+        }
+        if self.ready.val() {
+            self.state.next = self.state.val() | self.bit_3.val();
+        }
+        if self.armed.val() {
+            self.state.next = self.state.val() | self.bit_4.val();
+        }
+        self.waited.next = self.scanned.val();
+        if self.code.val().get_bit(11) {
+            self.waited.next = self.put_ready.val() | self.fault.val();
+        }
+        if self.code.val().get_bit(9) {
+            self.waited.next = self.answer_take.val();
+        }
+        if self.code.val().get_bit(10) {
+            self.waited.next = self.start_ready.val() | self.fault.val();
+        }
+        self.over.next = (!self.waits.val() | self.waited.val()) & (!self.steps.val() | self.check.over.val());
+        if !self.executes.val() {
+            self.stage.d.next = self.stage.q.val() + self.next_stage.val();
+        } else if self.over.val() {
+            self.stage.d.next = self.fetch.val();
+        }
+
+        // Where it goes on.
+        self.empty.next = self.index.q.val() == self.written.q.val();
+        self.holds.next = true;
+        if self.code.val().get_bits::<3>(8) == self.if_zero.val() {
+            self.holds.next = !self.sum.q.val().any();
+        }
+        if self.code.val().get_bits::<3>(8) == self.if_x7.val() {
+            self.holds.next = self.index.q.val().get_bit(7);
+        }
+        if self.code.val().get_bits::<3>(8) == self.if_x6.val() {
+            self.holds.next = self.index.q.val().get_bit(6);
+        }
+        if self.code.val().get_bits::<3>(8) == self.if_nothing.val() {
+            self.holds.next = self.empty.val();
+        }
+        if self.code.val().get_bits::<3>(8) == self.if_fault.val() {
+            self.holds.next = self.fault.val();
+        }
+        if self.code.val().get_bits::<3>(8) == self.if_startable.val() {
+            self.holds.next = self.ready.val() & !self.armed.val();
+        }
+        if self.executes.val() & self.over.val() {
+            self.pc.d.next = self.pc.q.val() + self.one.val();
+            if self.jumps.val() & (self.holds.val() ^ self.code.val().get_bit(11)) {
+                self.pc.d.next = self.code.val().get_bits::<8>(0);
+            }
+        }
+
+        // The value.
+        self.port.next = self.state.val();
+        if self.code.val().get_bit(0) {
+            self.port.next = bit_cast::<8, 3>(self.space.q.val());
+        }
+        if self.code.val().get_bit(1) {
+            self.port.next = bit_cast::<8, N>(self.culprits.val());
+            if self.code.val().get_bit(0) {
+                self.port.next = bit_cast::<8, N>(self.homing.val());
+            }
+        }
+        self.value.next = self.port.val();
+        if (self.code.val().get_bits::<3>(8) == self.from_data.val())
+            | (self.code.val().get_bits::<3>(8) == self.from_data_at_x.val())
+        {
+            self.value.next = self.data.read_data.val();
+        }
+        if self.code.val().get_bits::<3>(8) == self.from_ring.val() {
+            self.value.next = self.ring.read_data.val();
+        }
+        if self.code.val().get_bits::<3>(8) == self.from_x.val() {
+            self.value.next = self.index.q.val();
+        }
+        if self.code.val().get_bits::<3>(8) == self.from_check.val() {
+            self.value.next = self.check.low.val();
+        }
+        if self.sets.val() {
+            self.sum.d.next = self.value.val();
+            if self.code.val().get_bit(11) {
+                self.sum.d.next = self.sum.q.val() ^ self.value.val();
+            }
+        }
+        if self.acts.val() & self.code.val().get_bit(0) {
+            self.index.d.next = self.sum.q.val();
+        }
+        if self.acts.val() & self.code.val().get_bit(1) & self.over.val() {
+            self.index.d.next = self.index.q.val() + self.one.val();
+        }
+
+        // The data, and the words that the engine takes.
+        self.place.next = self.code.val().get_bits::<8>(0);
+        if self.code.val().get_bit(8) {
+            self.place.next = self.index.q.val();
+        }
+        self.stored.next = self.stores.val() & !self.code.val().get_bit(9);
+        self.data.read_address.next = self.place.val();
+        self.data.write_address.next = self.place.val();
+        self.data.write_data.next = self.sum.q.val();
+        self.data.write_bits.next = self.none.val();
+        if self.stored.val() {
+            self.data.write_bits.next = self.all.val();
+        }
+        self.in_words.next = self.stored.val() & (self.place.val().get_bits::<3>(5) == self.of_words.val());
+        self.mask.next = self.byte_0.val();
+        if self.place.val().get_bit(0) {
+            self.mask.next = self.byte_1.val();
+        }
+        if self.place.val().get_bit(1) {
+            self.mask.next = self.byte_2.val();
+            if self.place.val().get_bit(0) {
+                self.mask.next = self.byte_3.val();
+            }
+        }
+        self.words.read_address.next = self.index.q.val().get_bits::<3>(0);
+        self.words.write_address.next = self.place.val().get_bits::<3>(2);
+        self.words.write_data.next = bit_cast::<32, 8>(self.sum.q.val())
+            | (bit_cast::<32, 8>(self.sum.q.val()) << self.at_8.val())
+            | (bit_cast::<32, 8>(self.sum.q.val()) << self.at_16.val())
+            | (bit_cast::<32, 8>(self.sum.q.val()) << self.at_24.val());
+        self.words.write_bits.next = self.no_bytes.val();
+        if self.in_words.val() {
+            self.words.write_bits.next = self.mask.val();
+        }
+
+        // The CRC.
+        self.check.begins.next = self.does.val() & self.code.val().get_bit(4);
+        self.check.step.next = self.steps.val();
+        self.check.feed.next = self.code.val().get_bit(3);
+        self.check.data.next = self.sum.q.val();
+        self.check.word.next = self.facts.val();
+
+        // Bytes that come.
+        self.ring.read_address.next = self.index.q.val();
+        self.ring.write_address.next = self.written.q.val();
+        self.ring.write_data.next = self.received_data.val();
+        self.ring.write_bits.next = self.none.val();
+        if self.received.val() {
+            self.ring.write_bits.next = self.all.val();
+            self.written.d.next = self.written.q.val() + self.one.val();
+        }
+
+        // The engine.
+        if self.room_valid.val() {
+            self.space.d.next = self.room.val();
+        }
+        if self.does.val() & self.code.val().get_bit(6) & !self.code.val().get_bit(7) {
+            self.control.d.next = self.sum.q.val().get_bits::<2>(0);
+            self.clears.d.next = self.code.val().get_bit(9);
+        }
+        self.home_valid.next = self.does.val() & self.code.val().get_bit(6) & self.code.val().get_bit(7);
+        self.kick.next = self.does.val() & self.code.val().get_bit(7) & !self.code.val().get_bit(6);
+        self.broken.next = self.does.val() & self.code.val().get_bit(8);
+        self.clear.next = self.clears.q.val();
+        self.answer_valid.next = self.waits.val() & self.code.val().get_bit(9);
+        self.start_valid.next = self.does.val() & self.code.val().get_bit(10);
+        self.put_valid.next = self.does.val() & self.code.val().get_bit(11);
+        self.put_data.next = self.words.read_data.val();
+        self.enable.next = self.control.q.val().get_bit(0);
+        self.stop.next = self.control.q.val().get_bit(1);
+        self.x.next = self.index.q.val();
+        self.a.next = self.sum.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn machine_synthesizes() {
+        assert_synthesizes(Machine::<6>::new(&carrystep_spec::link::image()), "carrystep_machine");
+    }
+}

@@ -1,0 +1,100 @@
+//! Bytes from the UART's line: eight data bits, low bit first, no parity, one stop bit.
+//!
+//! ```text
+//! line     ^^^\_______/ bit 0 / bit 1 / ... / bit 7 /^^^^^^^^
+//!             |<- B ->|
+//! looks            (start)  ^       ^            ^       ^      the first B + B/2 clocks after the fall, then every B
+//! valid                                             /^\    where the stop bit is high; else there was no byte
+//! ```
+
+use crate::constant::{Literal, Parameter, used_bits};
+use crate::register::{Input, Register};
+use crate::word::Word;
+use rust_hdl::prelude::*;
+
+/// The receiver.
+#[derive(LogicBlock, Default)]
+pub struct UartIn {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// The line, asynchronous; high at rest.
+    pub line: Input<Bit>,
+    /// A byte,
+    pub data: Signal<Out, Word<8>>,
+    /// in this cycle. It stays until the next one begins.
+    pub valid: Signal<Out, Bit>,
+    sync: Register<Bit>,
+    now: Register<Bit>,
+    busy: Register<Bit>,
+    bits: Register<Word<9>>, // a mark comes down behind the byte
+    timer: Register<Word<16>>,
+    due: Signal<Local, Bit>,
+    done: Signal<Local, Bit>,
+    to_first: Parameter<16>,
+    to_next: Parameter<16>,
+    timer_bits: Parameter<16>,
+    one: Literal<16, 1>,
+    mark: Literal<9, 0x100>,
+    top: Literal<9, 0x100>,
+    by_one: Literal<1, 1>,
+}
+
+impl UartIn {
+    /// A receiver for bits of so many clocks, which the build has checked.
+    pub fn new(bit_clocks: u32) -> Self {
+        let bit = u64::from(bit_clocks);
+        let to_first = bit + bit / 2 - 1;
+        Self {
+            sync: Register::new(true),
+            now: Register::new(true),
+            to_first: Parameter::new(to_first),
+            to_next: Parameter::new(bit - 1),
+            timer_bits: Parameter::new(used_bits(to_first)),
+            ..Self::default()
+        }
+    }
+}
+
+impl Logic for UartIn {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, sync, now, busy, bits, timer);
+        self.sync.d.next = self.line.val();
+        self.now.d.next = self.sync.q.val();
+
+        self.due.next = !self.timer.q.val().any();
+        self.done.next = self.busy.q.val() & self.due.val() & self.bits.q.val().get_bit(0);
+        self.timer.d.next = (self.timer.q.val() - self.one.val()) & self.timer_bits.val();
+        if self.due.val() {
+            self.timer.d.next = self.to_next.val();
+        }
+        if self.busy.q.val() & self.due.val() & !self.bits.q.val().get_bit(0) {
+            self.bits.d.next = self.bits.q.val() >> self.by_one.val();
+            if self.now.q.val() {
+                self.bits.d.next = (self.bits.q.val() >> self.by_one.val()) | self.top.val();
+            }
+        }
+        if self.done.val() {
+            self.busy.d.next = false;
+        }
+        if !self.busy.q.val() & !self.now.q.val() {
+            self.busy.d.next = true;
+            self.bits.d.next = self.mark.val();
+            self.timer.d.next = self.to_first.val();
+        }
+
+        self.data.next = self.bits.q.val().get_bits::<8>(1);
+        self.valid.next = self.done.val() & self.now.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn uart_in_synthesizes() {
+        assert_synthesizes(UartIn::new(16), "carrystep_uart_in");
+    }
+}

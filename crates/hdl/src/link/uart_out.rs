@@ -1,0 +1,88 @@
+//! Bytes to the UART's line.
+//!
+//! ```text
+//! take     /^\_______________________________________________
+//! line     ^^^\_______/ bit 0 / bit 1 / ... / bit 7 /^^^^^^^^   start, low bit first, stop
+//!             |<- B ->|
+//! ```
+
+use crate::constant::{Literal, Parameter, used_bits};
+use crate::register::{Input, Register};
+use crate::word::{Word, bit_cast};
+use rust_hdl::prelude::*;
+
+/// The transmitter.
+#[derive(LogicBlock, Default)]
+pub struct UartOut {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// A byte,
+    pub data: Input<Word<8>>,
+    /// which is offered until it is taken.
+    pub valid: Input<Bit>,
+    /// The offered byte is taken in this cycle.
+    pub take: Signal<Out, Bit>,
+    /// The line.
+    pub line: Signal<Out, Bit>,
+    pin: Register<Bit>,      // `line`
+    bits: Register<Word<9>>, // the stop bit comes down behind the byte
+    timer: Register<Word<16>>,
+    due: Signal<Local, Bit>,
+    taken: Signal<Local, Bit>,
+    bit_clocks: Parameter<16>,
+    timer_bits: Parameter<16>,
+    one: Literal<16, 1>,
+    stop: Literal<9, 0x100>,
+    by_one: Literal<1, 1>,
+}
+
+impl UartOut {
+    /// A transmitter for bits of so many clocks, which the build has checked.
+    pub fn new(bit_clocks: u32) -> Self {
+        let last = u64::from(bit_clocks) - 1;
+        Self {
+            pin: Register::new(true),
+            bit_clocks: Parameter::new(last),
+            timer_bits: Parameter::new(used_bits(last)),
+            ..Self::default()
+        }
+    }
+}
+
+impl Logic for UartOut {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, pin, bits, timer);
+        self.due.next = !self.timer.q.val().any();
+        self.taken.next = self.due.val() & !self.bits.q.val().any() & self.valid.val();
+
+        // At rest the timer stands at zero, so that a byte begins at once.
+        if !self.due.val() {
+            self.timer.d.next = (self.timer.q.val() - self.one.val()) & self.timer_bits.val();
+        }
+        if self.due.val() & self.bits.q.val().any() {
+            self.timer.d.next = self.bit_clocks.val();
+            self.bits.d.next = self.bits.q.val() >> self.by_one.val();
+            self.pin.d.next = self.bits.q.val().get_bit(0);
+        }
+        if self.taken.val() {
+            self.timer.d.next = self.bit_clocks.val();
+            self.bits.d.next = bit_cast::<9, 8>(self.data.val()) | self.stop.val();
+            self.pin.d.next = false;
+        }
+
+        self.take.next = self.taken.val();
+        self.line.next = self.pin.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn uart_out_synthesizes() {
+        assert_synthesizes(UartOut::new(16), "carrystep_uart_out");
+    }
+}
