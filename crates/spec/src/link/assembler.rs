@@ -1,8 +1,6 @@
 //! Turns a program with names into what lies in the link machine's memories.
 
-use super::machine::{
-    ACTS, Code, Condition, INDEXED, GOES, INX, JUMPS, SETS, STORES, Source, TAX, UNLESS, WAIT, XOR,
-};
+use super::machine::{ACTS, Code, Condition, GOES, INDEXED, INX, JUMPS, SETS, STORES, Source, TAX, UNLESS, WAIT, XOR};
 use std::collections::BTreeMap;
 
 /// Words of the program memory, and bytes of the data memory.
