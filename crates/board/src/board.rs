@@ -27,6 +27,7 @@ pub struct Board {
     ear: Ear,
     /// What the switches drive, with the polarity of their pins.
     pins: EngineInputs,
+    /// The first load.
     started: Option<u64>,
 }
 
@@ -90,9 +91,11 @@ impl Board {
         self.pins.limit_max = switches.limit_max ^ low(guard.limits_low);
     }
 
-    /// Goes on to this cycle; `to` hears of the pins.
+    /// Goes on to this cycle; `to` hears of the pins. It stops once on its way, in the cycle of the first load: until
+    /// then nothing was to be heard.
     pub fn run(&mut self, end: u64, to: &mut impl Edges) {
-        while self.cycle() < end {
+        let started = self.started;
+        while self.cycle() < end && self.started == started {
             let rx = self.speaker.level(self.cycle());
             if self.leap(rx, end - self.cycle(), to) == 0 {
                 self.clock(rx, to);
@@ -104,14 +107,14 @@ impl Board {
     /// Passes clocks in which the link only waits; how many they were.
     fn leap(&mut self, rx: bool, most: u64, to: &mut impl Edges) -> u64 {
         let quiet = self.link.quiet(rx).min(self.speaker.stays(self.cycle())).min(most);
-        // An axis that waits for its limit says its position in each of its turns.
-        if quiet == 0 || self.engine.core().waits_for_limits() {
+        if quiet == 0 {
             return 0;
         }
         let inputs = self.inputs(&self.link.outputs());
         let clocks = self.engine.leap(&inputs, quiet, to);
         let core = self.engine.core();
-        self.link.pass(clocks, rx, core.answers_before(clocks), |axis, item| core.item(axis, item));
+        let turns = core.answers_before(clocks);
+        self.link.pass(clocks, rx, (turns, core.homing()), |axis, item| core.item(axis, item));
         clocks
     }
 

@@ -58,7 +58,8 @@ fn connected(baud: u32) -> (End, Host<End, End>) {
     let uart = Uart::new(CLOCK_HZ, baud).unwrap();
     let end = End::new(uart);
     let id = uart.build_id(&build());
-    let host = Host::connect(end.clone(), end.clone(), Some(id.0), Patience::default()).unwrap();
+    let host =
+        Host::connect(end.clone(), end.clone(), Some(id.0), Patience { change: 200, ..Patience::default() }).unwrap();
     (end, host)
 }
 

@@ -172,12 +172,12 @@ impl Link {
         self.receiver.quiet(rx).min(self.transmitter.quiet(waits == Waits::ToSend))
     }
 
-    /// So many clocks of [`Link::quiet`] have passed, in which the engine had so many turns of axes; `said` is what it
-    /// says of an axis and an item.
-    pub fn pass(&mut self, clocks: u64, rx: bool, turns: u64, said: impl Fn(u8, u8) -> u32) {
+    /// So many clocks of [`Link::quiet`] have passed, in which the engine had so many turns of axes, and these axes waited
+    /// for their limit; `said` is what it says of an axis and an item.
+    pub fn pass(&mut self, clocks: u64, rx: bool, (turns, homing): (u64, u8), said: impl Fn(u8, u8) -> u32) {
         self.machine.pass(clocks);
         self.receiver.pass(clocks, rx);
         self.transmitter.pass(clocks);
-        self.facts.pass(turns, said);
+        self.facts.pass(turns, homing, said);
     }
 }

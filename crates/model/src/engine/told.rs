@@ -1,6 +1,7 @@
 //! What the engine tells whoever carries its host's frames: rooms and registers, each at its time.
 
-use super::Engine;
+use super::lane::Lane;
+use super::{Engine, bits};
 use carrystep_spec::engine::{PUT_BEAT, TURN};
 
 /// The beat of a turn in which `get` is answered.
@@ -31,9 +32,18 @@ impl Engine {
         before(now) - before(now - clocks)
     }
 
-    /// An axis waits for its limit.
-    pub fn waits_for_limits(&self) -> bool {
-        self.lanes.iter().any(|lane| lane.homing.waits)
+    /// An axis whose move goes on has no more than one segment left to go on with.
+    pub fn is_hungry(&self) -> bool {
+        let goes_on = |lane: &Lane| {
+            let last = lane.queue.back().or(lane.running.as_ref());
+            last.is_some_and(|segment| !segment.last) && lane.queue.len() < 2
+        };
+        self.lanes.iter().any(|lane| lane.running.is_some() && goes_on(lane))
+    }
+
+    /// The axes that wait for their limit, a bit each.
+    pub fn homing(&self) -> u8 {
+        bits(&self.lanes, |lane| lane.homing.waits)
     }
 
     /// An item of an axis: 0 1 P, low and high, 2 position, 3 discarded steps; of an axis that there is not, 0.
