@@ -94,7 +94,6 @@ fn capture(desk: &mut Desk, machine: &Machine, build: &EngineBuild, out: &mut Ou
     }
     // The last of its outputs is told where the next cycle begins.
     replay.reach(desk.board.cycle() + 1);
-    drop(replay);
     Ok(feed.end(desk.board.cycle())?)
 }
 
