@@ -163,10 +163,10 @@ impl<const N: usize> Logic for UartLink<N> {
     fn update(&mut self) {
         clock!(self, clock, uart_in, uart_out, machine, facts);
         self.uart_in.line.next = self.rx.val();
-        self.machine.received.next = self.uart_in.byte_valid.val();
-        self.machine.byte.next = self.uart_in.byte.val();
-        self.uart_out.byte.next = self.machine.answer.val();
-        self.uart_out.byte_valid.next = self.machine.answer_valid.val();
+        self.machine.received.next = self.uart_in.valid.val();
+        self.machine.received_data.next = self.uart_in.data.val();
+        self.uart_out.data.next = self.machine.answer.val();
+        self.uart_out.valid.next = self.machine.answer_valid.val();
         self.machine.answer_take.next = self.uart_out.take.val();
         self.tx.next = self.uart_out.line.val();
 
@@ -188,7 +188,7 @@ impl<const N: usize> Logic for UartLink<N> {
         self.kick.next = self.machine.kick.val();
         self.enable.next = self.machine.enable.val();
 
-        self.machine.turn.next = self.get_valid.val();
+        self.machine.scanned.next = self.facts.scanned.val();
         self.machine.fault.next = self.fault.val();
         self.machine.halted.next = self.halted.val();
         self.machine.idle.next = self.idle.val();

@@ -17,11 +17,11 @@ pub struct Check {
     /// The clock.
     pub clock: Input<Clock>,
     /// All ones.
-    pub begin: Input<Bit>,
+    pub begins: Input<Bit>,
     /// Eight bits further,
     pub step: Input<Bit>,
     /// with this byte fed to it,
-    pub byte: Input<Word<8>>,
+    pub data: Input<Word<8>>,
     /// or, if this is not set, down to its next byte.
     pub feed: Input<Bit>,
     /// The eighth of eight clocks.
@@ -31,7 +31,7 @@ pub struct Check {
     sum: Register<Word<32>>,
     count: Register<Word<3>>,
     shifted: Signal<Local, Word<8>>,
-    bit: Signal<Local, Bit>,
+    data_bit: Signal<Local, Bit>,
     feedback: Signal<Local, Bit>,
     one: Literal<3, 1>,
     last: Literal<3, 7>,
@@ -44,9 +44,9 @@ impl Logic for Check {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, sum, count);
-        self.shifted.next = self.byte.val() >> self.count.q.val();
-        self.bit.next = self.shifted.val().get_bit(0);
-        self.feedback.next = self.feed.val() & (self.sum.q.val().get_bit(0) ^ self.bit.val());
+        self.shifted.next = self.data.val() >> self.count.q.val();
+        self.data_bit.next = self.shifted.val().get_bit(0);
+        self.feedback.next = self.feed.val() & (self.sum.q.val().get_bit(0) ^ self.data_bit.val());
         if self.step.val() {
             self.count.d.next = self.count.q.val() + self.one.val();
             self.sum.d.next = self.sum.q.val() >> self.by_one.val();
@@ -54,7 +54,7 @@ impl Logic for Check {
                 self.sum.d.next = (self.sum.q.val() >> self.by_one.val()) ^ self.polynomial.val();
             }
         }
-        if self.begin.val() {
+        if self.begins.val() {
             self.sum.d.next = self.ones.val();
         }
         self.over.next = self.count.q.val() == self.last.val();

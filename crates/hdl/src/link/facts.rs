@@ -35,11 +35,14 @@ pub struct Facts {
     pub latch: Input<Bit>,
     /// namely of this one.
     pub latch_axis: Input<Word<3>>,
+    /// The last item of the last axis is.
+    pub scanned: Signal<Out, Bit>,
     words: Memory<7, 32>,
     asked: Register<Word<5>>,
     place: Signal<Local, Word<7>>,
     bits: Signal<Local, Word<32>>,
     one: Literal<5, 1>,
+    last_item: Literal<5, 31>,
     at_3: Literal<3, 3>,
     of_axes: Literal<7, 0x40>,
     latched: Literal<7, 0x44>,
@@ -64,6 +67,7 @@ impl Logic for Facts {
         if self.get_valid.val() {
             self.asked.d.next = self.asked.q.val() + self.one.val();
         }
+        self.scanned.next = self.get_valid.val() & (self.asked.q.val() == self.last_item.val());
         self.get_item.next = self.asked.q.val().get_bits::<2>(0);
         self.get_axis.next = self.asked.q.val().get_bits::<3>(2);
 

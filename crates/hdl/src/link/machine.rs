@@ -21,7 +21,7 @@ pub struct Machine<const N: usize> {
     /// A byte was received,
     pub received: Input<Bit>,
     /// this one.
-    pub byte: Input<Word<8>>,
+    pub received_data: Input<Word<8>>,
     /// A byte of the answer,
     pub answer: Signal<Out, Word<8>>,
     /// which is offered until it is taken.
@@ -56,8 +56,8 @@ pub struct Machine<const N: usize> {
     pub enable: Signal<Out, Bit>,
     /// All axes are to stop.
     pub stop: Signal<Out, Bit>,
-    /// A turn of an axis is nearly over.
-    pub turn: Input<Bit>,
+    /// All items of all axes have been asked for.
+    pub scanned: Input<Bit>,
     /// A stop has been called.
     pub fault: Input<Bit>,
     /// No axis moves any more.
@@ -99,7 +99,8 @@ pub struct Machine<const N: usize> {
     sets: Signal<Local, Bit>,
     stores: Signal<Local, Bit>,
     jumps: Signal<Local, Bit>,
-    does: Signal<Local, Bit>,
+    acts: Signal<Local, Bit>,
+    does: Signal<Local, Bit>, // and neither sets nor stores
     waits: Signal<Local, Bit>,
     waited: Signal<Local, Bit>,
     steps: Signal<Local, Bit>,
@@ -114,6 +115,9 @@ pub struct Machine<const N: usize> {
     empty: Signal<Local, Bit>,
     stored: Signal<Local, Bit>,
     in_words: Signal<Local, Bit>,
+    goes: Signal<Local, Bit>,     // a byte to the answer,
+    ends: Signal<Local, Bit>,     // its last one
+    sent_all: Signal<Local, Bit>, // which is taken
     mask: Signal<Local, Word<32>>,
     fetch: Literal<2, 0>,
     execute: Literal<2, 2>,
@@ -134,6 +138,7 @@ pub struct Machine<const N: usize> {
     byte_3: Literal<32, 0xff00_0000>,
     no_bytes: Literal<32, 0>,
     none: Literal<8, 0>,
+    no_code: Literal<16, 0>,
     all: Literal<8, 0xff>,
     nothing: Literal<9, 0>,
     everything: Literal<9, 0x1ff>,
@@ -181,12 +186,16 @@ impl<const N: usize> Logic for Machine<N> {
 
         // The instruction, and what it does.
         self.program.read_address.next = self.pc.q.val();
+        self.program.write_address.next = self.none.val();
+        self.program.write_data.next = self.no_code.val();
+        self.program.write_bits.next = self.no_code.val();
         self.code.next = self.program.read_data.val();
         self.executes.next = self.stage.q.val() == self.execute.val();
         self.sets.next = self.executes.val() & self.code.val().get_bit(15);
         self.stores.next = self.executes.val() & self.code.val().get_bit(14);
         self.jumps.next = self.code.val().get_bit(13);
-        self.does.next = self.executes.val() & self.code.val().get_bit(12);
+        self.acts.next = self.executes.val() & self.code.val().get_bit(12);
+        self.does.next = self.acts.val() & !self.code.val().get_bit(15) & !self.code.val().get_bit(14);
         self.steps.next = self.does.val() & self.code.val().get_bit(2);
         self.waits.next = self.does.val() & self.code.val().get_bit(5);
         self.state.next = bit_cast::<8, 3>(self.cause.val()) << self.at_5.val();
@@ -205,7 +214,7 @@ impl<const N: usize> Logic for Machine<N> {
         if self.armed.val() {
             self.state.next = self.state.val() | self.bit_4.val();
         }
-        self.waited.next = self.turn.val();
+        self.waited.next = self.scanned.val();
         if self.code.val().get_bit(11) {
             self.waited.next = self.put_ready.val() | self.fault.val();
         }
@@ -293,10 +302,10 @@ impl<const N: usize> Logic for Machine<N> {
                 self.sum.d.next = self.sum.q.val() ^ self.value.val();
             }
         }
-        if self.does.val() & self.code.val().get_bit(0) {
+        if self.acts.val() & self.code.val().get_bit(0) {
             self.index.d.next = self.sum.q.val();
         }
-        if self.does.val() & self.code.val().get_bit(1) {
+        if self.acts.val() & self.code.val().get_bit(1) & self.over.val() {
             self.index.d.next = self.index.q.val() + self.one.val();
         }
 
@@ -336,41 +345,46 @@ impl<const N: usize> Logic for Machine<N> {
         }
 
         // The CRC.
-        self.check.begin.next = self.does.val() & self.code.val().get_bit(4);
+        self.check.begins.next = self.does.val() & self.code.val().get_bit(4);
         self.check.step.next = self.steps.val();
         self.check.feed.next = self.code.val().get_bit(3);
-        self.check.byte.next = self.sum.q.val();
+        self.check.data.next = self.sum.q.val();
 
         // Bytes that come.
         self.ring.read_address.next = self.index.q.val();
         self.ring.write_address.next = self.written.q.val();
-        self.ring.write_data.next = self.byte.val();
+        self.ring.write_data.next = self.received_data.val();
         self.ring.write_bits.next = self.none.val();
         if self.received.val() {
             self.ring.write_bits.next = self.all.val();
             self.written.d.next = self.written.q.val() + self.one.val();
         }
 
-        // Bytes that go.
-        self.sent.write_address.next = self.index.q.val().get_bits::<5>(0);
-        self.sent.write_data.next = bit_cast::<9, 8>(self.sum.q.val());
-        self.sent.write_bits.next = self.nothing.val();
-        if self.stores.val() & self.code.val().get_bit(9) {
-            self.sent.write_bits.next = self.everything.val();
-            if self.code.val().get_bit(10) {
-                self.sent.write_data.next = bit_cast::<9, 8>(self.sum.q.val()) | self.last.val();
-                self.sending.d.next = true;
-            }
-        }
+        // Bytes that go: written one by one, then read one by one.
+        self.goes.next = self.stores.val() & self.code.val().get_bit(9);
+        self.ends.next = self.goes.val() & self.code.val().get_bit(10);
         self.sent.read_address.next = self.sends.q.val();
+        self.sent.write_address.next = self.sends.q.val();
+        self.sent.write_data.next = bit_cast::<9, 8>(self.sum.q.val());
+        if self.ends.val() {
+            self.sent.write_data.next = bit_cast::<9, 8>(self.sum.q.val()) | self.last.val();
+            self.sending.d.next = true;
+        }
+        self.sent.write_bits.next = self.nothing.val();
+        if self.goes.val() {
+            self.sent.write_bits.next = self.everything.val();
+        }
         self.answer.next = self.sent.read_data.val().get_bits::<8>(0);
         self.answer_valid.next = self.sending.q.val();
-        if self.answer_take.val() {
+        self.sent_all.next = self.answer_take.val() & self.sent.read_data.val().get_bit(8);
+        if self.sent_all.val() {
+            self.sending.d.next = false;
+        }
+        if self.goes.val() | self.answer_take.val() {
             self.sends.d.next = self.sends.q.val() + self.one_sent.val();
-            if self.sent.read_data.val().get_bit(8) {
-                self.sends.d.next = self.first.val();
-                self.sending.d.next = false;
-            }
+        }
+        if self.ends.val() | self.sent_all.val() {
+            self.sends.d.next = self.first.val();
         }
 
         // The engine.

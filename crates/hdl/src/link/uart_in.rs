@@ -4,7 +4,7 @@
 //! line     ^^^\_______/ bit 0 / bit 1 / ... / bit 7 /^^^^^^^^
 //!             |<- B ->|
 //! looks            (start)  ^       ^            ^       ^      the first B + B/2 clocks after the fall, then every B
-//! byte_valid                                             /^\    where the stop bit is high; else there was no byte
+//! valid                                             /^\    where the stop bit is high; else there was no byte
 //! ```
 
 use crate::constant::{Literal, Parameter, used_bits};
@@ -20,9 +20,9 @@ pub struct UartIn {
     /// The line, asynchronous; high at rest.
     pub line: Input<Bit>,
     /// A byte,
-    pub byte: Signal<Out, Word<8>>,
+    pub data: Signal<Out, Word<8>>,
     /// in this cycle. It stays until the next one begins.
-    pub byte_valid: Signal<Out, Bit>,
+    pub valid: Signal<Out, Bit>,
     sync: Register<Bit>,
     now: Register<Bit>,
     busy: Register<Bit>,
@@ -83,8 +83,8 @@ impl Logic for UartIn {
             self.timer.d.next = self.to_first.val();
         }
 
-        self.byte.next = self.bits.q.val().get_bits::<8>(1);
-        self.byte_valid.next = self.done.val() & self.now.q.val();
+        self.data.next = self.bits.q.val().get_bits::<8>(1);
+        self.valid.next = self.done.val() & self.now.q.val();
     }
 }
 

@@ -17,14 +17,14 @@ pub struct UartOut {
     /// The clock.
     pub clock: Input<Clock>,
     /// A byte,
-    pub byte: Input<Word<8>>,
+    pub data: Input<Word<8>>,
     /// which is offered until it is taken.
-    pub byte_valid: Input<Bit>,
+    pub valid: Input<Bit>,
     /// The offered byte is taken in this cycle.
     pub take: Signal<Out, Bit>,
     /// The line.
     pub line: Signal<Out, Bit>,
-    pin: Register<Bit>, // `line`
+    pin: Register<Bit>,      // `line`
     bits: Register<Word<9>>, // the stop bit comes down behind the byte
     timer: Register<Word<16>>,
     due: Signal<Local, Bit>,
@@ -54,7 +54,7 @@ impl Logic for UartOut {
     fn update(&mut self) {
         dff_setup!(self, clock, pin, bits, timer);
         self.due.next = !self.timer.q.val().any();
-        self.taken.next = self.due.val() & !self.bits.q.val().any() & self.byte_valid.val();
+        self.taken.next = self.due.val() & !self.bits.q.val().any() & self.valid.val();
 
         // At rest the timer stands at zero, so that a byte begins at once.
         if !self.due.val() {
@@ -67,7 +67,7 @@ impl Logic for UartOut {
         }
         if self.taken.val() {
             self.timer.d.next = self.bit_clocks.val();
-            self.bits.d.next = bit_cast::<9, 8>(self.byte.val()) | self.stop.val();
+            self.bits.d.next = bit_cast::<9, 8>(self.data.val()) | self.stop.val();
             self.pin.d.next = false;
         }
 

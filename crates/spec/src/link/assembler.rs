@@ -1,6 +1,8 @@
 //! Turns a program with names into what lies in the link machine's memories.
 
-use super::machine::{Code, Condition, DOES, INDEXED, JUMPS, LAST, SETS, STORES, Source, TO_ANSWER, UNLESS, XOR};
+use super::machine::{
+    ACTS, Code, Condition, INDEXED, INX, JUMPS, LAST, SETS, STORES, Source, TAX, TO_ANSWER, UNLESS, XOR,
+};
 use std::collections::BTreeMap;
 
 /// Words of the program memory, and bytes of the data memory.
@@ -22,10 +24,13 @@ pub(super) struct Assembler {
     labels: BTreeMap<&'static str, usize>,
     jumps: Vec<(usize, &'static str)>,
     constants: BTreeMap<u8, u8>,
+    table: [u8; 4],
 }
 
-/// Constants lie from the top of the data memory downward.
-const TOP: u8 = 0xff;
+/// Bytes that a loop compares lie at the top of the data memory, so that its end is X7 no more.
+const TABLE: u8 = 0xfc;
+/// Constants lie downward from there.
+const TOP: u8 = TABLE - 1;
 
 impl Assembler {
     /// The next instruction is called so.
@@ -38,6 +43,13 @@ impl Assembler {
     fn constant(&mut self, value: u8) -> u8 {
         let next = TOP - self.constants.len() as u8;
         *self.constants.entry(value).or_insert(next)
+    }
+
+    /// X <= where these bytes lie, up to the end of the memory; takes A.
+    pub(super) fn index_table(&mut self, bytes: [u8; 4]) {
+        self.table = bytes;
+        self.load_number(TABLE);
+        self.acts(TAX);
     }
 
     /// A <= the byte at this address.
@@ -56,9 +68,29 @@ impl Assembler {
         self.program.push(SETS | (source as Code) << 8 | Code::from(operand));
     }
 
+    /// A <= this byte at X, then X <= X + 1.
+    pub(super) fn next(&mut self, source: Source) {
+        self.program.push(SETS | (source as Code) << 8 | ACTS | INX);
+    }
+
+    /// A <= X.
+    pub(super) fn load_x(&mut self) {
+        self.load_from(Source::X, 0);
+    }
+
+    /// A <= X, X <= A.
+    pub(super) fn swap(&mut self) {
+        self.program.push(SETS | (Source::X as Code) << 8 | ACTS | TAX);
+    }
+
     /// A <= A xor the byte at this address.
     pub(super) fn xor(&mut self, address: u8) {
         self.program.push(SETS | XOR | Code::from(address));
+    }
+
+    /// A <= A xor the byte at X.
+    pub(super) fn xor_at_x(&mut self) {
+        self.program.push(SETS | XOR | (Source::DataAtX as Code) << 8);
     }
 
     /// A <= A xor this number.
@@ -72,19 +104,19 @@ impl Assembler {
         self.program.push(STORES | Code::from(address));
     }
 
-    /// The byte at X <= A.
-    pub(super) fn store_at_x(&mut self) {
-        self.program.push(STORES | INDEXED);
+    /// The byte at X <= A, then X <= X + 1.
+    pub(super) fn store_next(&mut self) {
+        self.program.push(STORES | INDEXED | ACTS | INX);
     }
 
-    /// Byte X of the answer <= A; the last one sends it.
+    /// The next byte of the answer <= A; the last one sends it.
     pub(super) fn answer(&mut self, last: bool) {
         self.program.push(STORES | TO_ANSWER | if last { LAST } else { 0 });
     }
 
     /// Does all of this.
-    pub(super) fn does(&mut self, what: Code) {
-        self.program.push(DOES | what);
+    pub(super) fn acts(&mut self, what: Code) {
+        self.program.push(ACTS | what);
     }
 
     /// Goes on there.
@@ -106,17 +138,17 @@ impl Assembler {
         }
     }
 
-    /// The finished program; bytes at addresses below the constants' are as given, or 0.
+    /// The finished program.
     pub(super) fn finish(mut self) -> Image {
         for (at, label) in std::mem::take(&mut self.jumps) {
             self.program[at] |= self.labels[label] as Code;
         }
-        eprintln!("{} instructions", self.program.len());
-        self.program.truncate(SIZE);
+        assert!(self.program.len() <= SIZE, "{} instructions are too many", self.program.len());
         let mut data = vec![0; SIZE];
         for (&value, &address) in &self.constants {
             data[usize::from(address)] = value;
         }
+        data[TABLE.into()..].copy_from_slice(&self.table);
         Image { program: self.program, data }
     }
 }

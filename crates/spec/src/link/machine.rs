@@ -1,17 +1,19 @@
 //! The little machine at the gateware's end of the link: its instructions, as they lie in its program memory.
 //!
-//! A byte comes every hundred clocks or so: time enough for a program, which takes a block RAM, where the
-//! same talk as gates takes hundreds of cells. It has an accumulator A, an index X, and no arithmetic but exclusive or and X + 1.
+//! A byte comes every hundred clocks or so: time enough for a program, which takes a block RAM, where the same talk as
+//! gates takes hundreds of cells. It has an accumulator A, an index X, and no arithmetic but exclusive or and X + 1.
 //!
 //! ```text
 //! clock     | fetch | address | execute |       three clocks an instruction; a wait and a CRC step hold the third
 //!
-//! bit    15    14     13    12   11       10 9 8       7 .. 0
-//!        sets  stores jumps does xor      source       operand      A <= value, or A xor value
-//!                                .        last tx X    operand      data[operand or X] <= A, or the answer's
-//!                                invert   condition    target       pc <= target
-//!                                put      start -     broken   wait .. tax: what the operand's bits do
+//! bit    15     14     13     12     11       10 9 8       7 .. 0
+//!        sets                        xor      source       operand      A <= value, or A xor value
+//!               stores                        last ans X   operand      data[operand or X] <= A; or the answer's next byte
+//!                      jumps         invert   condition    target       pc <= target
+//!                             acts   put      start cl br  wait .. tax  what these bits do
 //! ```
+//!
+//! Of `acts` the two that change X go together with a value or a store whose operand says nothing else.
 
 /// One instruction, encoded.
 pub type Code = u16;
@@ -23,15 +25,15 @@ pub const STORES: Code = 1 << 14;
 /// The program goes on elsewhere, if the condition holds.
 pub const JUMPS: Code = 1 << 13;
 /// Something is done.
-pub const DOES: Code = 1 << 12;
+pub const ACTS: Code = 1 << 12;
 
 /// Of [`SETS`]: the value is xored to A.
 pub const XOR: Code = 1 << 11;
-/// Of [`SETS`] from data and of [`STORES`]: at X, not at the operand.
+/// Of [`STORES`]: at X, not at the operand.
 pub const INDEXED: Code = 1 << 8;
-/// Of [`STORES`]: into the answer.
+/// Of [`STORES`]: it is the next byte of the answer.
 pub const TO_ANSWER: Code = 1 << 9;
-/// With [`TO_ANSWER`]: it is the last byte; the answer goes.
+/// With [`TO_ANSWER`]: it is the last one; the answer goes.
 pub const LAST: Code = 1 << 10;
 /// Of [`JUMPS`]: if the condition does not hold.
 pub const UNLESS: Code = 1 << 11;
@@ -51,9 +53,18 @@ pub enum Source {
     Crc = 4,
     /// The facts at X, the byte of the operand (0 is the lowest).
     Facts = 5,
-    /// The engine: 0 state, 1 room, 2 culprits, 3 homing.
+    /// The engine, what the operand says ([`STATE`] and so on).
     Engine = 6,
 }
+
+/// Of [`Source::Engine`]: byte 3 of an answer.
+pub const STATE: u8 = 0;
+/// The room that the axis of X had in its last turn.
+pub const ROOM: u8 = 1;
+/// The axes that a stop came from.
+pub const CULPRITS: u8 = 2;
+/// The axes that wait for their limit.
+pub const HOMING: u8 = 3;
 
 /// What a jump asks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,9 +87,9 @@ pub enum Condition {
     Startable = 7,
 }
 
-/// Of [`DOES`]: X <= A.
+/// X <= A.
 pub const TAX: Code = 1 << 0;
-/// X <= X + 1.
+/// X <= X + 1, when the instruction is over.
 pub const INX: Code = 1 << 1;
 /// The CRC goes on by eight bits.
 pub const CRC_STEP: Code = 1 << 2;
@@ -86,20 +97,24 @@ pub const CRC_STEP: Code = 1 << 2;
 pub const CRC_FEED: Code = 1 << 3;
 /// The CRC begins.
 pub const CRC_BEGIN: Code = 1 << 4;
-/// Not over before a turn of an axis is, or before what is offered is taken.
+/// Not over before what is offered is taken, or the engine has a fault; where nothing is offered: before the
+/// scan of all axes' items comes round ([`SCAN`] turns).
 pub const WAIT: Code = 1 << 5;
-/// The control register's bit that clears.
-pub const CLEAR_BIT: u8 = 1 << 2;
 /// A is the control register; with [`KICK`] the axes that wait for their limit.
 pub const CONTROL: Code = 1 << 6;
 /// The host was heard of.
 pub const KICK: Code = 1 << 7;
 /// The segment protocol is broken.
 pub const BROKEN: Code = 1 << 8;
+/// With [`CONTROL`]: the engine shall clear, until the control register is written anew.
+pub const CLEARING: Code = 1 << 9;
 /// A start of the axes of A is offered.
 pub const STARTS: Code = 1 << 10;
 /// A word of a segment is offered: X is its place, axis 3 | word 3.
 pub const PUTS: Code = 1 << 11;
+
+/// Turns of axes in which all items of all axes have been asked for once.
+pub const SCAN: u32 = 32;
 
 /// Where the data memory keeps a request: its sequence number, then its address.
 pub const REQUEST: u8 = 0x1e;
