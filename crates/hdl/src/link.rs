@@ -12,6 +12,7 @@
 //!
 //! A request lies in block RAM until its CRC has come; only then a word of it reaches the engine.
 
+use crate::HdlError;
 use crate::register::Input;
 use crate::word::Word;
 use carrystep_spec::EngineBuild;
@@ -19,7 +20,8 @@ use carrystep_spec::link::registers::{
     AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLOCK_HZ, IDENTITY, IDENTITY_VALUE, PHASES, PROTOCOL, PROTOCOL_VERSION, TICK_NS,
     WATCHDOG_TICKS,
 };
-use carrystep_spec::link::{BuildId, image};
+use carrystep_spec::engine::EngineError;
+use carrystep_spec::link::{Uart, image};
 use rust_hdl::prelude::*;
 
 pub mod check;
@@ -110,10 +112,30 @@ pub struct UartLink<const N: usize> {
     facts: Facts,
 }
 
+/// The link of this build, which has as many axes as the build.
+///
+/// # Errors
+/// [`HdlError::Engine`] where a parameter of the build cannot be.
+pub fn uart_link(build: &EngineBuild, uart: Uart) -> Result<Box<dyn Block>, HdlError> {
+    build.check()?;
+    Ok(match build.axes() {
+        1 => Box::new(UartLink::<1>::new(build, uart)),
+        2 => Box::new(UartLink::<2>::new(build, uart)),
+        3 => Box::new(UartLink::<3>::new(build, uart)),
+        4 => Box::new(UartLink::<4>::new(build, uart)),
+        5 => Box::new(UartLink::<5>::new(build, uart)),
+        6 => Box::new(UartLink::<6>::new(build, uart)),
+        7 => Box::new(UartLink::<7>::new(build, uart)),
+        8 => Box::new(UartLink::<8>::new(build, uart)),
+        axes => return Err(EngineError::Axes(axes).into()),
+    })
+}
+
 impl<const N: usize> UartLink<N> {
-    /// The link of this build, with bits of so many clocks on its line.
-    pub fn new(build: &EngineBuild, line: &str, bit_clocks: u32) -> Self {
-        let [low, high] = BuildId::new(build, line).halves();
+    /// The link of this build, with this line.
+    pub fn new(build: &EngineBuild, uart: Uart) -> Self {
+        let bit_clocks = uart.bit_clocks();
+        let [low, high] = uart.build_id(build).halves();
         let time = &build.timebase;
         let facts = [
             (IDENTITY, IDENTITY_VALUE),
@@ -197,9 +219,7 @@ mod tests {
     fn link_synthesizes() {
         let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-        let mut link = UartLink::<6>::new(&EngineBuild::minimal(&build, 1), "uart", 16);
-        assert_synthesizes(UartLink::<6>::new(&EngineBuild::minimal(&build, 1), "uart", 16), "carrystep_link");
-        link.connect_all();
-        std::fs::write("/tmp/uart_link2.v", generate_verilog(&link)).unwrap();
+        let uart = Uart::new(48_000_000, 3_000_000).unwrap();
+        assert_synthesizes(UartLink::<6>::new(&EngineBuild::minimal(&build, 1), uart), "carrystep_link");
     }
 }

@@ -11,10 +11,12 @@ mod build_id;
 pub mod machine;
 mod program;
 pub mod registers;
+mod uart;
 
 pub use assembler::Image;
 pub use build_id::BuildId;
 pub use program::image;
+pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};
 
 use crate::engine::{CAUSES, Cause};
 
