@@ -1,5 +1,6 @@
 //! `--json` is one document whose names do not change: scripts depend on them.
 
+use crate::boards::{Peer, Port, folder};
 use crate::command::{Folder, GOOD};
 use serde_json::Value;
 
@@ -29,6 +30,12 @@ const PLAN: &str = "passed tick_ns moves
     moves[].axes[].segments[].a moves[].axes[].segments[].j moves[].axes[].segments[].last";
 
 const RUN: &str = "passed core level clocks run_s faults positions files";
+
+const STATUS: &str = "passed port build clock_hz tick_ns phases watchdog_ticks ready idle armed fault halted cause
+    axes axes[].axis axes[].position axes[].discarded axes[].homing axes[].culprit";
+
+const DRIVEN: &str = "passed port build ended cause planned_s run_s
+    axes axes[].axis axes[].before axes[].position axes[].steps_planned";
 
 const BOARDS: &str = "passed tried_on_hardware boards boards[].name boards[].title boards[].family
     boards[].parts boards[].parts[].name boards[].parts[].package boards[].parts[].block_rams
@@ -106,6 +113,18 @@ fn boards_keep_their_names() {
     let one = document(&folder, "boards icebreaker", 0, &[BOARDS, ICE40]);
     assert_eq!(one["boards"][0]["clocks"][0]["clock_hz"], 37_500_000);
     assert_eq!(one["tried_on_hardware"], false);
+}
+
+#[test]
+fn what_is_told_of_a_board_keeps_its_names() {
+    let folder = folder();
+    // It counts a step a tick, so a drive along it ends somewhere else.
+    let port = Port::new(Peer::Device(Box::new(Peer::board())));
+    document(&folder, &format!("status --port {}", port.name), 0, &[STATUS]);
+    document(&folder, &format!("stop --port {}", port.name), 0, &[STATUS]);
+    let run = document(&folder, &format!("run move.toml --port {}", port.name), 1, &[DRIVEN]);
+    assert_eq!((&run["ended"], &run["axes"][0]["steps_planned"]), (&"done".into(), &10.into()));
+    port.end();
 }
 
 #[test]

@@ -8,8 +8,12 @@ mod bad_files;
 mod bad_machines;
 mod bad_moves;
 mod bad_outputs;
+mod boards;
 mod command;
 mod curves;
+#[path = "../../crates/link/tests/support/device.rs"]
+#[allow(dead_code, reason = "the link's own tests use the rest")]
+mod device;
 mod engine;
 mod interrupts;
 mod json_names;

@@ -1,11 +1,13 @@
 //! The command line, once: it feeds the parser and the help.
 
+mod port;
 mod profile;
 mod table;
 
 use carrystep_levels::Level;
 use carrystep_sweep::Shard;
 use clap::{Args, Parser};
+pub use port::{Home, Jog, Peer, Port, Run, Status, Stop};
 pub use profile::Profile;
 use std::path::PathBuf;
 pub use table::{Table, TableKind};
@@ -43,6 +45,16 @@ pub enum Subcommand {
     Verilog(Verilog),
     /// Run many machines and moves over all cores and report the worst of each figure.
     Sweep(Sweep),
+    /// Make the moves of a file on a board: plan, stream, keep its queues full; Ctrl-C stops by ramps.
+    Run(Run),
+    /// Move one axis of a board.
+    Jog(Jog),
+    /// Move until the limits are met, and say where they are.
+    Home(Home),
+    /// Say what a board does, where its axes are, and why it stands.
+    Status(Status),
+    /// Stop what moves on a board; resume after a stop (--clear), take the power away (--off).
+    Stop(Stop),
     /// Show the boards, or one of them: part, clock, ticks, and which pin does what.
     Boards(Boards),
     /// Check tools, serial ports and permissions, and name the real cause.

@@ -2,6 +2,8 @@
 
 mod arguments;
 mod commands;
+mod connection;
+mod drive;
 mod failure;
 mod figures;
 mod gateware;
@@ -27,6 +29,11 @@ fn main() -> ExitCode {
         Subcommand::Check(check) => commands::check::run(check),
         Subcommand::Verilog(verilog) => commands::verilog::run(verilog),
         Subcommand::Sweep(sweep) => commands::sweep::run(sweep),
+        Subcommand::Run(run) => commands::run::run(run),
+        Subcommand::Jog(jog) => commands::run::jog(jog),
+        Subcommand::Home(home) => commands::run::home(home),
+        Subcommand::Status(status) => commands::status::status(status),
+        Subcommand::Stop(stop) => commands::status::stop(stop),
         Subcommand::Boards(boards) => commands::boards::run(boards),
         Subcommand::Doctor(doctor) => commands::doctor::run(doctor),
     };

@@ -49,6 +49,12 @@ pub(crate) fn access(host: &Host, device: &Path) -> Access {
     user_of(host, device).unwrap_or(Access::Granted)
 }
 
+/// Why this device of this machine may not be used, where that can be told; links are followed.
+pub fn obstacle(device: &Path) -> Option<Access> {
+    let device = fs::canonicalize(device).ok()?;
+    Some(access(&Host::this(), &device)).filter(|access| *access != Access::Granted)
+}
+
 #[cfg(unix)]
 fn refusal(host: &Host, device: &Path) -> Refusal {
     use std::os::unix::fs::MetadataExt;

@@ -7,7 +7,7 @@ mod host;
 mod ports;
 mod tools;
 
-pub use access::{Access, Refusal};
+pub use access::{Access, Refusal, obstacle};
 pub use host::{Host, User};
 pub use ports::{SerialPort, UsbDevice, serial_ports, usb_devices};
 pub use tools::{Tool, tools};

@@ -27,6 +27,8 @@ pub mod reads;
 pub mod registers;
 pub mod session;
 pub mod slip;
+#[cfg(feature = "std")]
+pub mod supply;
 pub mod window;
 
 pub use command::{Command, Program, ProgramError, Segment};

@@ -6,9 +6,11 @@ use crate::build::{AXES, Build, PinTiming, Timebase, TimebaseError};
 use crate::engine::{Guard, MAX_AXES};
 use crate::error::{InputError, Source};
 use crate::fixed::StartPhase;
+use crate::link::{BaudError, Uart};
 use axis::RawAxis;
 use bigdecimal::BigDecimal;
 use guard::RawGuard;
+use link::RawLink;
 use serde::Deserialize;
 use std::ops::Range;
 use std::path::Path;
@@ -17,6 +19,7 @@ use toml::Spanned;
 
 mod axis;
 mod guard;
+mod link;
 mod stop;
 
 pub(crate) use stop::steps_per_s2;
@@ -32,6 +35,8 @@ pub struct Machine {
     pub axes: Vec<Axis>,
     /// What stops them, where an engine drives them.
     pub guard: Guard,
+    /// Baud rate of the host link; checked against the clock where the file names it.
+    pub baud: u32,
 }
 
 /// A machine that the parallel axes cannot drive.
@@ -95,6 +100,14 @@ impl Machine {
         Ok(Build { timebase: self.timebase, phase: self.phase, pins })
     }
 
+    /// The UART of the host link.
+    ///
+    /// # Errors
+    /// [`BaudError`]: the file names no baud rate, and its clock does not make the default.
+    pub fn uart(&self) -> Result<Uart, BaudError> {
+        Uart::new(self.timebase.clock_hz(), self.baud)
+    }
+
     /// The number of the axis of this name.
     pub fn axis_index(&self, name: &str) -> Option<usize> {
         self.axes.iter().position(|axis| axis.name == name)
@@ -124,6 +137,8 @@ pub(crate) struct RawMachine {
     phase: StartPhase,
     #[serde(default)]
     guard: RawGuard,
+    #[serde(default)]
+    link: RawLink,
     axis: Spanned<Vec<Spanned<RawAxis>>>,
 }
 
@@ -158,7 +173,8 @@ impl RawMachine {
             axes.push(axis);
         }
         let guard = self.guard.check(source, &timebase, axes.iter().map(|axis| axis.stop).collect())?;
-        Ok(Machine { timebase, phase: self.phase, axes, guard })
+        let baud = self.link.check(source, &timebase)?;
+        Ok(Machine { timebase, phase: self.phase, axes, guard, baud })
     }
 
     fn timebase(&self, source: &Source) -> Result<Timebase, InputError> {

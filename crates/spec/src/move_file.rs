@@ -110,6 +110,13 @@ struct RawMoveFile {
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "moves")]
+struct RawMoves {
+    #[serde(default, rename = "move")]
+    moves: Vec<Spanned<RawMove>>,
+}
+
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a [[move]] table")]
 struct RawMove {
     profile: Spanned<ProfileKind>,
@@ -161,14 +168,32 @@ impl MoveFile {
                     .help("name a machine_file, or describe the [machine] here"));
             }
         };
+        Self::on(machine, source, raw.moves, too_many)
+    }
+
+    /// Checks moves for a machine that is known already: a move file without its machine.
+    ///
+    /// # Errors
+    /// [`InputError`] with line and column.
+    pub fn of_moves(machine: Machine, source: Source) -> Result<Self, InputError> {
+        let raw: RawMoves = source.parse()?;
+        Self::on(machine, source, raw.moves, None)
+    }
+
+    fn on(
+        machine: Machine,
+        source: Source,
+        raw: Vec<Spanned<RawMove>>,
+        too_many: Option<Range<usize>>,
+    ) -> Result<Self, InputError> {
         if machine.axes.len() > AXES {
             let message = format!("{} axes: moves are planned for at most {AXES}", machine.axes.len());
             return Err(InputError::at(&source, too_many.unwrap_or(0..0), message));
         }
-        if raw.moves.is_empty() {
+        if raw.is_empty() {
             return Err(InputError::at(&source, 0..0, "no moves").help("add a [[move]] table"));
         }
-        let moves = check_moves(&source, &machine, raw.moves)?;
+        let moves = check_moves(&source, &machine, raw)?;
         Ok(Self { machine, moves, source })
     }
 

@@ -33,7 +33,8 @@ fn quoted(text: &str) -> &str {
 /// The keys that the reader knows where `colour` stands: it names them where it refuses that one.
 fn known(text: &str) -> Vec<String> {
     let error = MoveFile::from_source(source(text)).unwrap_err().message;
-    let (_, keys) = error.split_once("expected one of ").unwrap_or_else(|| panic!("{error}"));
+    let (_, keys) = error.split_once("expected ").unwrap_or_else(|| panic!("{error}"));
+    let keys = keys.trim_start_matches("one of ");
     keys.split(", ").map(|key| quoted(key).to_owned()).collect()
 }
 
@@ -43,6 +44,7 @@ fn the_page_has_the_keys_that_are_read() {
         ("## `[machine]`", format!("{MOVE}[machine]\ncolour = 1\n{AXIS}")),
         ("## `[[machine.axis]]`", format!("{MOVE}[machine]\n{AXIS}colour = 1\n")),
         ("## `[machine.guard]`", format!("{MOVE}[machine.guard]\ncolour = 1\n{AXIS}")),
+        ("## `[machine.link]`", format!("{MOVE}[machine.link]\ncolour = 1\n{AXIS}")),
         ("## The move file", format!("colour = 1\n{MOVE}[machine]\n{AXIS}")),
         ("### `[[move]]`", format!("{MOVE}colour = 1\n[machine]\n{AXIS}")),
     ];
@@ -63,10 +65,17 @@ fn defaults_are_those_of_the_page() {
         let rows = rows(heading).into_iter().filter(|row| row.len() > 2 && literal(row[2]));
         rows.map(|row| format!("{} = {}\n", quoted(row[0]), quoted(row[2]))).collect::<Vec<_>>()
     };
-    let (top, axis, guard) = (given("## `[machine]`"), given("## `[[machine.axis]]`"), given("## `[machine.guard]`"));
-    assert_eq!((top.len(), axis.len(), guard.len()), (4, 1, 7));
+    let [top, axis, guard, link] =
+        ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"].map(given);
+    assert_eq!((top.len(), axis.len(), guard.len(), link.len()), (4, 1, 7, 1));
     let bare = format!("{:?}", machine(&format!("[machine]\n{AXIS}")));
-    let full = format!("[machine]\n{}[machine.guard]\n{}{AXIS}{}", top.concat(), guard.concat(), axis.concat());
+    let full = format!(
+        "[machine]\n{}[machine.guard]\n{}[machine.link]\n{}{AXIS}{}",
+        top.concat(),
+        guard.concat(),
+        link.concat(),
+        axis.concat()
+    );
     assert_eq!(format!("{:?}", machine(&full)), bare);
     let moved = |more: &str| {
         format!("{:?}", MoveFile::from_source(source(&format!("{MOVE}{more}[machine]\n{AXIS}"))).unwrap().moves[0].path)
@@ -104,10 +113,10 @@ fn the_page_s_ranges_of_the_guard_are_the_reader_s() {
 fn the_examples_are_read_and_the_first_one_has_every_key() {
     let blocks: Vec<&str> = PAGE.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
     machine(blocks[0]);
-    for heading in ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`"] {
+    for heading in ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"] {
         for row in rows(heading) {
             let key = quoted(row[0]);
-            let table = ["guard", "axis"].contains(&key);
+            let table = ["guard", "link", "axis"].contains(&key);
             let there = blocks[0].contains(&if table { format!("machine.{key}]") } else { format!("\n{key} = ") });
             assert!(there, "{key}");
         }

@@ -32,6 +32,7 @@ const ALLOWED: [(&str, &[&str]); 17] = [
             "export",
             "trace",
             "levels",
+            "link",
             "sweep",
             "doctor",
         ],

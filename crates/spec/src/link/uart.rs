@@ -101,7 +101,9 @@ mod tests {
         assert_eq!(clocks(48_000_000, 3_060_000), Ok(16));
         let said = clocks(48_000_000, 3_100_000).unwrap_err().to_string();
         assert!(said.ends_with("the next ones that it makes are 3000000 and 3200000"), "{said}");
-        for (clock_hz, baud) in [(48_000_000, 0), (48_000_000, u32::MAX), (48_000_000, 1), (1, 9600), (12_000_000, 3_000_000)] {
+        for (clock_hz, baud) in
+            [(48_000_000, 0), (48_000_000, u32::MAX), (48_000_000, 1), (1, 9600), (12_000_000, 3_000_000)]
+        {
             clocks(clock_hz, baud).unwrap_err();
         }
     }

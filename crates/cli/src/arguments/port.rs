@@ -1,0 +1,102 @@
+//! The arguments of the commands that talk to a board.
+
+use clap::Args;
+use std::path::PathBuf;
+
+/// Where the board is.
+#[derive(Debug, Args)]
+pub struct Port {
+    /// The serial port of the board; `carrystep doctor` lists them.
+    #[arg(long = "port", value_name = "PORT")]
+    pub name: String,
+}
+
+/// What the board is, where the command does not need a machine.
+#[derive(Debug, Args)]
+pub struct Peer {
+    #[command(flatten)]
+    pub port: Port,
+    /// The machine that the board's gateware must be made for; names the axes. Default: any.
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub machine: Option<PathBuf>,
+    /// The baud rate, where no machine says it.
+    #[arg(long, value_name = "BAUD", conflicts_with = "machine", default_value_t = carrystep_spec::link::DEFAULT_BAUD)]
+    pub baud: u32,
+}
+
+/// `carrystep run`
+#[derive(Debug, Args)]
+pub struct Run {
+    /// The move file.
+    #[arg(value_name = "MOVE.toml")]
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub port: Port,
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
+    pub fit_ns: Option<u64>,
+    /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep home`
+#[derive(Debug, Args)]
+pub struct Home {
+    /// A move file: one slow move toward the limits, farther than they are. The axes that it moves wait for their limits.
+    #[arg(value_name = "MOVE.toml")]
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub port: Port,
+    /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep jog`
+#[derive(Debug, Args)]
+pub struct Jog {
+    /// The axis, by its name.
+    #[arg(value_name = "AXIS")]
+    pub axis: String,
+    /// How far, in units of the axis; negative is back.
+    #[arg(value_name = "DISTANCE", allow_negative_numbers = true)]
+    pub distance: f64,
+    /// The machine.
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub machine: PathBuf,
+    /// In so many seconds; default: as fast as the axis' limits allow.
+    #[arg(long, value_name = "SECONDS")]
+    pub time: Option<f64>,
+    #[command(flatten)]
+    pub port: Port,
+    /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep status`
+#[derive(Debug, Args)]
+pub struct Status {
+    #[command(flatten)]
+    pub peer: Peer,
+    /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep stop`
+#[derive(Debug, Args)]
+pub struct Stop {
+    #[command(flatten)]
+    pub peer: Peer,
+    /// Then resume: queues empty, positions as they are. Whatever had stopped the machine is forgotten.
+    #[arg(long)]
+    pub clear: bool,
+    /// Then take the drivers' power away.
+    #[arg(long)]
+    pub off: bool,
+    /// One JSON document instead of the table.
+    #[arg(long)]
+    pub json: bool,
+}

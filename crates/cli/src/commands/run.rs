@@ -1,0 +1,55 @@
+//! `carrystep run`, `jog` and `home`: plan, connect, stream, tell.
+
+use crate::arguments::{Home, Jog, Port, Run};
+use crate::connection;
+use crate::drive::{Driven, Streamed, drive};
+use crate::failure::{Failure, refused};
+use crate::{job, output};
+use carrystep_plan::plan;
+use carrystep_spec::{Machine, MoveFile, Source};
+use std::path::Path;
+
+/// Makes the moves of a file.
+pub fn run(arguments: &Run) -> Result<(), Failure> {
+    let file = job::load(&arguments.file, arguments.fit_ns)?;
+    let name = arguments.file.as_path();
+    told(&moved(&file, name, &arguments.port, false)?, arguments.json)
+}
+
+/// Moves one axis.
+pub fn jog(arguments: &Jog) -> Result<(), Failure> {
+    let machine = Machine::load(&arguments.machine)?;
+    let Jog { axis, distance, time, .. } = arguments;
+    // A key of TOML in quotes: no name on the command line is more than a name.
+    let axis = serde_json::to_string(axis).map_err(|error| Failure::Run(error.to_string()))?;
+    let time = time.map_or_else(String::new, |seconds| format!("time = {seconds:?}\n"));
+    let text = format!("[[move]]\nprofile = \"trapezoid\"\n{time}to = {{ {axis} = {distance:?} }}\n");
+    let file = MoveFile::of_moves(machine, Source { path: "jog".into(), text: text.into() })?;
+    told(&moved(&file, &arguments.machine, &arguments.port, false)?, arguments.json)
+}
+
+/// Moves until the limits are met.
+pub fn home(arguments: &Home) -> Result<(), Failure> {
+    let file = MoveFile::load(&arguments.file)?;
+    told(&moved(&file, &arguments.file, &arguments.port, true)?, arguments.json)
+}
+
+/// Plans everything before the port is opened, and connects before anything moves.
+fn moved(file: &MoveFile, name: &Path, port: &Port, homing: bool) -> Result<Driven, Failure> {
+    let plan = plan::<f64>(file).map_err(|error| refused(file, &error))?;
+    let streamed = Streamed::new(file, &plan, file.machine.baud)?;
+    if homing && file.moves.len() > 1 {
+        return Err(file.move_error(1, "homing is one move: what comes after a limit is never sent").into());
+    }
+    let connection = connection::to_machine(port, &file.machine, name)?;
+    drive(connection, &port.name, &streamed, homing.then(|| streamed.moving()))
+}
+
+fn told(driven: &Driven, json: bool) -> Result<(), Failure> {
+    if json {
+        output::print_json(driven)?;
+    } else {
+        output::print(&driven.to_string())?;
+    }
+    if driven.passed { Ok(()) } else { Err(Failure::Check) }
+}

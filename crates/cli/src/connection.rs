@@ -1,0 +1,82 @@
+//! The line to a board: opened, known, and what went wrong with it.
+
+use crate::arguments::{Peer, Port};
+use crate::failure::Failure;
+use crate::interrupt;
+use carrystep_link::host::SystemClock;
+use carrystep_link::line::serial::{OpenError, SerialLine};
+use carrystep_link::{Host, HostError, Patience};
+use carrystep_spec::Machine;
+use carrystep_spec::link::{BuildId, Uart};
+use std::io;
+use std::path::Path;
+
+/// A board on a serial port.
+pub type Board = Host<SerialLine, SystemClock>;
+
+/// What goes wrong between it and us.
+pub type BoardError = HostError<io::Error>;
+
+/// A connected board, and the names of its axes.
+pub struct Connection {
+    /// The board.
+    pub board: Board,
+    /// A name for each axis of the build.
+    pub axes: Vec<String>,
+}
+
+/// The machine's UART and the id of its engine on it; `name` is the file that says so.
+fn wanted(machine: &Machine, name: &Path) -> Result<(Uart, BuildId), Failure> {
+    let refused = |error: String| Failure::input(format!("{}: {error}", name.display()));
+    let engine = machine.engine();
+    engine.check().map_err(|error| refused(error.to_string()))?;
+    let uart = machine.uart().map_err(|error| refused(error.to_string()))?;
+    Ok((uart, uart.build_id(&engine)))
+}
+
+/// Connects to the board of a machine; any other is refused. Nothing is written.
+pub fn to_machine(port: &Port, machine: &Machine, name: &Path) -> Result<Connection, Failure> {
+    let (uart, id) = wanted(machine, name)?;
+    let board = connect(&port.name, uart.baud(), Some(id))?;
+    Ok(Connection { board, axes: machine.axes.iter().map(|axis| axis.name.clone()).collect() })
+}
+
+/// Connects to whatever carrystep board there is, or to the one of a machine.
+pub fn to_peer(peer: &Peer) -> Result<Connection, Failure> {
+    if let Some(path) = &peer.machine {
+        return to_machine(&peer.port, &Machine::load(path)?, path);
+    }
+    let board = connect(&peer.port.name, peer.baud, None)?;
+    let axes = (0..board.facts().axes).map(|axis| axis.to_string()).collect();
+    Ok(Connection { board, axes })
+}
+
+fn connect(port: &str, baud: u32, id: Option<BuildId>) -> Result<Board, Failure> {
+    // From here on Ctrl-C is a stop that is waited for.
+    interrupt::watch();
+    let line = SerialLine::open(port, baud).map_err(|error| Failure::input(opening(port, &error)))?;
+    // Whoever is there but is not who was meant is wrong input: nothing was moved.
+    Board::connect(line, SystemClock::default(), id.map(|id| id.0), Patience::default())
+        .map_err(|error| Failure::input(format!("{port}: {error}")))
+}
+
+/// The doctor knows more of why a port may not be used.
+fn opening(port: &str, error: &OpenError) -> String {
+    let access = match error {
+        OpenError::Busy { .. } | OpenError::NotPermitted { .. } => carrystep_doctor::obstacle(Path::new(port)),
+        OpenError::Absent { .. } | OpenError::Unusable { .. } => None,
+    };
+    access.map_or_else(|| error.to_string(), |access| format!("serial port {port} {access}"))
+}
+
+/// What went wrong with a board that was driven already.
+pub fn broken(error: &BoardError) -> Failure {
+    match error {
+        HostError::Program(error) => Failure::input(error.to_string()),
+        HostError::Line(why) => Failure::Run(format!("{error}: {why}; what moves stops by its watchdog")),
+        HostError::NotIdle | HostError::Fault { .. } => {
+            Failure::Run(format!("{error}: `carrystep stop --clear` does that"))
+        }
+        _ => Failure::Run(error.to_string()),
+    }
+}

@@ -1,0 +1,115 @@
+//! Whether a line can carry a program in time: known before anything moves.
+//!
+//! ```text
+//! queue     segments 0 .. 6 wait before the start; segment k + 7 has a place when segment k begins to run,
+//! line      takes its time for each, the most urgent first, and it must be there
+//! axis      |  k  | k + 1 | ... | k + 6 |  k + 7           before segment k + 7 begins
+//! ```
+
+use crate::command::Command;
+use crate::frame::{Body, Request};
+use crate::registers::QUEUE_SEGMENTS;
+use crate::slip;
+use std::collections::VecDeque;
+use std::vec::Vec;
+use thiserror::Error;
+
+/// Bits of a byte on a UART: start, eight, stop.
+const BITS_OF_BYTE: u64 = 10;
+
+/// A program that no host could supply.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error(
+    "{baud} baud are too slow for this move: axis {axis} would run dry {at_ms} ms after the start, its next segment {late_us} us late; take a higher baud rate, a larger fit_ns, or fewer axes at once"
+)]
+pub struct Starved {
+    /// The axis whose queue runs dry, from 0.
+    pub axis: u8,
+    /// When, ms after the start of the program.
+    pub at_ms: u64,
+    /// How late its next segment would be, us, rounded up.
+    pub late_us: u64,
+    /// The line, bit/s.
+    pub baud: u32,
+}
+
+/// One segment on its way: when it has a place, when it must be there, how long the line needs for it; ns.
+struct Job {
+    place: u64,
+    due: u64,
+    takes: u64,
+}
+
+/// Checks that a UART of so many baud brings each segment before its axis needs it, where the host is never late.
+///
+/// # Errors
+/// [`Starved`] names the first axis that would run dry.
+pub fn check(commands: &[Command], axes: u8, tick_ns: u64, baud: u32) -> Result<(), Starved> {
+    let mut waiting: Vec<VecDeque<Job>> = (0..axes).map(|axis| jobs(commands, axis, tick_ns, baud)).collect();
+    let mut now = 0_u64;
+    loop {
+        let heads = || (0..).zip(&waiting).filter_map(|(axis, jobs)| Some((axis, jobs.front()?)));
+        let Some(soonest) = heads().map(|(_, job)| job.place).min() else { return Ok(()) };
+        now = now.max(soonest);
+        let placed = heads().filter(|(_, job)| job.place <= now);
+        let Some((axis, _)) = placed.min_by_key(|(_, job)| job.due) else { return Ok(()) };
+        let Some(job) = waiting.get_mut(usize::from(axis)).and_then(VecDeque::pop_front) else { return Ok(()) };
+        now = now.saturating_add(job.takes);
+        if now > job.due {
+            let late_us = (now - job.due).div_ceil(1000);
+            return Err(Starved { axis, at_ms: job.due / 1_000_000, late_us, baud });
+        }
+    }
+}
+
+/// The segments of an axis that do not wait in its queue before the start.
+fn jobs(commands: &[Command], axis: u8, tick_ns: u64, baud: u32) -> VecDeque<Job> {
+    let mut begins = Vec::new();
+    let mut tick = 0_u64;
+    let mut jobs = VecDeque::new();
+    for command in commands {
+        let Command::Segment { axis: own, segment } = *command else { continue };
+        if own != axis {
+            continue;
+        }
+        let due = tick.saturating_mul(tick_ns);
+        begins.push(due);
+        if let Some(&place) = begins.len().checked_sub(1 + usize::from(QUEUE_SEGMENTS)).and_then(|k| begins.get(k)) {
+            let request = Request { sequence: 0, body: Body::Segment { axis, segment } };
+            let bits = BITS_OF_BYTE * slip::encode(request.to_bytes().as_slice()).count() as u64;
+            jobs.push_back(Job { place, due, takes: (bits * 1_000_000_000).div_ceil(u64::from(baud.max(1))) });
+        }
+        tick = tick.saturating_add(segment.ticks.into());
+    }
+    jobs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::Segment;
+
+    /// So many segments of so many ticks for each of six axes.
+    fn even(count: u32, ticks: u32) -> Vec<Command> {
+        let segment = |last| Segment { ticks, v: 1, a: 0, j: 0, last };
+        let of = |k| (0..6).map(move |axis| Command::Segment { axis, segment: segment(k + 1 == count) });
+        (0..count).flat_map(of).collect()
+    }
+
+    #[test]
+    fn six_axes_at_a_rate_need_a_line_that_carries_it() {
+        // 500 segments a second: 6 x 500 x 40 bytes x 10 bits = 1.2 Mbit/s.
+        let dense = even(1000, 1000);
+        assert_eq!(check(&dense, 6, 2000, 3_000_000), Ok(()));
+        let starved = check(&dense, 6, 2000, 921_600).unwrap_err();
+        assert!(starved.late_us > 0 && starved.at_ms > 14, "{starved}");
+        assert_eq!(check(&even(1000, 2500), 6, 2000, 921_600), Ok(()));
+    }
+
+    #[test]
+    fn what_waits_in_the_queues_costs_nothing() {
+        assert_eq!(check(&even(7, 1), 6, 2000, 300), Ok(()));
+        assert!(check(&even(8, 1), 6, 2000, 300).is_err());
+        assert_eq!(check(&[], 6, 2000, 0), Ok(()));
+    }
+}
