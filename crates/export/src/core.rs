@@ -103,7 +103,10 @@ pub(crate) fn link_ports(build: &EngineBuild, uart: Uart) -> Result<Vec<(String,
     let mut link = uart_link(build, uart)?;
     link.connect_all();
     let ports = Names::new(&netlist::read(link.as_ref())?)?.ports.into_iter();
-    Ok(ports.filter(|port| !["clock", "rx", "tx"].contains(&port.name.as_str())).map(|port| (port.name, port.width)).collect())
+    Ok(ports
+        .filter(|port| !["clock", "rx", "tx"].contains(&port.name.as_str()))
+        .map(|port| (port.name, port.width))
+        .collect())
 }
 
 /// What the header tells of a build.

@@ -35,7 +35,8 @@ pub fn write(dir: &Path, files: &[TextFile]) -> Result<Vec<PathBuf>, ExportError
         let path = dir.join(&file.name);
         let folder = path.parent().unwrap_or(dir);
         std::fs::create_dir_all(folder).map_err(|source| failed(folder)(told(source)))?;
-        let made = new_file(folder, file.executable).and_then(|mut new| new.write_all(file.text.as_bytes()).map(|()| new));
+        let made =
+            new_file(folder, file.executable).and_then(|mut new| new.write_all(file.text.as_bytes()).map(|()| new));
         made.map_err(failed(&path)).map(|new| (path, new))
     };
     let made: Vec<_> = files.iter().map(made).collect::<Result<_, _>>()?;

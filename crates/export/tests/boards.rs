@@ -112,11 +112,26 @@ fn asked(name: &str, was: &str, becomes: &str) -> Result<(), String> {
 fn what_a_board_cannot_do_is_refused_with_what_it_can() {
     asked("icestick", "limits", "limits").unwrap();
     let refused = [
-        ("alchitry-cu", "80000000\ntick_ns = 1000", "48000000\ntick_ns = 2000", "alchitry-cu: the PLL makes no clock of 48 MHz from 100 MHz; the nearest"),
-        ("icestick", "\"each\"", "\"pair\"", "too few for two for each of 6 axes: limits = \"each\" or \"one\" would do"),
+        (
+            "alchitry-cu",
+            "80000000\ntick_ns = 1000",
+            "48000000\ntick_ns = 2000",
+            "alchitry-cu: the PLL makes no clock of 48 MHz from 100 MHz; the nearest",
+        ),
+        (
+            "icestick",
+            "\"each\"",
+            "\"pair\"",
+            "too few for two for each of 6 axes: limits = \"each\" or \"one\" would do",
+        ),
         ("icestick", "tick_ns = 2000", "tick_ns = 1000", "6 axes need 13 clocks each and one to close the tick"),
         ("icestick", "driver = \"a4988\"", "driver = \"a4988\"\nstep_ns = 9000000", "step_ns"),
-        ("icestick", "[[machine.axis]]", "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]", "icestick has pins for 6 axes, not for"),
+        (
+            "icestick",
+            "[[machine.axis]]",
+            "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
+            "icestick has pins for 6 axes, not for",
+        ),
     ];
     for (name, was, becomes, says) in refused {
         let said = asked(name, was, becomes).unwrap_err();

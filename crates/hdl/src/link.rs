@@ -12,25 +12,22 @@
 //!
 //! A request lies in block RAM until its CRC has come; only then a word of it reaches the engine.
 
-use crate::HdlError;
 use crate::register::Input;
 use crate::word::Word;
 use carrystep_spec::EngineBuild;
-use carrystep_spec::link::registers::{
-    AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLOCK_HZ, IDENTITY, IDENTITY_VALUE, PHASES, PROTOCOL, PROTOCOL_VERSION, TICK_NS,
-    WATCHDOG_TICKS,
-};
-use carrystep_spec::engine::EngineError;
-use carrystep_spec::link::{Uart, image};
+use carrystep_spec::link::{Uart, facts, image};
 use rust_hdl::prelude::*;
 
 pub mod check;
 pub mod facts;
 pub mod machine;
+mod sim;
 pub mod uart_in;
 pub mod uart_out;
 
-use facts::Facts;
+pub use sim::{AnyLink, LinkSim, uart_link};
+
+use self::facts::Facts;
 use machine::Machine;
 use uart_in::UartIn;
 use uart_out::UartOut;
@@ -112,47 +109,15 @@ pub struct UartLink<const N: usize> {
     facts: Facts,
 }
 
-/// The link of this build, which has as many axes as the build.
-///
-/// # Errors
-/// [`HdlError::Engine`] where a parameter of the build cannot be.
-pub fn uart_link(build: &EngineBuild, uart: Uart) -> Result<Box<dyn Block>, HdlError> {
-    build.check()?;
-    Ok(match build.axes() {
-        1 => Box::new(UartLink::<1>::new(build, uart)),
-        2 => Box::new(UartLink::<2>::new(build, uart)),
-        3 => Box::new(UartLink::<3>::new(build, uart)),
-        4 => Box::new(UartLink::<4>::new(build, uart)),
-        5 => Box::new(UartLink::<5>::new(build, uart)),
-        6 => Box::new(UartLink::<6>::new(build, uart)),
-        7 => Box::new(UartLink::<7>::new(build, uart)),
-        8 => Box::new(UartLink::<8>::new(build, uart)),
-        axes => return Err(EngineError::Axes(axes).into()),
-    })
-}
-
 impl<const N: usize> UartLink<N> {
     /// The link of this build, with this line.
-    pub fn new(build: &EngineBuild, uart: Uart) -> Self {
+    fn new(build: &EngineBuild, uart: Uart) -> Self {
         let bit_clocks = uart.bit_clocks();
-        let [low, high] = uart.build_id(build).halves();
-        let time = &build.timebase;
-        let facts = [
-            (IDENTITY, IDENTITY_VALUE),
-            (PROTOCOL, PROTOCOL_VERSION),
-            (BUILD_LOW, low),
-            (BUILD_HIGH, high),
-            (AXIS_COUNT, build.axes() as u32),
-            (CLOCK_HZ, time.clock_hz() as u32),
-            (TICK_NS, time.tick_ns() as u32),
-            (PHASES, time.phases()),
-            (WATCHDOG_TICKS, build.guard.watchdog * build.guard.round),
-        ];
         Self {
             uart_in: UartIn::new(bit_clocks),
             uart_out: UartOut::new(bit_clocks),
             machine: Machine::new(&image()),
-            facts: Facts::new(&facts),
+            facts: Facts::new(&facts(build, uart)),
             ..Self::default()
         }
     }

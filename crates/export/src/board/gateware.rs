@@ -1,8 +1,8 @@
 //! All gateware of a machine for a board: a top level that connects clock, link and engine to the pins, and what goes with it.
 
 use super::{CLOCK_NAME, Design, rendered};
-use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, link_ports, link_verilog};
 use crate::ExportError;
+use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, link_ports, link_verilog};
 use crate::write::TextFile;
 use carrystep_spec::board::{Board, Clocking, Part};
 use carrystep_spec::engine::Limits;
@@ -48,7 +48,11 @@ impl<'a> Gateware<'a> {
     /// # Errors
     /// As [`Gateware::new`].
     pub fn shipped(board: &'a Board, part: &'a Part) -> Result<Self, ExportError> {
-        Self::new(board, part, Source { path: "machine.toml".into(), text: shipped_machine(board, &board.clocks[0]).into() })
+        Self::new(
+            board,
+            part,
+            Source { path: "machine.toml".into(), text: shipped_machine(board, &board.clocks[0]).into() },
+        )
     }
 
     /// Its top module, `carrystep_BOARD_top`.
@@ -127,7 +131,15 @@ impl<'a> Gateware<'a> {
     }
 
     fn design<'b>(&'b self, ports: &'b [String], sources: &'b [&'b str]) -> Design<'b> {
-        Design { board: self.board, part: self.part, clock_hz: self.build.timebase.clock_hz(), uart: Some(self.uart), top: self.top(), sources, ports }
+        Design {
+            board: self.board,
+            part: self.part,
+            clock_hz: self.build.timebase.clock_hz(),
+            uart: Some(self.uart),
+            top: self.top(),
+            sources,
+            ports,
+        }
     }
 
     fn top_level(&self) -> Result<String, ExportError> {
