@@ -223,3 +223,28 @@ fn a_limit_latches_the_position_of_a_homing_axis() {
     assert!((-34..=-30).contains(&(rest - latched)), "latched {latched}, at rest at {rest}");
     assert_eq!(bench.steps, u64::from(rest.unsigned_abs()));
 }
+
+/// As fast as the line can: six queues of seven, none is refused.
+#[test]
+fn segments_back_to_back_are_all_taken() {
+    let mut bench = bench();
+    let mut next = 0;
+    powered(&mut bench, &mut next);
+    let first = next;
+    let start = bench.clocks;
+    for _ in 0..7 {
+        for axis in 0..AXES as u8 {
+            bench.send(&on_the_line(&frame(next, 0x80 | of_axis(SEGMENT, axis), &cruise(100, QUARTER))));
+            next += 1;
+        }
+    }
+    for sequence in first..next {
+        let answer = bench.answer(PATIENCE).expect("an answer");
+        let said = Said::of(&unframe(&answer).expect("a frame"));
+        assert_eq!((said.sequence, said.next, said.refused), (sequence, sequence + 1, false));
+        if bench.has_sent() {
+            eprintln!("sent before {sequence} of {first}..{next}, {} clocks", bench.clocks - start);
+        }
+    }
+    eprintln!("{} clocks for {} segments", bench.clocks - start, next - first);
+}
