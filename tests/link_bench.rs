@@ -1,6 +1,8 @@
-//! The link and the engine together, with a host at the other end of the line: Rust-HDL's modules of both.
+//! The link and the engine together, with a host at the other end of the line: Rust-HDL's modules of both, the model of the
+//! link in lock-step.
 
 use carrystep_hdl::{EngineSim, LinkSim};
+use carrystep_model::Link;
 use carrystep_spec::EngineBuild;
 use carrystep_spec::engine::{CAUSES, Cause, EngineInputs, EngineOutputs};
 use carrystep_spec::link::{END, ESC, ESC_END, ESC_ESC, LinkInputs, Uart};
@@ -9,6 +11,7 @@ use std::collections::VecDeque;
 /// Both modules, the line between them and the test.
 pub struct LinkBench {
     link: LinkSim,
+    model: Link,
     engine: EngineSim,
     sender: Sender,
     receiver: Receiver,
@@ -27,6 +30,7 @@ impl LinkBench {
     pub fn new(build: &EngineBuild, uart: Uart) -> Self {
         Self {
             link: LinkSim::new(build, uart).expect("a link"),
+            model: Link::new(build, uart),
             engine: EngineSim::new(build).expect("an engine"),
             sender: Sender::new(uart.bit_clocks()),
             receiver: Receiver::new(uart.bit_clocks()),
@@ -61,6 +65,8 @@ impl LinkBench {
         let valid = self.engine.get(axis, item).is_some();
         seen = LinkInputs { rx, engine: self.outputs, get_valid: valid, get_data: self.engine.latched() };
         let shown = self.link.settle(&seen);
+        assert_eq!(self.model.outputs(), shown, "cycle {}: model and Rust-HDL", self.clocks);
+        self.model.clock(&seen);
         self.link.clock();
         self.engine.clock();
         self.clocks += 1;
