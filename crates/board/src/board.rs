@@ -2,10 +2,10 @@
 
 use crate::line::{Ear, Speaker};
 use carrystep_model::fast::Edges;
-use carrystep_model::{FastEngine, Link, LinkInputs, LinkOutputs};
+use carrystep_model::{FastEngine, Link};
 use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{EngineInputs, EngineOutputs, Put};
-use carrystep_spec::link::Uart;
+use carrystep_spec::engine::{EngineInputs, EngineOutputs};
+use carrystep_spec::link::{LinkInputs, LinkOutputs, Uart};
 
 /// Switches at the board's inputs; `true` and a bit that is set are active, whatever the level of the pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -132,43 +132,14 @@ impl Board {
     }
 
     fn inputs(&self, asks: &LinkOutputs) -> EngineInputs {
-        EngineInputs {
-            put: asks.put_valid.then_some(Put { axis: asks.put_axis, word: asks.put_word, data: asks.put_data }),
-            start: asks.start_valid.then_some(asks.start_mask),
-            clear: asks.clear,
-            stop: asks.stop,
-            broken: asks.broken,
-            home: asks.home_valid.then_some(asks.home_mask),
-            kick: asks.kick,
-            enable: asks.enable,
-            ..self.pins
-        }
+        let EngineInputs { estop, limit_min, limit_max, .. } = self.pins;
+        EngineInputs { estop, limit_min, limit_max, ..asks.engine }
     }
 
     fn told(&self, rx: bool, asks: &LinkOutputs, says: &EngineOutputs) -> LinkInputs {
         let core = self.engine.core();
-        let room = core.room(asks.put_axis);
-        let (cause, culprits) = says.fault.map_or((0, 0), |(cause, culprits)| (cause as u8, culprits));
         let (axis, item) = says.latch.map_or((asks.get_axis, asks.get_item), |axis| (axis, POSITION));
-        LinkInputs {
-            rx,
-            put_ready: says.put_ready,
-            room: room.unwrap_or(0),
-            room_valid: room.is_some(),
-            start_ready: says.start_ready,
-            get_data: core.item(axis, item),
-            get_valid: core.answers(),
-            latch: says.latch.is_some(),
-            latch_axis: says.latch.unwrap_or(0),
-            fault: says.fault.is_some(),
-            halted: says.halted,
-            idle: says.idle,
-            ready: says.ready,
-            armed: says.armed,
-            cause,
-            culprits,
-            homing: says.homing,
-        }
+        LinkInputs { rx, engine: *says, get_data: core.item(axis, item), get_valid: core.answers() }
     }
 }
 

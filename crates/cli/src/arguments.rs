@@ -187,12 +187,19 @@ pub struct Verilog {
     /// Which gateware: one adder for all axes, with queues and a guard, or an adder an axis.
     #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
     pub core: Core,
-    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped machine of the core.
+    /// All gateware of a board instead: a top level with clock, host link and engine, constraints, a build script.
+    #[arg(long, value_name = "BOARD", conflicts_with = "core")]
+    pub board: Option<String>,
+    /// Which of the board's parts; default: its first.
+    #[arg(long, value_name = "PART", requires = "board")]
+    pub part: Option<String>,
+    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped machine of the core, or
+    /// for a board the shipped machine at the board's clock.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
-    /// Folder for the Verilog and its lint waivers.
-    #[arg(long, default_value = "hdl-out/core", value_name = "DIR")]
-    pub out: PathBuf,
+    /// Folder for all files; default: hdl-out/core, or sim/out/BOARD.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,

@@ -1,5 +1,6 @@
 //! How the command fails: what is told, and the exit status that goes with it.
 
+use carrystep_export::ExportError;
 use carrystep_levels::LevelError;
 use carrystep_plan::PlanError;
 use carrystep_spec::board::BoardError;
@@ -109,6 +110,15 @@ impl From<InputError> for Failure {
 impl From<BoardError> for Failure {
     fn from(error: BoardError) -> Self {
         Self::input(error.to_string())
+    }
+}
+
+impl From<ExportError> for Failure {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::Machine(error) => Self::Input(error),
+            _ => Self::input(error.to_string()),
+        }
     }
 }
 

@@ -3,18 +3,22 @@
 //! The top level is whoever's who calls: it says which ports it has, and this says where they go.
 
 mod clock;
+mod gateware;
 mod page;
 
+pub use gateware::{Gateware, shipped_machine};
 pub(crate) use page::pages;
 
 use crate::ExportError;
+use crate::write::TextFile;
 use carrystep_spec::board::{Board, BoardError, OSCILLATOR, PORTS, Part, Place, Port, Tie, Toolchain, Way, Wire};
 use carrystep_spec::clock::mhz;
+use carrystep_spec::link::Uart;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, UndefinedBehavior, Value, context};
 
 /// A top level for a board.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Design<'a> {
     /// The board.
     pub board: &'a Board,
@@ -22,27 +26,18 @@ pub struct Design<'a> {
     pub part: &'a Part,
     /// Hz; the board's PLL, DCM or MMCM must be able to make it.
     pub clock_hz: u64,
+    /// The host link's UART, where it has one.
+    pub uart: Option<Uart>,
     /// Name of the top module, and of all files.
-    pub top: &'a str,
+    pub top: String,
     /// Its Verilog, file names in the folder of the script.
     pub sources: &'a [&'a str],
     /// Its ports, bit by bit, of those in [`PORTS`]: `uart_rx`, `step[0]`. Each top level also has the port
     /// [`OSCILLATOR`] and those of the board's ties.
-    pub ports: &'a [&'a str],
+    pub ports: &'a [String],
 }
 
-/// A file of a board's folder.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BoardFile {
-    /// Its name.
-    pub name: String,
-    /// Its text.
-    pub text: String,
-    /// It is a script.
-    pub executable: bool,
-}
-
-/// The clock's module, instantiated by the top level: `oscillator` in, `clock` and `locked` out.
+/// The clock's module, instantiated by the top level: `oscillator` in, `clock` out.
 pub const CLOCK_NAME: &str = "carrystep_clock";
 
 /// Constraints, template and extension.
@@ -66,7 +61,7 @@ impl Design<'_> {
     ///
     /// # Errors
     /// [`ExportError::Board`]: a port without a pin, or a clock that the board cannot make.
-    pub fn files(&self) -> Result<Vec<BoardFile>, ExportError> {
+    pub fn files(&self) -> Result<Vec<TextFile>, ExportError> {
         let mut files = vec![self.clock()?, self.constraints()?];
         files.extend(self.scripts()?);
         files.push(self.readme()?);
@@ -77,38 +72,38 @@ impl Design<'_> {
     ///
     /// # Errors
     /// [`ExportError::Board`]: the board cannot make it.
-    pub fn clock(&self) -> Result<BoardFile, ExportError> {
+    pub fn clock(&self) -> Result<TextFile, ExportError> {
         let text = clock::verilog(self.board, self.clock_hz)?;
-        Ok(BoardFile { name: format!("{CLOCK_NAME}.v"), text, executable: false })
+        Ok(TextFile::new(format!("{CLOCK_NAME}.v"), text))
     }
 
     /// Which port goes to which pin.
     ///
     /// # Errors
     /// [`ExportError::Board`]: a port without a pin.
-    pub fn constraints(&self) -> Result<BoardFile, ExportError> {
+    pub fn constraints(&self) -> Result<TextFile, ExportError> {
         let (template, extension) = match self.board.family.toolchain() {
             Toolchain::Open => PCF,
             Toolchain::Ise => UCF,
             Toolchain::Vivado => XDC,
         };
-        Ok(BoardFile { name: format!("{}.{extension}", self.top), text: self.render(template)?, executable: false })
+        Ok(TextFile::new(format!("{}.{extension}", self.top), self.render(template)?))
     }
 
     /// What makes a bitstream of it.
     ///
     /// # Errors
     /// [`ExportError::Board`]: a port without a pin.
-    pub fn scripts(&self) -> Result<Vec<BoardFile>, ExportError> {
+    pub fn scripts(&self) -> Result<Vec<TextFile>, ExportError> {
         let scripts = match self.board.family.toolchain() {
             Toolchain::Open => OPEN,
             Toolchain::Ise => ISE,
             Toolchain::Vivado => VIVADO,
         };
         let file = |&(name, template): &(&str, &str)| {
-            let name = name.replace("TOP", self.top);
+            let name = name.replace("TOP", &self.top);
             let executable = name.ends_with(".sh");
-            Ok(BoardFile { name, text: self.render(template)?, executable })
+            Ok(TextFile { name, text: self.render(template)?, executable })
         };
         scripts.iter().map(file).collect()
     }
@@ -117,18 +112,18 @@ impl Design<'_> {
     ///
     /// # Errors
     /// [`ExportError::Board`]: a port without a pin.
-    pub fn readme(&self) -> Result<BoardFile, ExportError> {
-        Ok(BoardFile { name: "README.md".to_owned(), text: self.render(README)?, executable: false })
+    pub fn readme(&self) -> Result<TextFile, ExportError> {
+        Ok(TextFile::new("README.md".to_owned(), self.render(README)?))
     }
 
     fn render(&self, template: &str) -> Result<String, ExportError> {
-        let Self { board, part, clock_hz, top, sources, .. } = *self;
+        let Self { board, part, clock_hz, ref top, sources, .. } = *self;
         let pins = self.ports.iter().map(|port| self.pin(port)).collect::<Result<Vec<_>, _>>()?;
         let bitstream = format!("{top}.{}", board.bitstream);
         let values = context! {
             board => context! { name => &board.name, title => &board.title },
             part => context! { name => &part.name, package => &part.package, ordered => part.ordered() },
-            top => top.to_owned(),
+            top,
             sources => sources.iter().map(|&source| Value::from(source)).collect::<Vec<_>>(),
             pins,
             ties => ties(board),
@@ -148,6 +143,7 @@ impl Design<'_> {
                 period_ns => period_ns(board.oscillator.hz),
             },
             mhz => mhz(clock_hz),
+            baud => self.uart.map(Uart::baud),
             yosys => board.family.yosys(),
             bitgen => &board.bitgen,
             flash => board.flash.replace("FILE", &bitstream),

@@ -3,12 +3,13 @@
 use crate::ExportError;
 use crate::guard;
 use crate::module::module_text;
-use crate::names::split_index;
+use crate::names::{Names, split_index};
 use crate::netlist::{self, Module};
-use carrystep_hdl::{HdlError, SixAxis, engine};
+use crate::write::{TextFile, write};
+use carrystep_hdl::{HdlError, SixAxis, engine, uart_link};
+use carrystep_spec::link::Uart;
 use carrystep_spec::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use rust_hdl::prelude::{Block, check_all};
-use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Name of the parallel core's top module and of its files.
@@ -16,6 +17,9 @@ pub const CORE_NAME: &str = "carrystep_six_axis";
 
 /// Name of the engine's top module and of its files.
 pub const ENGINE_NAME: &str = "carrystep_engine";
+
+/// Name of the host link's top module and of its file.
+pub const LINK_NAME: &str = "carrystep_link";
 
 /// Verilator's waivers for the parallel core, each with its reason.
 pub const CORE_WAIVERS: &str = include_str!("carrystep_six_axis.vlt");
@@ -27,7 +31,7 @@ pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
 const RUST_HDL: &str = "0.46.0";
 
 /// What each module is for, in a line.
-const PURPOSES: [(&str, &str); 21] = [
+const PURPOSES: [(&str, &str); 29] = [
     ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
     ("carrystep_sequencer", "The running and the waiting segment of an axis."),
     ("carrystep_step_edge", "When in its tick a step is due: bisection, then the request to the shaper."),
@@ -48,6 +52,14 @@ const PURPOSES: [(&str, &str); 21] = [
     ("carrystep_limits", "The limit switches, one look in a turn."),
     ("carrystep_stops", "Who stops the axes, and how far the stop has come."),
     ("carrystep_watch", "The e-stop, the host's signs of life, the drivers' power."),
+    ("carrystep_uart_in", "Bytes from the line."),
+    ("carrystep_uart_out", "Bytes to the line."),
+    ("carrystep_check", "The CRC of frames."),
+    ("carrystep_machine", "The little machine that reads requests and writes answers."),
+    ("carrystep_program", "What it does."),
+    ("carrystep_sent", "The answer that is being sent."),
+    ("carrystep_facts", "What can be read."),
+    (LINK_NAME, "The host link: bytes in, words of segments out."),
     (ENGINE_NAME, "Axes on one adder, their queues, starts, and the guard."),
 ];
 
@@ -57,7 +69,7 @@ const PURPOSES: [(&str, &str); 21] = [
 /// # Errors
 /// [`ExportError`] where the build cannot be made.
 pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
-    let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins, guard: String::new() };
+    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, "");
     file_text(&mut SixAxis::new(build)?, CORE_NAME, &facts, description)
 }
 
@@ -66,18 +78,42 @@ pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, Expo
 /// # Errors
 /// [`ExportError`] where the build cannot be made.
 pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, ExportError> {
-    let guard = guard::lines(build);
-    let facts = Facts { timebase: build.timebase, phase: build.phase, pins: &build.pins, guard };
+    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, &guard::lines(build));
     file_text(engine(build)?.as_mut(), ENGINE_NAME, &facts, description)
+}
+
+/// The host link of this build as Verilog-2005, top module [`LINK_NAME`]; otherwise as [`six_axis_verilog`].
+///
+/// # Errors
+/// [`ExportError`] where the build cannot be made.
+pub fn link_verilog(build: &EngineBuild, uart: Uart, description: &str) -> Result<String, ExportError> {
+    let lines = format!(
+        "// Clock        {} Hz\n// UART         {} baud, {} clocks a bit\n// Build id     {}\n",
+        build.timebase.clock_hz(),
+        uart.baud(),
+        uart.bit_clocks(),
+        uart.build_id(build)
+    );
+    let facts = Facts { title: "the host link of an engine, over a UART".to_owned(), lines, pins: &[] };
+    file_text(uart_link(build, uart)?.as_mut(), LINK_NAME, &facts, description)
+}
+
+/// The ports that the link shares with the engine, and their widths.
+pub(crate) fn link_ports(build: &EngineBuild, uart: Uart) -> Result<Vec<(String, usize)>, ExportError> {
+    let mut link = uart_link(build, uart)?;
+    link.connect_all();
+    let ports = Names::new(&netlist::read(link.as_ref())?)?.ports.into_iter();
+    Ok(ports
+        .filter(|port| !["clock", "rx", "tx"].contains(&port.name.as_str()))
+        .map(|port| (port.name, port.width))
+        .collect())
 }
 
 /// What the header tells of a build.
 struct Facts<'a> {
-    timebase: Timebase,
-    phase: StartPhase,
+    title: String,
+    lines: String,
     pins: &'a [PinTiming],
-    /// Lines of the header, where there is a guard.
-    guard: String,
 }
 
 fn file_text(core: &mut dyn Block, name: &str, build: &Facts<'_>, description: &str) -> Result<String, ExportError> {
@@ -101,7 +137,7 @@ fn file_text(core: &mut dyn Block, name: &str, build: &Facts<'_>, description: &
 /// # Errors
 /// [`ExportError`] where the build cannot be made or a file cannot be written.
 pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<PathBuf>, ExportError> {
-    write_files(dir, CORE_NAME, &six_axis_verilog(build, description)?, CORE_WAIVERS)
+    write(dir, &files(CORE_NAME, six_axis_verilog(build, description)?, CORE_WAIVERS))
 }
 
 /// Writes the engine's Verilog and its waivers into `dir`; otherwise as [`write_core`].
@@ -109,41 +145,11 @@ pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<Pa
 /// # Errors
 /// [`ExportError`] where the build cannot be made or a file cannot be written.
 pub fn write_engine(dir: &Path, build: &EngineBuild, description: &str) -> Result<Vec<PathBuf>, ExportError> {
-    write_files(dir, ENGINE_NAME, &engine_verilog(build, description)?, ENGINE_WAIVERS)
+    write(dir, &files(ENGINE_NAME, engine_verilog(build, description)?, ENGINE_WAIVERS))
 }
 
-fn write_files(dir: &Path, name: &str, verilog: &str, waivers: &str) -> Result<Vec<PathBuf>, ExportError> {
-    std::fs::create_dir_all(dir).map_err(|source| ExportError::Io { path: dir.to_owned(), source: folder(source) })?;
-    let files =
-        [("v", verilog), ("vlt", waivers)].map(|(extension, text)| (dir.join(name).with_extension(extension), text));
-    let failed = |path: &Path| {
-        let path = path.to_owned();
-        |source| ExportError::Io { path, source }
-    };
-    // All are written before the first one appears.
-    let whole = files.map(|(path, text)| {
-        let file = new_file(dir).and_then(|mut file| file.write_all(text.as_bytes()).map(|()| file));
-        file.map_err(failed(&path)).map(|file| (path, file))
-    });
-    let whole: Vec<_> = whole.into_iter().collect::<Result<_, _>>()?;
-    let appear = |(path, file): (PathBuf, tempfile::NamedTempFile)| {
-        file.persist(&path).map_err(|error| failed(&path)(error.error))?;
-        Ok(path)
-    };
-    whole.into_iter().map(appear).collect()
-}
-
-/// A file in the folder's place is told as what it is; the system says only that something exists.
-fn folder(error: std::io::Error) -> std::io::Error {
-    if error.kind() == ErrorKind::AlreadyExists { ErrorKind::NotADirectory.into() } else { error }
-}
-
-/// A file without a name yet, with the permissions of any other new file (a temporary one is its owner's only).
-pub(crate) fn new_file(dir: &Path) -> std::io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(dir)
+fn files(name: &str, verilog: String, waivers: &str) -> [TextFile; 2] {
+    [TextFile::new(format!("{name}.v"), verilog), TextFile::new(format!("{name}.vlt"), waivers)]
 }
 
 /// The modules so far, children first.
@@ -178,44 +184,49 @@ impl Library<'_> {
     }
 }
 
-fn header(name: &str, build: &Facts<'_>, description: &str) -> String {
-    let time = &build.timebase;
-    let start = match build.phase {
-        StartPhase::Half => "half a step",
-        StartPhase::Zero => "0",
-    };
-    let description = description.replace(['\n', '\r'], " ");
-    let mut text = format!(
-        "\
-// SPDX-License-Identifier: MIT OR Apache-2.0
-//
-// {name}: step and direction for {axes} axes. Generated: change the generator, not this file.
-//
-// Made from    {description}
-// Made by      carrystep-export {version}, with Rust-HDL {RUST_HDL}
+impl<'a> Facts<'a> {
+    fn of_axes(time: &Timebase, phase: StartPhase, pins: &'a [PinTiming], guard: &str) -> Self {
+        let start = match phase {
+            StartPhase::Half => "half a step",
+            StartPhase::Zero => "0",
+        };
+        let mut lines = format!(
+            "\
 // Clock        {clock} Hz
 // Tick         {tick} ns, {clocks} clocks in {phases} phases
 // Latency      {latency} clocks from the load of a move to the edge of its tick 1, phase 0
 // P starts at  {start}
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
 ",
-        version = env!("CARGO_PKG_VERSION"),
-        axes = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"]
-            .get(build.pins.len())
-            .unwrap_or(&"many"),
-        clock = time.clock_hz(),
-        tick = time.tick_ns(),
-        clocks = time.clocks_per_tick(),
-        phases = time.phases(),
-        latency = time.latency_clocks(),
-    );
-    for (axis, pins) in build.pins.iter().enumerate() {
-        text.push_str(&format!(
-            "//   axis {axis}     W {}, S {}, D {}, H {}\n",
-            pins.width, pins.gap, pins.setup, pins.hold
-        ));
+            clock = time.clock_hz(),
+            tick = time.tick_ns(),
+            clocks = time.clocks_per_tick(),
+            phases = time.phases(),
+            latency = time.latency_clocks(),
+        );
+        for (axis, PinTiming { width, gap, setup, hold }) in pins.iter().enumerate() {
+            lines.push_str(&format!("//   axis {axis}     W {width}, S {gap}, D {setup}, H {hold}\n"));
+        }
+        let count = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"].get(pins.len());
+        let title = format!("step and direction for {} axes", count.unwrap_or(&"many"));
+        Self { title, lines: lines + guard, pins }
     }
-    text.push_str(&build.guard);
-    text.push_str("\n`default_nettype none\n");
-    text
+}
+
+fn header(name: &str, facts: &Facts<'_>, description: &str) -> String {
+    let description = description.replace(['\n', '\r'], " ");
+    let Facts { title, lines, .. } = facts;
+    format!(
+        "\
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// {name}: {title}. Generated: change the generator, not this file.
+//
+// Made from    {description}
+// Made by      carrystep-export {version}, with Rust-HDL {RUST_HDL}
+{lines}
+`default_nettype none
+",
+        version = env!("CARGO_PKG_VERSION"),
+    )
 }

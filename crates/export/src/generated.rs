@@ -1,17 +1,22 @@
-//! All files of the workspace that are made from tables of `spec`: the register map's, the pages of boards and drivers.
+//! All files of the workspace that are made from tables of `spec`: the register map's, the pages of boards and drivers, and the
+//! boards' gateware.
 
-use crate::core::new_file;
-use crate::{ExportError, board, registers};
-use std::io::Write;
+use crate::write::{TextFile, write};
+use crate::{ExportError, Gateware, board, registers};
+use carrystep_spec::board::boards;
 use std::path::Path;
 
-/// Each file: its path in the workspace, and its text.
+/// Each file, its name being its path in the workspace.
 ///
 /// # Errors
-/// [`ExportError::Template`] where a template asks for what there is not.
-pub fn generated_files() -> Result<Vec<(String, String)>, ExportError> {
-    let mut files: Vec<_> = registers::files()?.into_iter().map(|(path, text)| (path.to_owned(), text)).collect();
+/// [`ExportError`] where a file cannot be made.
+pub fn generated_files() -> Result<Vec<TextFile>, ExportError> {
+    let mut files: Vec<_> = registers::files()?.into_iter().map(|(path, text)| TextFile::new(path, text)).collect();
     files.extend(board::pages()?);
+    for board in boards() {
+        let made = Gateware::shipped(board, &board.parts[0])?.files()?.into_iter();
+        files.extend(made.map(|file| TextFile { name: format!("hdl-out/{}/{}", board.name, file.name), ..file }));
+    }
     Ok(files)
 }
 
@@ -20,17 +25,5 @@ pub fn generated_files() -> Result<Vec<(String, String)>, ExportError> {
 /// # Errors
 /// [`ExportError`] where a file cannot be made or written.
 pub fn write_generated_files(root: &Path) -> Result<(), ExportError> {
-    for (path, text) in generated_files()? {
-        let path = root.join(path);
-        let dir = path.parent().unwrap_or(root);
-        let write = || {
-            std::fs::create_dir_all(dir)?;
-            let mut file = new_file(dir)?;
-            file.write_all(text.as_bytes())?;
-            file.persist(&path)?;
-            Ok(())
-        };
-        write().map_err(|source| ExportError::Io { path: path.clone(), source })?;
-    }
-    Ok(())
+    write(root, &generated_files()?).map(|_| ())
 }

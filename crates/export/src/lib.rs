@@ -20,15 +20,20 @@ mod netlist;
 mod registers;
 #[cfg(test)]
 mod tests;
+mod write;
 
-pub use crate::board::{BoardFile, CLOCK_NAME, Design};
+pub use crate::board::{CLOCK_NAME, Design, Gateware, shipped_machine};
 pub use crate::core::{
-    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, engine_verilog, six_axis_verilog, write_core, write_engine,
+    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, LINK_NAME, engine_verilog, link_verilog, six_axis_verilog,
+    write_core, write_engine,
 };
 pub use crate::generated::{generated_files, write_generated_files};
+pub use crate::write::{TextFile, write};
 
 use carrystep_hdl::HdlError;
+use carrystep_spec::InputError;
 use carrystep_spec::board::BoardError;
+use carrystep_spec::link::BaudError;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -52,6 +57,12 @@ pub enum ExportError {
     /// A board has no pin for a port, or cannot make the clock.
     #[error(transparent)]
     Board(#[from] BoardError),
+    /// The clock of the machine file makes no baud rate of the board.
+    #[error(transparent)]
+    Baud(#[from] BaudError),
+    /// The machine file is none.
+    #[error(transparent)]
+    Machine(#[from] InputError),
     /// A template asks for what there is not.
     #[error("a template: {0}")]
     Template(#[from] minijinja::Error),

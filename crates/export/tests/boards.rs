@@ -1,22 +1,21 @@
-//! The boards' folders: constraints as they were, and what the open tools say of them.
+//! The boards' folders: pins, clocks and scripts in the open tools, and what is refused.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-use carrystep_export::{BoardFile, Design, ExportError};
+use carrystep_export::{Design, ExportError, Gateware, TextFile, shipped_machine};
+use carrystep_spec::Source;
 use carrystep_spec::board::{Board, OSCILLATOR, PORTS, Toolchain, Way, board, boards};
 use std::path::Path;
 use std::process::Command;
 
-const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/boards");
-
 /// All ports of a board, bit by bit.
-fn ports(board: &Board) -> Vec<&str> {
-    board.wires.iter().map(|wire| wire.port.as_str()).collect()
+fn ports(board: &Board) -> Vec<String> {
+    board.wires.iter().map(|wire| wire.port.clone()).collect()
 }
 
 /// The files of a top level with these ports.
-fn files(board: &Board, ports: &[&str]) -> Result<Vec<BoardFile>, ExportError> {
-    let (part, clock_hz) = (&board.parts[0], board.clocks[0].clock_hz);
-    Design { board, part, clock_hz, top: "top", sources: &["carrystep_clock.v", "top.v"], ports }.files()
+fn files(board: &Board, ports: &[String]) -> Result<Vec<TextFile>, ExportError> {
+    let (part, clock_hz, top) = (&board.parts[0], board.clocks[0].clock_hz, "top".to_owned());
+    Design { board, part, clock_hz, uart: None, top, sources: &["carrystep_clock.v", "top.v"], ports }.files()
 }
 
 /// A top level that uses every pin: inputs meet in a register, outputs are that register.
@@ -34,8 +33,8 @@ fn top(board: &Board) -> String {
     list.extend(board.ties.iter().map(|tie| format!("output wire {}", tie.port)));
     let all: Vec<String> = inputs.iter().map(|(name, ..)| format!("^{name}")).collect();
     let mut body = format!(
-        "wire clock, locked; carrystep_clock made (.oscillator({OSCILLATOR}), .clock(clock), .locked(locked));\n\
-         reg r = 1'b0; always @(posedge clock) r <= locked ^ {};\n",
+        "wire clock; carrystep_clock made (.oscillator({OSCILLATOR}), .clock(clock));\n\
+         reg r = 1'b0; always @(posedge clock) r <= {};\n",
         all.join(" ^ ")
     );
     for (name, _, bits) in &outputs {
@@ -90,42 +89,71 @@ fn every_spartan_s_clock_is_of_cells_that_yosys_knows() {
     }
 }
 
-/// One of each toolchain; `CARRYSTEP_GOLDEN=write` writes them anew.
-#[test]
-fn constraints_clocks_and_scripts_are_as_they_were() {
-    for name in ["icestick", "tinyfpga-bx", "nexys2", "mojo-v3", "arty-s7"] {
-        let board = board(name).unwrap();
-        for file in files(board, &ports(board)).unwrap() {
-            let path = Path::new(GOLDEN).join(name).join(&file.name);
-            if std::env::var("CARRYSTEP_GOLDEN").is_ok() {
-                std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-                std::fs::write(&path, &file.text).unwrap();
-            }
-            let golden = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-            assert_eq!(file.text, golden, "{}", path.display());
-            assert_eq!(file.executable, file.name == "build.sh");
-        }
-    }
-}
-
 #[test]
 fn a_top_level_gets_the_pins_of_its_ports_and_no_others() {
     let board = board("icestick").unwrap();
-    let text = files(board, &["uart_rx", "step[0]", "dir"]).unwrap().remove(1).text;
+    let text = files(board, &["uart_rx", "step[0]", "dir"].map(str::to_owned)).unwrap().remove(1).text;
     let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("set_io")).collect();
     assert_eq!(lines, ["set_io oscillator 21", "set_io -pullup yes uart_rx 9", "set_io step[0] 112", "set_io dir 62"]);
-    let refused = files(board, &["limit_max[0]"]).unwrap_err().to_string();
+    let refused = files(board, &["limit_max[0]".to_owned()]).unwrap_err().to_string();
     assert_eq!(refused, "icestick has no pin for limit_max[0]");
 }
 
+/// What is asked of a board, as its machine file with one thing changed.
+fn asked(name: &str, was: &str, becomes: &str) -> Result<(), String> {
+    let board = board(name).unwrap();
+    let text = shipped_machine(board, &board.clocks[0]);
+    assert!(text.contains(was), "the text is gone: {was}");
+    let source = Source { path: "machine.toml".into(), text: text.replacen(was, becomes, 1).into() };
+    Gateware::new(board, &board.parts[0], source).map(|_| ()).map_err(|error| error.to_string())
+}
+
 #[test]
-fn a_clock_that_the_board_cannot_make_is_refused() {
-    let board = board("alchitry-cu").unwrap();
-    let part = &board.parts[0];
-    let design = Design { board, part, clock_hz: 48_000_000, top: "top", sources: &[], ports: &[] };
-    let refused = design.files().unwrap_err().to_string();
-    assert!(
-        refused.starts_with("alchitry-cu: the PLL makes no clock of 48 MHz from 100 MHz; the nearest"),
-        "{refused}"
-    );
+fn what_a_board_cannot_do_is_refused_with_what_it_can() {
+    asked("icestick", "limits", "limits").unwrap();
+    let refused = [
+        (
+            "alchitry-cu",
+            "80000000\ntick_ns = 1000",
+            "48000000\ntick_ns = 2000",
+            "alchitry-cu: the PLL makes no clock of 48 MHz from 100 MHz; the nearest",
+        ),
+        (
+            "icestick",
+            "\"each\"",
+            "\"pair\"",
+            "too few for two for each of 6 axes: limits = \"each\" or \"one\" would do",
+        ),
+        ("icestick", "tick_ns = 2000", "tick_ns = 1000", "6 axes need 13 clocks each and one to close the tick"),
+        ("icestick", "driver = \"a4988\"", "driver = \"a4988\"\nstep_ns = 9000000", "step_ns"),
+        (
+            "icestick",
+            "[[machine.axis]]",
+            "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
+            "icestick has pins for 6 axes, not for",
+        ),
+    ];
+    for (name, was, becomes, says) in refused {
+        let said = asked(name, was, becomes).unwrap_err();
+        assert!(said.contains(says), "{said}, not: {says}");
+    }
+}
+
+/// A board of one's own, without a way to a host that the link speaks.
+#[test]
+fn a_board_without_a_uart_is_refused() {
+    let mut board = board("icestick").unwrap().clone();
+    board.wires.retain(|wire| !wire.port.starts_with("uart"));
+    let refused = Gateware::shipped(&board, &board.parts[0]).unwrap_err().to_string();
+    assert_eq!(refused, "icestick has no pin for uart_rx");
+}
+
+/// The folder's script says it is one, and nothing else does.
+#[test]
+fn only_scripts_are_executable() {
+    for board in boards() {
+        for file in Gateware::shipped(board, &board.parts[0]).unwrap().files().unwrap() {
+            assert_eq!(file.executable, file.name == "build.sh", "{}", file.name);
+        }
+    }
 }

@@ -15,20 +15,19 @@
 use crate::register::Input;
 use crate::word::Word;
 use carrystep_spec::EngineBuild;
-use carrystep_spec::link::registers::{
-    AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLOCK_HZ, IDENTITY, IDENTITY_VALUE, PHASES, PROTOCOL, PROTOCOL_VERSION, TICK_NS,
-    WATCHDOG_TICKS,
-};
-use carrystep_spec::link::{BuildId, image};
+use carrystep_spec::link::{Uart, facts, image};
 use rust_hdl::prelude::*;
 
 pub mod check;
 pub mod facts;
 pub mod machine;
+mod sim;
 pub mod uart_in;
 pub mod uart_out;
 
-use facts::Facts;
+pub use sim::{AnyLink, LinkSim, uart_link};
+
+use self::facts::Facts;
 use machine::Machine;
 use uart_in::UartIn;
 use uart_out::UartOut;
@@ -111,26 +110,14 @@ pub struct UartLink<const N: usize> {
 }
 
 impl<const N: usize> UartLink<N> {
-    /// The link of this build, with bits of so many clocks on its line.
-    pub fn new(build: &EngineBuild, line: &str, bit_clocks: u32) -> Self {
-        let [low, high] = BuildId::new(build, line).halves();
-        let time = &build.timebase;
-        let facts = [
-            (IDENTITY, IDENTITY_VALUE),
-            (PROTOCOL, PROTOCOL_VERSION),
-            (BUILD_LOW, low),
-            (BUILD_HIGH, high),
-            (AXIS_COUNT, build.axes() as u32),
-            (CLOCK_HZ, time.clock_hz() as u32),
-            (TICK_NS, time.tick_ns() as u32),
-            (PHASES, time.phases()),
-            (WATCHDOG_TICKS, build.guard.watchdog * build.guard.round),
-        ];
+    /// The link of this build, with this line.
+    fn new(build: &EngineBuild, uart: Uart) -> Self {
+        let bit_clocks = uart.bit_clocks();
         Self {
             uart_in: UartIn::new(bit_clocks),
             uart_out: UartOut::new(bit_clocks),
             machine: Machine::new(&image()),
-            facts: Facts::new(&facts),
+            facts: Facts::new(&facts(build, uart)),
             ..Self::default()
         }
     }
@@ -197,9 +184,7 @@ mod tests {
     fn link_synthesizes() {
         let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-        let mut link = UartLink::<6>::new(&EngineBuild::minimal(&build, 1), "uart", 16);
-        assert_synthesizes(UartLink::<6>::new(&EngineBuild::minimal(&build, 1), "uart", 16), "carrystep_link");
-        link.connect_all();
-        std::fs::write("/tmp/uart_link2.v", generate_verilog(&link)).unwrap();
+        let uart = Uart::new(48_000_000, 3_000_000).unwrap();
+        assert_synthesizes(UartLink::<6>::new(&EngineBuild::minimal(&build, 1), uart), "carrystep_link");
     }
 }

@@ -77,7 +77,7 @@ impl Engine {
     pub fn outputs(&self, inputs: &EngineInputs) -> EngineOutputs {
         let free = self.stop.fault.is_none();
         let (strobe, guard) = (self.strobe(), &self.build.guard);
-        let put_axis = inputs.put.map_or(0, |put| usize::from(put.axis));
+        let put_axis = usize::from(inputs.put.map_or(inputs.room_of, |put| put.axis));
         EngineOutputs {
             put_ready: free && self.takes(put_axis),
             start_ready: free && strobe && self.armed.is_none() && inputs.enable && self.watch.is_warm(guard),

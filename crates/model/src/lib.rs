@@ -15,5 +15,5 @@ pub mod six_axis;
 
 pub use engine::Engine;
 pub use fast::{Fast, FastEngine};
-pub use link::{Link, LinkInputs, LinkOutputs};
+pub use link::Link;
 pub use six_axis::SixAxis;

@@ -18,86 +18,11 @@ mod machine;
 mod uart;
 
 use carrystep_spec::EngineBuild;
-use carrystep_spec::link::{Uart, image};
+use carrystep_spec::engine::{EngineInputs, Put};
+use carrystep_spec::link::{LinkInputs, LinkOutputs, Uart, image};
 use facts::Facts;
 use machine::{Inputs, Machine, Waits};
 use uart::{Receiver, Transmitter};
-
-/// What goes into the link in a clock.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct LinkInputs {
-    /// The line from the host; high at rest.
-    pub rx: bool,
-    /// The offered word is taken.
-    pub put_ready: bool,
-    /// The axis of `put_axis` has room for so many segments,
-    pub room: u8,
-    /// in this clock.
-    pub room_valid: bool,
-    /// The offered start is taken.
-    pub start_ready: bool,
-    /// What was asked of the engine,
-    pub get_data: u32,
-    /// in this clock.
-    pub get_valid: bool,
-    /// `get_data` is the position
-    pub latch: bool,
-    /// of this axis, which waits for its limit.
-    pub latch_axis: u8,
-    /// A stop has been called.
-    pub fault: bool,
-    /// No axis moves any more.
-    pub halted: bool,
-    /// All axes are done.
-    pub idle: bool,
-    /// Starts can be taken.
-    pub ready: bool,
-    /// A start is armed.
-    pub armed: bool,
-    /// Why, 0 to 7.
-    pub cause: u8,
-    /// The axes that a stop came from.
-    pub culprits: u8,
-    /// The axes that wait for their limit.
-    pub homing: u8,
-}
-
-/// What comes out of the link in a clock.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct LinkOutputs {
-    /// The line to the host.
-    pub tx: bool,
-    /// A word of a segment is offered,
-    pub put_valid: bool,
-    /// for this axis, whose room is asked for at any time,
-    pub put_axis: u8,
-    /// the word of this place,
-    pub put_word: u8,
-    /// this one.
-    pub put_data: u32,
-    /// A start is offered,
-    pub start_valid: bool,
-    /// of these axes.
-    pub start_mask: u8,
-    /// Resume after a stop.
-    pub clear: bool,
-    /// The host's controlled stop.
-    pub stop: bool,
-    /// The host has broken the segment protocol.
-    pub broken: bool,
-    /// The host says anew which axes wait for their limit,
-    pub home_valid: bool,
-    /// namely these.
-    pub home_mask: u8,
-    /// The host was heard of.
-    pub kick: bool,
-    /// The drivers are to be powered.
-    pub enable: bool,
-    /// What is asked of the engine: of this axis,
-    pub get_axis: u8,
-    /// this item.
-    pub get_item: u8,
-}
 
 /// The link's state; [`Link::outputs`] and [`Link::clock`] are its one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -118,7 +43,7 @@ impl Link {
             receiver: Receiver::new(uart.bit_clocks()),
             transmitter: Transmitter::new(uart.bit_clocks()),
             machine: Machine::new(&image()),
-            facts: Facts::new(build, uart.build_id(build)),
+            facts: Facts::new(build, uart),
         }
     }
 
@@ -126,24 +51,21 @@ impl Link {
     pub fn outputs(&self) -> LinkOutputs {
         let machine = self.machine.outputs();
         let (get_axis, get_item) = self.facts.asks();
-        LinkOutputs {
-            tx: self.transmitter.line(),
-            put_valid: machine.puts,
-            put_axis: machine.x >> 3 & 7,
-            put_word: machine.x & 7,
-            put_data: machine.word,
-            start_valid: machine.starts,
-            start_mask: machine.a & self.axes,
+        let (axis, word) = (machine.x >> 3 & 7, machine.x & 7);
+        let mask = machine.a & self.axes;
+        let engine = EngineInputs {
+            put: machine.puts.then_some(Put { axis, word, data: machine.word }),
+            room_of: axis,
+            start: machine.starts.then_some(mask),
             clear: machine.clear,
             stop: machine.stop,
             broken: machine.broken,
-            home_valid: machine.homes,
-            home_mask: machine.a & self.axes,
+            home: machine.homes.then_some(mask),
             kick: machine.kicks,
             enable: machine.enable,
-            get_axis,
-            get_item,
-        }
+            ..EngineInputs::default()
+        };
+        LinkOutputs { tx: self.transmitter.line(), engine, get_axis, get_item }
     }
 
     /// Goes to the next clock.
@@ -155,7 +77,7 @@ impl Link {
             taken,
             fact: self.facts.data(),
             scanned: self.facts.scanned(inputs),
-            engine: inputs,
+            engine: &inputs.engine,
         });
         self.facts.clock(machine.x, inputs);
         self.transmitter.clock(taken.then_some(machine.a));

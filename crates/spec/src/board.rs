@@ -3,6 +3,7 @@
 use crate::clock::ClockManager;
 use crate::engine::Limits;
 use crate::error::{InputError, Source};
+use crate::link::{BaudError, Uart};
 use serde::Serialize;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -15,6 +16,9 @@ mod raw;
 pub use error::BoardError;
 pub use family::{Family, IoStandard, PllInput, Toolchain};
 pub use port::{OSCILLATOR, PORTS, Port, Way};
+
+/// Baud rates that are proposed, the fastest first: those that USB serial chips make exactly, and the usual ones.
+pub const BAUDS: [u32; 7] = [3_000_000, 2_000_000, 1_500_000, 1_000_000, 500_000, 230_400, 115_200];
 
 /// The files, in the order in which boards are listed.
 const DATA: [&str; 14] = [
@@ -63,6 +67,9 @@ pub struct Board {
     pub ties: Vec<Tie>,
     /// Its LED lights where the pin is low.
     pub led_low: bool,
+    /// Greatest baud rate of its serial chip, where that is under the fastest of [`BAUDS`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_baud: Option<u32>,
     /// The command that loads the bitstream, `FILE` in its place.
     pub flash: String,
     /// Extension of the bitstream.
@@ -227,6 +234,16 @@ impl Board {
             let proposed: Vec<String> = self.clocks.iter().map(shown).collect();
             BoardError::Clock { board: self.name.clone(), source, proposed: proposed.join(" or ") }
         })
+    }
+
+    /// The fastest of the [`BAUDS`] that this clock makes within 2 % and that its serial chip takes.
+    ///
+    /// # Errors
+    /// [`BaudError`]: the clock makes none of them.
+    pub fn uart(&self, clock_hz: u64) -> Result<Uart, BaudError> {
+        let most = self.max_baud.unwrap_or(BAUDS[0]);
+        let made = BAUDS.into_iter().filter(|baud| *baud <= most).find_map(|baud| Uart::new(clock_hz, baud).ok());
+        made.map_or_else(|| Uart::new(clock_hz, most), Ok)
     }
 
     /// Whether it has pins for so many axes and their limit switches.

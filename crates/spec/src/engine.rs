@@ -106,6 +106,8 @@ pub struct Put {
 pub struct EngineInputs {
     /// A word is offered; it stays until it is taken.
     pub put: Option<Put>,
+    /// The axis whose room is asked for while nothing is put.
+    pub room_of: u8,
     /// A start of these axes is offered; it stays until it is taken.
     pub start: Option<u8>,
     /// Resume after a stop.
@@ -203,7 +205,7 @@ pub struct EngineOutputs {
     pub homing: u8,
     /// The axis that says its position because it waits for its limit.
     pub latch: Option<u8>,
-    /// Segments that the axis of `put` (the first one, where nothing is put) has room for, where it says so.
+    /// Segments that the axis of `put` (or of `room_of`) has room for, where it says so.
     pub room: Option<u8>,
     /// Axes start at the end of this cycle.
     pub started: bool,

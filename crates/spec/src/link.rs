@@ -8,13 +8,17 @@
 
 mod assembler;
 mod build_id;
+mod facts;
 pub mod machine;
+mod ports;
 mod program;
 pub mod registers;
 mod uart;
 
 pub use assembler::Image;
 pub use build_id::BuildId;
+pub use facts::facts;
+pub use ports::{LinkInputs, LinkOutputs};
 pub use program::image;
 pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};
 

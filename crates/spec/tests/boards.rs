@@ -144,3 +144,21 @@ fn what_a_board_cannot_do_is_said_with_what_would_do() {
          to run at 48 MHz (ticks of 2000 ns in 16 phases) or 84 MHz (ticks of 1000 ns in 4 phases)"
     );
 }
+
+/// 37.5 MHz make no 3 Mbaud within 2 %.
+#[test]
+fn a_board_s_default_baud_rate_is_the_fastest_that_its_clock_makes() {
+    let default = |name| {
+        let board: &Board = board(name).unwrap();
+        let uart = board.uart(board.clocks[0].clock_hz).unwrap();
+        (uart.baud(), uart.bit_clocks())
+    };
+    assert_eq!(default("icestick"), (3_000_000, 16));
+    assert_eq!(default("icebreaker"), (2_000_000, 19));
+    assert_eq!(default("alchitry-cu"), (3_000_000, 27));
+    assert_eq!(default("s3board"), (115_200, 347));
+    for board in boards() {
+        assert!(board.clocks.iter().all(|clock| board.uart(clock.clock_hz).is_ok()), "{}", board.name);
+    }
+    assert!(board("s3board").unwrap().uart(500_000).is_err());
+}

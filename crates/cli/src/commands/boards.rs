@@ -3,6 +3,8 @@
 use crate::arguments::Boards;
 use crate::failure::Failure;
 use crate::output;
+use carrystep_export::Gateware;
+use carrystep_spec::Source;
 use carrystep_spec::board::{Board, BoardError, Part, Place, board, boards};
 use carrystep_spec::clock::mhz;
 use serde::Serialize;
@@ -44,6 +46,15 @@ pub fn find(name: &str) -> Result<Cow<'static, Board>, Failure> {
         }
         Err(error) => Err(error.into()),
     }
+}
+
+/// The gateware of a machine file, or of the shipped machine, for one of the board's parts.
+pub fn gateware<'a>(board: &'a Board, part: Option<&str>, machine: Option<&Path>) -> Result<Gateware<'a>, Failure> {
+    let part = board.part(part)?;
+    Ok(match machine {
+        Some(path) => Gateware::new(board, part, Source::read(path)?)?,
+        None => Gateware::shipped(board, part)?,
+    })
 }
 
 /// A line for each.

@@ -1,7 +1,7 @@
-//! `carrystep verilog`: the gateware of a machine as Verilog.
+//! `carrystep verilog`: the gateware of a machine as Verilog; with a board, all that its toolchain needs.
 
 use crate::arguments::{Core, Verilog};
-use crate::commands::demo;
+use crate::commands::{boards, demo};
 use crate::failure::Failure;
 use crate::output;
 use carrystep_export::{CORE_NAME, ENGINE_NAME, ExportError};
@@ -23,18 +23,59 @@ struct Written {
     files: Vec<PathBuf>,
 }
 
-/// Writes the Verilog and its lint waivers.
+/// Writes the Verilog and its lint waivers, or all gateware of a board.
 pub fn run(arguments: &Verilog) -> Result<(), Failure> {
+    if let Some(board) = &arguments.board {
+        return of_board(arguments, board);
+    }
     let (machine, name) = match &arguments.machine {
         Some(path) => (Machine::load(path)?, path.display().to_string()),
         None => shipped(arguments.core)?,
     };
-    let written = write(arguments.core, &arguments.out, &machine, &name)?;
+    let out = arguments.out.as_deref().unwrap_or(Path::new("hdl-out/core"));
+    let written = write(arguments.core, out, &machine, &name)?;
     if arguments.json {
         return output::print_json(&written);
     }
-    let lines: Vec<String> = written.files.iter().map(|file| format!("wrote {}\n", file.display())).collect();
-    output::print(&lines.concat())
+    output::print(&listed(&written.files))
+}
+
+fn listed(files: &[PathBuf]) -> String {
+    files.iter().map(|file| format!("wrote {}\n", file.display())).collect()
+}
+
+/// What `--json` prints of a board's gateware.
+#[derive(Serialize)]
+struct WrittenForBoard<'a> {
+    passed: bool,
+    top: String,
+    board: &'a str,
+    part: String,
+    build_id: String,
+    baud: u32,
+    guard: GuardFigures,
+    files: Vec<PathBuf>,
+}
+
+/// Everything in a board's folder.
+fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
+    let board = boards::find(board)?;
+    let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
+    let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
+    let files = carrystep_export::write(&out, &gateware.files()?)?;
+    if arguments.json {
+        return output::print_json(&WrittenForBoard {
+            passed: true,
+            top: gateware.top(),
+            board: &board.name,
+            part: gateware.part().ordered(),
+            build_id: gateware.build_id().to_string(),
+            baud: gateware.uart().baud(),
+            guard: gateware.build().guard_figures(),
+            files,
+        });
+    }
+    output::print(&listed(&files))
 }
 
 /// The machine that `hdl-out/core` is made from.

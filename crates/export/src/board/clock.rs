@@ -5,6 +5,10 @@ use carrystep_spec::board::{Board, Family, PllInput};
 use carrystep_spec::clock::{ClockManager, Dcm, Ice40Pll, Mmcm, mhz};
 use minijinja::{Value, context};
 
+/// The clock is let through 2^10 clocks after the lock: 12 us at 84 MHz. An iCE40's block RAMs read zeros for some microseconds
+/// after configuration (YosysHQ/icestorm issue 76: 36 clocks are too few at 25 MHz).
+const WAIT_BITS: u32 = 10;
+
 const TEMPLATE: &str = include_str!("../../templates/board/clock.v");
 
 pub(super) fn verilog(board: &Board, clock_hz: u64) -> Result<String, ExportError> {
@@ -24,6 +28,9 @@ pub(super) fn verilog(board: &Board, clock_hz: u64) -> Result<String, ExportErro
         }
     };
     let values = context! {
+        ice40 => board.family == Family::Ice40,
+        bits => WAIT_BITS,
+        wait => 1_u32 << WAIT_BITS,
         title => &board.title,
         from => mhz(board.oscillator.hz),
         to => mhz(clock_hz),

@@ -2,6 +2,7 @@
 
 use super::{kind, place, rendered};
 use crate::ExportError;
+use crate::write::TextFile;
 use carrystep_spec::board::{Board, Clocking, Wire, boards};
 use carrystep_spec::clock::{ClockManager, mhz};
 use carrystep_spec::driver::{Driver, drivers};
@@ -11,18 +12,18 @@ const PAGE: &str = include_str!("../../templates/board/page.md");
 const DRIVERS: &str = include_str!("../../templates/drivers.md");
 const INDEX: &str = include_str!("../../templates/board/index.md");
 
-/// The pages: path in the workspace, and text.
+/// The pages, by their paths in the workspace.
 ///
 /// # Errors
 /// [`ExportError::Template`] where a template asks for what there is not.
-pub(crate) fn pages() -> Result<Vec<(String, String)>, ExportError> {
+pub(crate) fn pages() -> Result<Vec<TextFile>, ExportError> {
     let all: Vec<Value> = boards().iter().map(values).collect();
     let mut pages = vec![
-        ("docs/boards/index.md".to_owned(), rendered(INDEX, context! { boards => all.clone() })?),
-        ("docs/drivers.md".to_owned(), rendered(DRIVERS, context! { drivers => all_drivers() })?),
+        TextFile::new("docs/boards/index.md", rendered(INDEX, context! { boards => all.clone() })?),
+        TextFile::new("docs/drivers.md", rendered(DRIVERS, context! { drivers => all_drivers() })?),
     ];
     for (board, values) in boards().iter().zip(all) {
-        pages.push((format!("docs/boards/{}.md", board.name), rendered(PAGE, values)?));
+        pages.push(TextFile::new(format!("docs/boards/{}.md", board.name), rendered(PAGE, values)?));
     }
     Ok(pages)
 }

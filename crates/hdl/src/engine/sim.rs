@@ -44,7 +44,7 @@ pub fn engine(build: &EngineBuild) -> Result<Box<dyn AnyEngine>, HdlError> {
 impl<const N: usize> AnyEngine for Engine<N> {
     fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs {
         self.clock.next = false.into();
-        let put = inputs.put.unwrap_or(Put { axis: 0, word: 0, data: 0 });
+        let put = inputs.put.unwrap_or(Put { axis: inputs.room_of, word: 0, data: 0 });
         self.put_valid.next = inputs.put.is_some();
         self.put_axis.next = Word::from(u64::from(put.axis));
         self.put_word.next = Word::from(u64::from(put.word));

@@ -83,9 +83,10 @@ pub struct Machine<const N: usize> {
     check: Check,
     stage: Register<Word<2>>,
     pc: Register<Word<8>>,
-    sum: Register<Word<8>>,   // A
-    index: Register<Word<8>>, // X
-    written: Register<Word<8>>,
+    sum: Register<Word<8>>,     // A
+    index: Register<Word<8>>,   // X
+    written: Register<Word<8>>, // of the ring
+    read: Register<Word<8>>,
     space: Register<Word<3>>, // `room`
     control: Register<Word<2>>,
     clears: Register<Bit>, // `clear`
@@ -142,6 +143,7 @@ pub struct Machine<const N: usize> {
     if_nothing: Literal<3, 4>,
     if_fault: Literal<3, 5>,
     if_startable: Literal<3, 6>,
+    if_special: Literal<3, 7>,
 }
 
 impl<const N: usize> Machine<N> {
@@ -163,7 +165,7 @@ impl<const N: usize> Machine<N> {
 impl<const N: usize> Logic for Machine<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, stage, pc, sum, index, written, space, control, clears);
+        dff_setup!(self, clock, stage, pc, sum, index, written, read, space, control, clears);
         clock!(self, clock, program, data, words, ring, check);
 
         // The instruction, and what it does.
@@ -196,7 +198,7 @@ impl<const N: usize> Logic for Machine<N> {
         if self.armed.val() {
             self.state.next = self.state.val() | self.bit_4.val();
         }
-        self.waited.next = self.scanned.val();
+        self.waited.next = self.scanned.val() | (self.code.val().get_bit(3) & self.room_valid.val());
         if self.code.val().get_bit(11) {
             self.waited.next = self.put_ready.val() | self.fault.val();
         }
@@ -214,7 +216,7 @@ impl<const N: usize> Logic for Machine<N> {
         }
 
         // Where it goes on.
-        self.empty.next = self.index.q.val() == self.written.q.val();
+        self.empty.next = self.read.q.val() == self.written.q.val();
         self.holds.next = true;
         if self.code.val().get_bits::<3>(8) == self.if_zero.val() {
             self.holds.next = !self.sum.q.val().any();
@@ -233,6 +235,9 @@ impl<const N: usize> Logic for Machine<N> {
         }
         if self.code.val().get_bits::<3>(8) == self.if_startable.val() {
             self.holds.next = self.ready.val() & !self.armed.val();
+        }
+        if self.code.val().get_bits::<3>(8) == self.if_special.val() {
+            self.holds.next = self.sum.q.val().get_bit(7) & self.sum.q.val().get_bit(6);
         }
         if self.executes.val() & self.over.val() {
             self.pc.d.next = self.pc.q.val() + self.one.val();
@@ -323,7 +328,10 @@ impl<const N: usize> Logic for Machine<N> {
         self.check.word.next = self.facts.val();
 
         // Bytes that come.
-        self.ring.read_address.next = self.index.q.val();
+        self.ring.read_address.next = self.read.q.val();
+        if self.sets.val() & (self.code.val().get_bits::<3>(8) == self.from_ring.val()) {
+            self.read.d.next = self.read.q.val() + self.one.val();
+        }
         self.ring.write_address.next = self.written.q.val();
         self.ring.write_data.next = self.received_data.val();
         self.ring.write_bits.next = self.none.val();

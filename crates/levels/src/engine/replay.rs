@@ -83,7 +83,7 @@ impl Recording {
     fn text(&self) -> String {
         let mut text = String::new();
         for (count, inputs) in &self.stimuli {
-            let (axis, word, data) = inputs.put.map_or((0, 0, 0), |put| (put.axis, put.word, put.data));
+            let (axis, word, data) = inputs.put.map_or((inputs.room_of, 0, 0), |put| (put.axis, put.word, put.data));
             let (put, start) = (u8::from(inputs.put.is_some()), u8::from(inputs.start.is_some()));
             let EngineInputs { clear, stop, broken, kick, enable, estop, limit_min, limit_max, .. } = *inputs;
             let [clear, stop, broken, kick, enable, estop] = [clear, stop, broken, kick, enable, estop].map(u8::from);

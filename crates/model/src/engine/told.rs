@@ -1,19 +1,13 @@
-//! What the engine tells whoever carries its host's frames: rooms and registers, each at its time.
+//! What the engine tells whoever carries its host's frames: registers, each at its time.
 
 use super::lane::Lane;
 use super::{Engine, bits};
-use carrystep_spec::engine::{PUT_BEAT, TURN};
+use carrystep_spec::engine::TURN;
 
 /// The beat of a turn in which `get` is answered.
 const GET_BEAT: u32 = 11;
 
 impl Engine {
-    /// What `room` says in this cycle, where `put_axis` is this axis.
-    pub fn room(&self, axis: u8) -> Option<u8> {
-        let axis = usize::from(axis);
-        (self.turn_at(PUT_BEAT) == Some(axis)).then(|| self.lanes[axis].room())
-    }
-
     /// Whether `get_data` is an answer in this cycle.
     pub fn answers(&self) -> bool {
         self.turn_at(GET_BEAT).is_some()

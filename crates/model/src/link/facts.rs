@@ -1,11 +1,10 @@
 //! What can be read: the build's facts, and what the engine has last said of each axis. All items are asked for in turn,
 //! one a turn of the engine.
 
-use super::LinkInputs;
 use carrystep_spec::EngineBuild;
-use carrystep_spec::link::BuildId;
 use carrystep_spec::link::machine::SCAN;
 use carrystep_spec::link::registers as map;
+use carrystep_spec::link::{self, LinkInputs, Uart};
 
 /// Words of the memory.
 const WORDS: usize = 128;
@@ -20,21 +19,9 @@ pub(super) struct Facts {
 }
 
 impl Facts {
-    pub(super) fn new(build: &EngineBuild, id: BuildId) -> Self {
-        let [low, high] = id.halves();
-        let time = &build.timebase;
+    pub(super) fn new(build: &EngineBuild, uart: Uart) -> Self {
         let mut words = [0; WORDS];
-        for (address, word) in [
-            (map::IDENTITY, map::IDENTITY_VALUE),
-            (map::PROTOCOL, map::PROTOCOL_VERSION),
-            (map::BUILD_LOW, low),
-            (map::BUILD_HIGH, high),
-            (map::AXIS_COUNT, build.axes() as u32),
-            (map::CLOCK_HZ, time.clock_hz() as u32),
-            (map::TICK_NS, time.tick_ns() as u32),
-            (map::PHASES, time.phases()),
-            (map::WATCHDOG_TICKS, build.guard.watchdog * build.guard.round),
-        ] {
+        for (address, word) in link::facts(build, uart) {
             words[usize::from(address)] = word;
         }
         Self { words, read: 0, asked: 0 }
@@ -57,8 +44,8 @@ impl Facts {
 
     pub(super) fn clock(&mut self, address: u8, inputs: &LinkInputs) {
         self.read = self.words[usize::from(address) % WORDS];
-        if inputs.latch {
-            self.words[usize::from(map::of_axis(map::LATCHED, inputs.latch_axis & 7)) % WORDS] = inputs.get_data;
+        if let Some(axis) = inputs.engine.latch {
+            self.words[usize::from(map::of_axis(map::LATCHED, axis & 7)) % WORDS] = inputs.get_data;
         } else if inputs.get_valid {
             self.keep(inputs.get_data);
         }

@@ -2,12 +2,12 @@
 //!
 //! Its memories give in a clock what they were asked for in the one before, and the old value of a word that was written then.
 
-use super::LinkInputs;
 use super::check::{Check, Told};
+use carrystep_spec::engine::EngineOutputs;
 use carrystep_spec::link::Image;
 use carrystep_spec::link::machine::{
-    ACTS, BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, Code, Condition, GOES, HOMING, INDEXED,
-    INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, Source, TAX, UNLESS, WAIT, WORDS, XOR,
+    ACTS, BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, Code, Condition, FOR_ROOM, GOES, HOMING,
+    INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, Source, TAX, UNLESS, WAIT, WORDS, XOR,
 };
 use carrystep_spec::link::registers::{CONTROL_ENABLE, CONTROL_STOP};
 use std::sync::Arc;
@@ -34,8 +34,10 @@ pub(super) struct Machine {
     pc: u8,
     a: u8,
     x: u8,
-    /// Where the ring is written next.
+    /// Where the ring is written next,
     written: u8,
+    /// and where it is read.
+    read_from: u8,
     /// What an axis has last said of its room.
     room: u8,
     control: u8,
@@ -52,7 +54,7 @@ pub(super) struct Inputs<'a> {
     pub fact: u32,
     /// All items of all axes were asked for.
     pub scanned: bool,
-    pub engine: &'a LinkInputs,
+    pub engine: &'a EngineOutputs,
 }
 
 /// What comes out.
@@ -105,6 +107,7 @@ impl Machine {
             a: 0,
             x: 0,
             written: 0,
+            read_from: 0,
             room: 0,
             control: 0,
             clear: false,
@@ -157,7 +160,7 @@ impl Machine {
         // The memories, before anything of this clock is written.
         self.code = self.program[usize::from(self.pc)];
         self.read = self.data[place];
-        self.received = self.ring[usize::from(x)];
+        self.received = self.ring[usize::from(self.read_from)];
         self.word = self.words[usize::from(x & 7)];
 
         self.check.clock(told);
@@ -168,6 +171,9 @@ impl Machine {
         }
         if sets {
             self.a = if code & XOR != 0 { a ^ value } else { value };
+        }
+        if sets && code >> 8 & 7 == Source::Received as Code {
+            self.read_from = self.read_from.wrapping_add(1);
         }
         if stores {
             self.store(place, a);
@@ -182,8 +188,8 @@ impl Machine {
             self.control = a & 3;
             self.clear = code & CLEARING != 0;
         }
-        if inputs.engine.room_valid {
-            self.room = inputs.engine.room;
+        if let Some(room) = inputs.engine.room {
+            self.room = room;
         }
         if let Some(byte) = inputs.received {
             self.ring[usize::from(self.written)] = byte;
@@ -194,13 +200,13 @@ impl Machine {
     /// The instruction that executes is over in this clock.
     fn is_over(&self, inputs: &Inputs<'_>) -> bool {
         let waited = if self.code & STARTS != 0 {
-            inputs.engine.start_ready || inputs.engine.fault
+            inputs.engine.start_ready || inputs.engine.fault.is_some()
         } else if self.code & GOES != 0 {
             inputs.taken
         } else if self.code & PUTS != 0 {
-            inputs.engine.put_ready || inputs.engine.fault
+            inputs.engine.put_ready || inputs.engine.fault.is_some()
         } else {
-            inputs.scanned
+            inputs.scanned || (self.code & FOR_ROOM != 0 && inputs.engine.room.is_some())
         };
         (!self.does(WAIT) || waited) && (!self.does(CRC_STEP) || self.check.over())
     }
@@ -215,20 +221,21 @@ impl Machine {
     }
 
     /// Whether the condition of a jump holds.
-    fn holds(&self, engine: &LinkInputs) -> bool {
+    fn holds(&self, engine: &EngineOutputs) -> bool {
         match self.code >> 8 & 7 {
             c if c == Condition::Zero as Code => self.a == 0,
             c if c == Condition::X7 as Code => self.x & 0x80 != 0,
             c if c == Condition::X6 as Code => self.x & 0x40 != 0,
-            c if c == Condition::Nothing as Code => self.x == self.written,
-            c if c == Condition::Fault as Code => engine.fault,
+            c if c == Condition::Nothing as Code => self.read_from == self.written,
+            c if c == Condition::Fault as Code => engine.fault.is_some(),
             c if c == Condition::Startable as Code => engine.ready && !engine.armed,
+            c if c == Condition::Special as Code => self.a >= 0xc0,
             _ => true,
         }
     }
 
     /// What A would take.
-    fn value(&self, engine: &LinkInputs) -> u8 {
+    fn value(&self, engine: &EngineOutputs) -> u8 {
         match self.code >> 8 & 7 {
             s if s == Source::Data as Code || s == Source::DataAtX as Code => self.read,
             s if s == Source::Received as Code => self.received,
@@ -236,11 +243,12 @@ impl Machine {
             s if s == Source::Crc as Code => self.check.low(),
             _ => match self.code as u8 & 3 {
                 ROOM => self.room,
-                CULPRITS => engine.culprits,
+                CULPRITS => engine.fault.map_or(0, |(_, culprits)| culprits),
                 HOMING => engine.homing,
                 _ => {
-                    let bits = [engine.fault, engine.halted, engine.idle, engine.ready, engine.armed];
-                    bits.iter().rev().fold(engine.cause, |state, &bit| state << 1 | u8::from(bit))
+                    let cause = engine.fault.map_or(0, |(cause, _)| cause as u8);
+                    let bits = [engine.fault.is_some(), engine.halted, engine.idle, engine.ready, engine.armed];
+                    bits.iter().rev().fold(cause, |state, &bit| state << 1 | u8::from(bit))
                 }
             },
         }
@@ -258,7 +266,7 @@ impl Machine {
 
     pub(super) fn waits(&self) -> Waits {
         let polls = JUMPS | (Condition::Nothing as Code) << 8 | Code::from(self.pc);
-        if self.code == polls && self.x == self.written {
+        if self.code == polls && self.read_from == self.written {
             Waits::ForByte
         } else if self.does(WAIT | GOES) {
             Waits::ToSend

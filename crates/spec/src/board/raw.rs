@@ -29,6 +29,7 @@ struct RawBoard {
     usb: Option<Spanned<String>>,
     #[serde(default)]
     led_low: bool,
+    max_baud: Option<u32>,
     sources: Spanned<Vec<String>>,
     #[serde(default)]
     conflicts: Vec<String>,
@@ -147,6 +148,7 @@ impl Reader<'_> {
             wires,
             ties,
             led_low: raw.led_low,
+            max_baud: raw.max_baud,
             flash: raw.flash.into_inner(),
             bitstream: raw.bitstream.unwrap_or_else(|| if family == Family::Ice40 { "bin" } else { "bit" }.to_owned()),
             bitgen: raw.bitgen,

@@ -66,19 +66,14 @@ impl Assembler {
         self.program.push(SETS | (source as Code) << 8 | Code::from(operand));
     }
 
-    /// A <= this byte at X, then X <= X + 1.
-    pub(super) fn next(&mut self, source: Source) {
-        self.program.push(SETS | (source as Code) << 8 | ACTS | INX);
+    /// A <= the byte at X, then X <= X + 1.
+    pub(super) fn load_next(&mut self) {
+        self.program.push(SETS | (Source::DataAtX as Code) << 8 | ACTS | INX);
     }
 
     /// A <= X.
     pub(super) fn load_x(&mut self) {
         self.load_from(Source::X, 0);
-    }
-
-    /// A <= X, X <= A.
-    pub(super) fn swap(&mut self) {
-        self.program.push(SETS | (Source::X as Code) << 8 | ACTS | TAX);
     }
 
     /// A <= A xor the byte at this address.

@@ -41,7 +41,7 @@ pub enum Source {
     Data = 0,
     /// The data memory, at X.
     DataAtX = 1,
-    /// The ring of received bytes, at X.
+    /// The next received byte; it is the next one's turn then.
     Received = 2,
     /// X.
     X = 3,
@@ -71,12 +71,14 @@ pub enum Condition {
     X7 = 2,
     /// Bit 6 of X.
     X6 = 3,
-    /// No received byte at X.
+    /// No byte was received.
     Nothing = 4,
     /// The engine has a fault.
     Fault = 5,
     /// The engine takes a start.
     Startable = 6,
+    /// A is 0xc0 or more, as END and ESC are.
+    Special = 7,
 }
 
 /// X <= A.
@@ -92,6 +94,8 @@ pub const CRC_BEGIN: Code = 1 << 4;
 /// Not over before what is offered is taken, or the engine has a fault; where nothing is offered: before the
 /// scan of all axes' items comes round ([`SCAN`] turns).
 pub const WAIT: Code = 1 << 5;
+/// With [`WAIT`]: over as soon as the axis of X has told its room.
+pub const FOR_ROOM: Code = 1 << 3;
 /// A is the control register; with [`KICK`] the axes that wait for their limit.
 pub const CONTROL: Code = 1 << 6;
 /// The host was heard of.

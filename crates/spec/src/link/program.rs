@@ -12,10 +12,10 @@
 //! ```
 
 use super::assembler::{Assembler, Image};
-use super::machine::Condition::{Fault, Nothing, Startable, X6, X7, Zero};
+use super::machine::Condition::{Fault, Nothing, Special, Startable, X6, X7, Zero};
 use super::machine::{
-    BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, HOMING, INX, KICK, PUTS, REQUEST, REQUEST_END,
-    ROOM, STARTS, STATE, Source, TAX, WAIT, WORDS,
+    BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, FOR_ROOM, HOMING, INX, KICK, PUTS, REQUEST,
+    REQUEST_END, ROOM, STARTS, STATE, Source, TAX, WAIT, WORDS,
 };
 use super::registers::{AXES_AT, CLEAR, CONTROL as CONTROL_REGISTER, HOME, POSITION, SEGMENT, START};
 use super::{
@@ -33,11 +33,10 @@ const CHECKED: u8 = REQUEST_END - CRC_BYTES as u8;
 
 // What is remembered.
 const BYTE: u8 = 0x80; // the byte at work
-const READ: u8 = 0x81; // how far the ring of received bytes has been read
-const FILL: u8 = 0x82; // where the request's next byte goes
-const NEXT: u8 = 0x83; // the number that the next write must have
-const REFUSED: u8 = 0x84;
-const CONTROLS: u8 = 0x85; // the control register
+const LENGTH: u8 = 0x81; // where the request's bytes end
+const NEXT: u8 = 0x82; // the number that the next write must have
+const REFUSED: u8 = 0x83;
+const CONTROLS: u8 = 0x84; // the control register
 
 /// Bit 3 of the answer's byte `free`.
 const REFUSED_BIT: u8 = 1 << 3;
@@ -54,70 +53,60 @@ pub fn image() -> Image {
     a.finish()
 }
 
-/// Bytes into a request, until an END.
+/// Bytes into a request, until an END: X is where the next one goes, the CRC goes along.
 fn receive(a: &mut Assembler) {
     a.label("begin");
     a.load_number(REQUEST);
-    a.store(FILL);
+    a.acts(TAX | CRC_BEGIN);
     a.label("next");
-    take(a, "poll");
+    a.jump_if(Nothing, "next");
+    a.load_from(Source::Received, 0);
+    a.jump_if(Special, "special");
+    a.label("plain");
+    // Too long: it stays as long as that, which is the length of nothing.
+    a.jump_if(X7, "next");
+    a.acts(CRC_STEP | CRC_FEED);
+    a.store_next();
+    a.jump("next");
+
+    a.label("special");
+    a.store(BYTE);
     a.xor_number(END);
     a.jump_if(Zero, "ended");
     a.load(BYTE);
     a.xor_number(ESC);
     a.jump_if(Zero, "escaped");
-    a.label("store");
-    a.load(FILL);
-    a.acts(TAX);
-    // Too long: it stays as long as that, which is the length of nothing.
-    a.jump_if(X7, "next");
     a.load(BYTE);
-    a.store_next();
-    a.load_x();
-    a.store(FILL);
-    a.jump("next");
+    a.jump("plain");
 
     a.label("escaped");
-    take(a, "poll for the escaped");
-    a.xor_number(ESC_END);
-    a.jump_if(Zero, "an END");
-    a.load(BYTE);
-    a.xor_number(ESC_ESC);
-    a.jump_if(Zero, "an ESC");
+    a.jump_if(Nothing, "escaped");
+    a.load_from(Source::Received, 0);
+    a.store(BYTE);
+    for (special, label) in [(ESC_END, "an END"), (ESC_ESC, "an ESC")] {
+        a.xor_number(special);
+        a.jump_if(Zero, label);
+        a.load(BYTE);
+    }
     // Nothing is written so: the frame is damaged, if this does not end it.
-    a.load_number(REQUEST_END);
-    a.store(FILL);
-    a.load(BYTE);
     a.xor_number(END);
     a.jump_if(Zero, "begin");
-    a.jump("next");
-    a.label("an END");
-    a.load_number(END);
-    a.store(BYTE);
-    a.jump("store");
-    a.label("an ESC");
-    a.load_number(ESC);
-    a.store(BYTE);
-    a.jump("store");
-}
-
-/// Waits for a byte: to A and BYTE.
-fn take(a: &mut Assembler, poll: &'static str) {
-    a.load(READ);
+    a.load_number(REQUEST_END);
     a.acts(TAX);
-    a.label(poll);
-    a.jump_if(Nothing, poll);
-    a.next(Source::Received);
-    a.swap();
-    a.store(READ);
-    a.load_x();
-    a.store(BYTE);
+    a.jump("next");
+    for (special, label) in [(END, "an END"), (ESC, "an ESC")] {
+        a.label(label);
+        a.load_number(special);
+        a.jump("plain");
+    }
 }
 
 /// Whether the request has its length and its CRC.
 fn check(a: &mut Assembler) {
     let end = |words: usize| REQUEST + (REQUEST_HEAD + 4 * words + CRC_BYTES) as u8;
     a.label("ended");
+    a.load_x();
+    a.store(LENGTH);
     a.load(ADDRESS);
     a.acts(TAX);
     a.load_number(end(0));
@@ -126,10 +115,8 @@ fn check(a: &mut Assembler) {
     a.jump_if(X6, "length");
     a.load_number(end(1));
     a.label("length");
-    a.xor(FILL);
+    a.xor(LENGTH);
     a.jump_unless(Zero, "begin");
-    a.load_number(REQUEST);
-    sum(a, "sum", |a| a.xor(FILL));
     a.index_table(CRC_RESIDUE.to_le_bytes());
     a.label("residue");
     a.load_from(Source::Crc, 0);
@@ -138,17 +125,6 @@ fn check(a: &mut Assembler) {
     a.acts(CRC_STEP | INX);
     a.jump_if(X7, "residue");
     a.acts(KICK);
-}
-
-/// The CRC from A on, to where `end` makes A zero.
-fn sum(a: &mut Assembler, label: &'static str, end: impl Fn(&mut Assembler)) {
-    a.acts(TAX | CRC_BEGIN);
-    a.label(label);
-    a.next(Source::DataAtX);
-    a.acts(CRC_STEP | CRC_FEED);
-    a.load_x();
-    end(a);
-    a.jump_unless(Zero, label);
 }
 
 /// Whether a write is the next one, or was executed already, or one before it is missing.
@@ -227,14 +203,14 @@ fn execute(a: &mut Assembler) {
 
     a.label("segment");
     a.jump_if(Fault, "done");
-    wait_for_all(a);
+    a.acts(WAIT | FOR_ROOM);
     a.load_from(Source::Engine, ROOM);
     a.jump_if(Zero, "broken");
     // Ticks less one is all ones: no ticks.
     a.load_number(WORDS);
     a.acts(TAX);
     a.label("ones");
-    a.next(Source::DataAtX);
+    a.load_next();
     a.xor_number(0xff);
     a.jump_unless(Zero, "words");
     a.load_x();
@@ -291,7 +267,13 @@ fn answer(a: &mut Assembler) {
         a.store(ANSWER + at as u8);
     }
     a.load_number(ANSWER);
-    sum(a, "sum of the answer", |a| a.xor_number(CHECKED));
+    a.acts(TAX | CRC_BEGIN);
+    a.label("sum");
+    a.load_next();
+    a.acts(CRC_STEP | CRC_FEED);
+    a.load_x();
+    a.xor_number(CHECKED);
+    a.jump_unless(Zero, "sum");
     a.label("its CRC");
     a.load_from(Source::Crc, 0);
     a.xor_number(0xff);
@@ -308,7 +290,8 @@ fn send(a: &mut Assembler) {
     a.label("put");
     a.send();
     a.jump_if(X7, "last");
-    a.next(Source::DataAtX);
+    a.load_next();
+    a.jump_unless(Special, "put");
     a.store(BYTE);
     for (special, label) in [(END, "escape an END"), (ESC, "escape an ESC")] {
         a.xor_number(special);
@@ -332,3 +315,11 @@ fn send(a: &mut Assembler) {
 const _: () = assert!(SEGMENT == AXES_AT && AXES_AT == 0x40, "bit 6 of an address says that it is an axis'");
 const _: () =
     assert!(REQUEST as usize + LONGEST_REQUEST < ANSWER as usize, "no request that is whole reaches the answer");
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_program_fits() {
+        assert!(super::image().program.len() > 100);
+    }
+}

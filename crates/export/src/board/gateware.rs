@@ -1,0 +1,201 @@
+//! All gateware of a machine for a board: a top level that connects clock, link and engine to the pins, and what goes with it.
+
+use super::{CLOCK_NAME, Design, rendered};
+use crate::ExportError;
+use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, link_ports, link_verilog};
+use crate::write::TextFile;
+use carrystep_spec::board::{Board, Clocking, Part};
+use carrystep_spec::engine::Limits;
+use carrystep_spec::link::{BuildId, Uart};
+use carrystep_spec::{EngineBuild, Machine, Source};
+use minijinja::{Value, context};
+
+const TOP: &str = include_str!("../../templates/board/top.v");
+
+/// The machine that boards are built for where no other is asked for; clock, tick and limits are put before its axes.
+const SHIPPED: &str = include_str!("../../../../sim/engine.toml");
+
+/// The gateware of a machine for a board, checked.
+#[derive(Debug, Clone)]
+pub struct Gateware<'a> {
+    board: &'a Board,
+    part: &'a Part,
+    build: EngineBuild,
+    uart: Uart,
+    /// The machine file: it goes with the gateware, for moves are planned from it.
+    machine: Source,
+}
+
+impl<'a> Gateware<'a> {
+    /// The gateware of this machine file.
+    ///
+    /// # Errors
+    /// [`ExportError`]: the board lacks pins, makes no such clock or baud rate; the engine cannot be; or the file is no machine's.
+    pub fn new(board: &'a Board, part: &'a Part, machine: Source) -> Result<Self, ExportError> {
+        let build = Machine::from_source(&machine)?.engine();
+        let clock_hz = build.timebase.clock_hz();
+        board.clock(clock_hz)?;
+        board.carries(build.axes(), build.guard.limits)?;
+        build.check().map_err(carrystep_hdl::HdlError::from)?;
+        let gateware = Self { board, part, build, uart: board.uart(clock_hz)?, machine };
+        // A pin for each port, or the name of the one that has none.
+        gateware.design(&gateware.ports(), &[]).constraints()?;
+        Ok(gateware)
+    }
+
+    /// The gateware of the shipped machine, at the board's first clock.
+    ///
+    /// # Errors
+    /// As [`Gateware::new`].
+    pub fn shipped(board: &'a Board, part: &'a Part) -> Result<Self, ExportError> {
+        Self::new(
+            board,
+            part,
+            Source { path: "machine.toml".into(), text: shipped_machine(board, &board.clocks[0]).into() },
+        )
+    }
+
+    /// Its top module, `carrystep_BOARD_top`.
+    pub fn top(&self) -> String {
+        format!("carrystep_{}_top", self.board.name.replace('-', "_"))
+    }
+
+    /// What the host asks for before it talks to it.
+    pub fn build_id(&self) -> BuildId {
+        self.uart.build_id(&self.build)
+    }
+
+    /// The engine's parameters.
+    pub fn build(&self) -> &EngineBuild {
+        &self.build
+    }
+
+    /// The link's.
+    pub fn uart(&self) -> Uart {
+        self.uart
+    }
+
+    /// The part that it is for.
+    pub fn part(&self) -> &Part {
+        self.part
+    }
+
+    /// The Verilog of all modules, the top level first, in files of these names.
+    ///
+    /// # Errors
+    /// [`ExportError`] where a module cannot be made.
+    pub fn verilog(&self) -> Result<Vec<TextFile>, ExportError> {
+        let description = format!("{} for {}", self.machine.path.display(), self.board.title);
+        let file = |name: &str, text| TextFile::new(format!("{name}.v"), text);
+        Ok(vec![
+            file(&self.top(), self.top_level()?),
+            self.design(&[], &[]).clock()?,
+            file(LINK_NAME, link_verilog(&self.build, self.uart, &description)?),
+            file(ENGINE_NAME, engine_verilog(&self.build, &description)?),
+        ])
+    }
+
+    /// Everything in the board's folder.
+    ///
+    /// # Errors
+    /// [`ExportError`] where a module cannot be made.
+    pub fn files(&self) -> Result<Vec<TextFile>, ExportError> {
+        let mut files = self.verilog()?;
+        let sources: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
+        let sources: Vec<&str> = sources.iter().map(String::as_str).collect();
+        let ports = self.ports();
+        let design = self.design(&ports, &sources);
+        files.push(design.constraints()?);
+        files.extend(design.scripts()?);
+        files.push(design.readme()?);
+        files.push(TextFile::new("machine.toml".to_owned(), self.machine.text.to_string()));
+        Ok(files)
+    }
+
+    /// The ports of the top level, bit by bit.
+    fn ports(&self) -> Vec<String> {
+        let axes = self.build.axes();
+        let bits = |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
+        let (low, high) = limit_bits(&self.build);
+        let fixed = ["enable_n", "estop", "uart_rx", "uart_tx"].map(str::to_owned);
+        let led = self.has_led().then(|| "led".to_owned());
+        [bits("step", axes), bits("dir", axes), fixed.to_vec(), bits("limit_min", low), bits("limit_max", high)]
+            .concat()
+            .into_iter()
+            .chain(led)
+            .collect()
+    }
+
+    fn has_led(&self) -> bool {
+        self.board.bits("led") > 0
+    }
+
+    fn design<'b>(&'b self, ports: &'b [String], sources: &'b [&'b str]) -> Design<'b> {
+        Design {
+            board: self.board,
+            part: self.part,
+            clock_hz: self.build.timebase.clock_hz(),
+            uart: Some(self.uart),
+            top: self.top(),
+            sources,
+            ports,
+        }
+    }
+
+    fn top_level(&self) -> Result<String, ExportError> {
+        let axes = self.build.axes();
+        let (low, high) = limit_bits(&self.build);
+        // An output of the link is an input of the engine of the same name, or the other way round.
+        let between = link_ports(&self.build, self.uart)?;
+        let row = |(name, width): &(String, usize)| context! { name, range => range(*width) };
+        let values = context! {
+            title => &self.board.title,
+            top => self.top(),
+            clock => CLOCK_NAME,
+            link => LINK_NAME,
+            engine => ENGINE_NAME,
+            axes => range(axes),
+            low => (low > 0).then(|| range(low)),
+            high => (high > 0).then(|| range(high)),
+            one_for_all => low == 1 && axes > 1,
+            others => axes - 1,
+            count => axes,
+            led => self.has_led(),
+            led_low => self.board.led_low,
+            between => between.iter().map(row).collect::<Vec<Value>>(),
+            ties => super::ties(self.board),
+        };
+        rendered(TOP, values)
+    }
+}
+
+/// The shipped machine at a clock of the board.
+pub fn shipped_machine(board: &Board, clock: &Clocking) -> String {
+    let axes = SHIPPED.find("[[machine.axis]]").map_or("", |begin| &SHIPPED[begin..]);
+    let Clocking { clock_hz, tick_ns, phases, .. } = clock;
+    format!(
+        "# The shipped machine (sim/engine.toml) for {}.\n[machine]\nclock_hz = {clock_hz}\ntick_ns = {tick_ns}\n\
+         phases = {phases}\nphase = \"half\"\n\n[machine.guard]\nlimits = \"each\"\n\n{axes}",
+        board.title
+    )
+}
+
+/// Limit switches at the low ends and at the high ends.
+fn limit_bits(build: &EngineBuild) -> (usize, usize) {
+    match build.guard.limits {
+        Limits::None => (0, 0),
+        Limits::One => (1, 0),
+        Limits::Each => (build.axes(), 0),
+        Limits::Pair => (build.axes(), build.axes()),
+    }
+}
+
+/// The only bit of a port goes without a number.
+fn bit_of(name: &str, bit: usize, count: usize) -> String {
+    if count == 1 { name.to_owned() } else { format!("{name}[{bit}]") }
+}
+
+/// `[5:0] `, or nothing for a single bit.
+fn range(width: usize) -> String {
+    if width == 1 { String::new() } else { format!("[{}:0] ", width - 1) }
+}

@@ -1,0 +1,115 @@
+//! The link of a build, whose number of axes is known only when it is built; and the same under simulation.
+
+use super::UartLink;
+use crate::HdlError;
+use crate::sim::{rising_edge, settle};
+use crate::word::Word;
+use carrystep_spec::EngineBuild;
+use carrystep_spec::engine::{EngineError, EngineInputs, Put};
+use carrystep_spec::link::{LinkInputs, LinkOutputs, Uart};
+use rust_hdl::prelude::{Block, check_all};
+
+/// A link for any number of axes.
+pub trait AnyLink: Block {
+    /// Drives the inputs; the outputs of the present cycle.
+    fn settle(&mut self, inputs: &LinkInputs) -> LinkOutputs;
+    /// Goes to the next cycle, with the inputs as last settled.
+    fn clock(&mut self);
+}
+
+/// The link of this build, which has as many axes as the build.
+///
+/// # Errors
+/// [`HdlError::Engine`] where a parameter of the build cannot be.
+pub fn uart_link(build: &EngineBuild, uart: Uart) -> Result<Box<dyn AnyLink>, HdlError> {
+    build.check()?;
+    Ok(match build.axes() {
+        1 => Box::new(UartLink::<1>::new(build, uart)),
+        2 => Box::new(UartLink::<2>::new(build, uart)),
+        3 => Box::new(UartLink::<3>::new(build, uart)),
+        4 => Box::new(UartLink::<4>::new(build, uart)),
+        5 => Box::new(UartLink::<5>::new(build, uart)),
+        6 => Box::new(UartLink::<6>::new(build, uart)),
+        7 => Box::new(UartLink::<7>::new(build, uart)),
+        8 => Box::new(UartLink::<8>::new(build, uart)),
+        axes => return Err(EngineError::Axes(axes).into()),
+    })
+}
+
+impl<const N: usize> AnyLink for UartLink<N> {
+    fn settle(&mut self, inputs: &LinkInputs) -> LinkOutputs {
+        self.clock.next = false.into();
+        self.rx.next = inputs.rx;
+        self.get_data.next = Word::from(u64::from(inputs.get_data));
+        self.get_valid.next = inputs.get_valid;
+        let engine = &inputs.engine;
+        let (cause, culprits) = engine.fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
+        self.put_ready.next = engine.put_ready;
+        self.room.next = Word::from(u64::from(engine.room.unwrap_or(0)));
+        self.room_valid.next = engine.room.is_some();
+        self.start_ready.next = engine.start_ready;
+        self.latch.next = engine.latch.is_some();
+        self.latch_axis.next = Word::from(u64::from(engine.latch.unwrap_or(0)));
+        self.fault.next = engine.fault.is_some();
+        self.halted.next = engine.halted;
+        self.idle.next = engine.idle;
+        self.ready.next = engine.ready;
+        self.armed.next = engine.armed;
+        self.cause.next = Word::from(cause);
+        self.culprits.next = Word::from(u64::from(culprits));
+        self.homing.next = Word::from(u64::from(engine.homing));
+        settle(self);
+        let [axis, word] = [self.put_axis.val(), self.put_word.val()].map(|place| place.value() as u8);
+        let data = self.put_data.val().value() as u32;
+        LinkOutputs {
+            tx: self.tx.val(),
+            engine: EngineInputs {
+                put: self.put_valid.val().then_some(Put { axis, word, data }),
+                room_of: axis,
+                start: self.start_valid.val().then(|| self.start_mask.val().value() as u8),
+                clear: self.clear.val(),
+                stop: self.stop.val(),
+                broken: self.broken.val(),
+                home: self.home_valid.val().then(|| self.home_mask.val().value() as u8),
+                kick: self.kick.val(),
+                enable: self.enable.val(),
+                ..EngineInputs::default()
+            },
+            get_axis: self.get_axis.val().value() as u8,
+            get_item: self.get_item.val().value() as u8,
+        }
+    }
+
+    fn clock(&mut self) {
+        self.clock.next = true.into();
+        rising_edge(self);
+    }
+}
+
+/// The link under simulation.
+pub struct LinkSim {
+    link: Box<dyn AnyLink>,
+}
+
+impl LinkSim {
+    /// The link of this build in cycle 0.
+    ///
+    /// # Errors
+    /// [`HdlError`] where the build cannot be made.
+    pub fn new(build: &EngineBuild, uart: Uart) -> Result<Self, HdlError> {
+        let mut link = uart_link(build, uart)?;
+        link.connect_all();
+        check_all(link.as_ref()).map_err(|error| HdlError::Check(format!("{error:?}")))?;
+        Ok(Self { link })
+    }
+
+    /// The outputs of the present cycle with these inputs.
+    pub fn settle(&mut self, inputs: &LinkInputs) -> LinkOutputs {
+        self.link.settle(inputs)
+    }
+
+    /// Goes to the next cycle, with the inputs as last settled.
+    pub fn clock(&mut self) {
+        self.link.clock();
+    }
+}

@@ -1,0 +1,25 @@
+//! What a gateware says of itself: the registers that hold nothing but its build.
+
+use super::Uart;
+use super::registers::{
+    AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLOCK_HZ, IDENTITY, IDENTITY_VALUE, PHASES, PROTOCOL, PROTOCOL_VERSION, TICK_NS,
+    WATCHDOG_TICKS,
+};
+use crate::EngineBuild;
+
+/// Each of them: its address, and what it holds.
+pub fn facts(build: &EngineBuild, uart: Uart) -> [(u8, u32); 9] {
+    let [low, high] = uart.build_id(build).halves();
+    let time = &build.timebase;
+    [
+        (IDENTITY, IDENTITY_VALUE),
+        (PROTOCOL, PROTOCOL_VERSION),
+        (BUILD_LOW, low),
+        (BUILD_HIGH, high),
+        (AXIS_COUNT, build.axes() as u32),
+        (CLOCK_HZ, time.clock_hz() as u32),
+        (TICK_NS, time.tick_ns() as u32),
+        (PHASES, time.phases()),
+        (WATCHDOG_TICKS, build.guard.watchdog * build.guard.round),
+    ]
+}
