@@ -4,7 +4,7 @@ use crate::line::{Ear, Speaker};
 use carrystep_model::fast::Edges;
 use carrystep_model::{FastEngine, Link};
 use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{EngineInputs, EngineOutputs};
+use carrystep_spec::engine::{Cause, EngineInputs, EngineOutputs};
 use carrystep_spec::link::{LinkInputs, LinkOutputs, Uart};
 
 /// Switches at the board's inputs; `true` and a bit that is set are active, whatever the level of the pin.
@@ -27,8 +27,8 @@ pub struct Board {
     ear: Ear,
     /// What the switches drive, with the polarity of their pins.
     pins: EngineInputs,
-    /// The first load.
-    started: Option<u64>,
+    loads: Vec<u64>,
+    stops: Vec<(u64, Cause)>,
 }
 
 impl Board {
@@ -41,7 +41,8 @@ impl Board {
             speaker: Speaker::new(clock_hz, uart),
             ear: Ear::new(clock_hz, uart),
             pins: EngineInputs::default(),
-            started: None,
+            loads: Vec::new(),
+            stops: Vec::new(),
         };
         board.press(Switches::default());
         board
@@ -62,9 +63,14 @@ impl Board {
         self.engine.outputs(&self.inputs(&self.link.outputs()))
     }
 
-    /// The cycle in which the first segments of the first start are loaded, once there was one.
-    pub fn started(&self) -> Option<u64> {
-        self.started
+    /// The cycles in which starts have loaded their first segments.
+    pub fn loads(&self) -> &[u64] {
+        &self.loads
+    }
+
+    /// The stops that were called: the first cycle with the fault, and why.
+    pub fn stops(&self) -> &[(u64, Cause)] {
+        &self.stops
     }
 
     /// Says a byte to it, at the line's pace.
@@ -94,8 +100,8 @@ impl Board {
     /// Goes on to this cycle; `to` hears of the pins. It stops once on its way, in the cycle of the first load: until
     /// then nothing was to be heard.
     pub fn run(&mut self, end: u64, to: &mut impl Edges) {
-        let started = self.started;
-        while self.cycle() < end && self.started == started {
+        let waits = self.loads.is_empty();
+        while self.cycle() < end && self.loads.is_empty() == waits {
             let rx = self.speaker.level(self.cycle());
             if self.leap(rx, end - self.cycle(), to) == 0 {
                 self.clock(rx, to);
@@ -127,7 +133,12 @@ impl Board {
         self.link.clock(&told);
         self.engine.clock(&inputs, to);
         if says.started {
-            self.started.get_or_insert(self.cycle());
+            self.loads.push(self.cycle());
+        }
+        if says.fault.is_none()
+            && let Some((cause, _)) = self.engine.outputs(&inputs).fault
+        {
+            self.stops.push((self.cycle(), cause));
         }
     }
 

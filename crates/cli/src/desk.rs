@@ -30,7 +30,7 @@ pub struct Desk {
 impl Desk {
     /// Goes on until the first start; false where it is to end before.
     pub fn until_start(&mut self) -> Result<bool, Failure> {
-        while self.board.started().is_none() {
+        while self.board.loads().is_empty() {
             if !self.step(&mut ())? {
                 return Ok(false);
             }

@@ -82,7 +82,7 @@ fn ahead(build: &EngineBuild) -> u64 {
 fn capture(desk: &mut Desk, machine: &Machine, build: &EngineBuild, out: &mut OutputFile) -> Result<(), Failure> {
     let goes_on = desk.until_start()?;
     let time = build.timebase;
-    let load = desk.board.started().unwrap_or(0);
+    let load = desk.board.loads().first().copied().unwrap_or(0);
     let origin_ps = time.clock_to_ps(load + time.latency_clocks()).cast_signed();
     let names = machine.axes.iter().map(|axis| axis.name.as_str());
     let mut vcd = PinsVcd::new(out, OwnCapture { origin_ps, timebase: time }, names)?;

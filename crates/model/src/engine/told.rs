@@ -35,6 +35,16 @@ impl Engine {
         self.lanes.iter().any(|lane| lane.running.is_some() && goes_on(lane))
     }
 
+    /// Segments that wait for an axis, beside the one that runs.
+    pub fn waiting(&self, axis: usize) -> usize {
+        self.lanes[axis].queue.len()
+    }
+
+    /// The axes that are in the middle of a move: they run a segment that is not its last.
+    pub fn in_a_move(&self) -> u8 {
+        bits(&self.lanes, |lane| lane.running.is_some_and(|segment| !segment.last))
+    }
+
     /// The axes that wait for their limit, a bit each.
     pub fn homing(&self) -> u8 {
         bits(&self.lanes, |lane| lane.homing.waits)
