@@ -4,7 +4,7 @@ use crate::line::{Ear, Speaker};
 use carrystep_model::fast::Edges;
 use carrystep_model::{FastEngine, Link};
 use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{Cause, EngineInputs, EngineOutputs};
+use carrystep_spec::engine::{Cause, EngineInputs, EngineOutputs, MAX_AXES};
 use carrystep_spec::link::{LinkInputs, LinkOutputs, Uart};
 
 /// Switches at the board's inputs; `true` and a bit that is set are active, whatever the level of the pin.
@@ -97,46 +97,79 @@ impl Board {
         self.pins.limit_max = switches.limit_max ^ low(guard.limits_low);
     }
 
-    /// Goes on to this cycle; `to` hears of the pins. It stops once on its way, in the cycle of the first load: until
-    /// then nothing was to be heard.
+    /// Goes on to this cycle; `to` hears of the pins. It stops once on its way, where the first start has loaded: until
+    /// then nothing was to be heard, nor for a tick after that.
     pub fn run(&mut self, end: u64, to: &mut impl Edges) {
         let waits = self.loads.is_empty();
         while self.cycle() < end && self.loads.is_empty() == waits {
-            let rx = self.speaker.level(self.cycle());
-            if self.leap(rx, end - self.cycle(), to) == 0 {
-                self.clock(rx, to);
+            let inputs = self.inputs(&self.link.outputs());
+            let per_tick = u64::from(self.engine.core().build().timebase.clocks_per_tick());
+            let starts = waits && self.engine.outputs(&inputs).armed;
+            let target = if starts { end.min(self.cycle() + per_tick) } else { end };
+            let alone = self.run_link(target);
+            if alone == self.cycle() {
+                self.clock(&inputs, to);
+            } else {
+                self.follow(&inputs, alone, to);
             }
-            self.ear.hear(self.cycle(), self.link.outputs().tx);
         }
     }
 
-    /// Passes clocks in which the link only waits; how many they were.
-    fn leap(&mut self, rx: bool, most: u64, to: &mut impl Edges) -> u64 {
-        let quiet = self.link.quiet(rx).min(self.speaker.stays(self.cycle())).min(most);
-        if quiet == 0 {
-            return 0;
+    /// The link alone, for as long as the engine means nothing to it, to this cycle at the most; where it is then.
+    fn run_link(&mut self, end: u64) -> u64 {
+        let mut cycle = self.cycle();
+        while cycle < end && self.link.is_alone() {
+            let rx = self.speaker.level(cycle);
+            let quiet = self.link.quiet(rx).min(self.speaker.stays(cycle)).min(end - cycle);
+            if quiet == 0 {
+                self.link.clock_alone(rx);
+            } else {
+                self.link.pass(quiet, rx);
+            }
+            cycle += quiet.max(1);
+            self.ear.hear(cycle, self.link.tx());
         }
-        let inputs = self.inputs(&self.link.outputs());
-        let clocks = self.engine.leap(&inputs, quiet, to);
+        cycle
+    }
+
+    /// The engine to where the link is.
+    fn follow(&mut self, inputs: &EngineInputs, end: u64, to: &mut impl Edges) {
+        let clocks = end - self.cycle();
+        let begun = self.engine.core().has_turns();
+        while self.cycle() < end {
+            let says = self.engine.outputs(inputs);
+            let latched = says.latch.map_or(0, |axis| 1 << axis);
+            let leapt = self.engine.leap(inputs, end - self.cycle(), to);
+            let latched = if leapt > 0 { says.homing } else { latched };
+            for axis in (0..MAX_AXES as u8).filter(|axis| latched >> axis & 1 == 1) {
+                self.link.latch(axis, self.engine.core().item(axis, POSITION));
+            }
+            if leapt == 0 {
+                self.clock_engine(inputs, &says, to);
+            }
+        }
         let core = self.engine.core();
-        let turns = core.answers_before(clocks);
-        self.link.pass(clocks, rx, (turns, core.homing()), |axis, item| core.item(axis, item));
-        clocks
+        let turns = if begun { core.answers_before(clocks) } else { 0 };
+        self.link.catch_up(turns, |axis, item| core.item(axis, item));
     }
 
     /// One clock of everything.
-    fn clock(&mut self, rx: bool, to: &mut impl Edges) {
+    fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
         let asks = self.link.outputs();
-        let inputs = self.inputs(&asks);
-        let says = self.engine.outputs(&inputs);
-        let told = self.told(rx, &asks, &says);
-        self.link.clock(&told);
-        self.engine.clock(&inputs, to);
+        let says = self.engine.outputs(inputs);
+        let rx = self.speaker.level(self.cycle());
+        self.link.clock(&self.told(rx, &asks, &says));
+        self.clock_engine(inputs, &says, to);
+        self.ear.hear(self.cycle(), self.link.tx());
+    }
+
+    fn clock_engine(&mut self, inputs: &EngineInputs, says: &EngineOutputs, to: &mut impl Edges) {
+        self.engine.clock(inputs, to);
         if says.started {
             self.loads.push(self.cycle());
         }
         if says.fault.is_none()
-            && let Some((cause, _)) = self.engine.outputs(&inputs).fault
+            && let Some((cause, _)) = self.engine.core().fault()
         {
             self.stops.push((self.cycle(), cause));
         }

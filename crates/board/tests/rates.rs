@@ -1,5 +1,5 @@
 //! How many segments a line carries to a board without a queue running dry.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
 

@@ -2,12 +2,22 @@
 
 use super::lane::Lane;
 use super::{Engine, bits};
-use carrystep_spec::engine::TURN;
+use carrystep_spec::engine::{Cause, TURN};
 
 /// The beat of a turn in which `get` is answered.
 const GET_BEAT: u32 = 11;
 
 impl Engine {
+    /// The stop that was called: the cause, and the axes that it came from.
+    pub fn fault(&self) -> Option<(Cause, u8)> {
+        self.stop.fault
+    }
+
+    /// Turns have begun: all but the first tick has them.
+    pub fn has_turns(&self) -> bool {
+        self.turns
+    }
+
     /// Whether `get_data` is an answer in this cycle.
     pub fn answers(&self) -> bool {
         self.turn_at(GET_BEAT).is_some()
@@ -58,6 +68,30 @@ impl Engine {
             1 => (lane.p >> 32) as u32,
             2 => lane.shaper.position.cast_unsigned(),
             _ => lane.shaper.discarded,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carrystep_spec::engine::EngineInputs;
+    use carrystep_spec::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
+
+    #[test]
+    fn answers_are_counted_as_they_come() {
+        let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
+        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+        let mut engine = Engine::new(&EngineBuild::minimal(&build, 1));
+        let mut answers = Vec::new();
+        for _ in 0..500 {
+            answers.push(u64::from(engine.answers()));
+            engine.clock(&EngineInputs::default());
+            // From the second tick on.
+            for clocks in 0..answers.len() as u64 - 96.min(answers.len() as u64) {
+                let counted: u64 = answers.iter().rev().take(clocks as usize).sum();
+                assert_eq!(engine.answers_before(clocks), counted, "{clocks} before {}", answers.len());
+            }
         }
     }
 }

@@ -45,7 +45,7 @@ impl Facts {
     pub(super) fn clock(&mut self, address: u8, inputs: &LinkInputs) {
         self.read = self.words[usize::from(address) % WORDS];
         if let Some(axis) = inputs.engine.latch {
-            self.words[usize::from(map::of_axis(map::LATCHED, axis & 7)) % WORDS] = inputs.get_data;
+            self.latch(axis, inputs.get_data);
         } else if inputs.get_valid {
             self.keep(inputs.get_data);
         }
@@ -59,12 +59,13 @@ impl Facts {
         self.words[usize::from(map::of_axis(map::AXES_AT + item, axis)) % WORDS] = word;
     }
 
-    /// So many turns have passed: what was asked for in them is what is said now, and so is where these axes are that wait
-    /// for their limit. (One that meets it says so in the same tick before, which is never passed.)
-    pub(super) fn pass(&mut self, turns: u64, waiting: u8, said: impl Fn(u8, u8) -> u32) {
-        for axis in (0..map::MOST_AXES).filter(|axis| turns > 0 && waiting >> axis & 1 == 1) {
-            self.words[usize::from(map::of_axis(map::LATCHED, axis))] = said(axis, map::POSITION - map::AXES_AT);
-        }
+    /// The position of an axis that waits for its limit.
+    pub(super) fn latch(&mut self, axis: u8, position: u32) {
+        self.words[usize::from(map::of_axis(map::LATCHED, axis & 7)) % WORDS] = position;
+    }
+
+    /// So many turns have passed: what was asked for in them is what is said now.
+    pub(super) fn pass(&mut self, turns: u64, said: impl Fn(u8, u8) -> u32) {
         let last = turns.min(u64::from(SCAN));
         self.asked = ((u64::from(self.asked) + turns - last) % u64::from(SCAN)) as u8;
         for _ in 0..last {
