@@ -10,7 +10,7 @@ pub mod fast;
 pub mod host;
 mod icarus;
 pub mod pins;
-mod replay;
+pub mod replay;
 mod tool;
 mod verilator;
 
