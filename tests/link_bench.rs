@@ -1,7 +1,10 @@
 //! The link and the engine together, with a host at the other end of the line: Rust-HDL's modules of both, the model of the
 //! link in lock-step.
 
+pub mod ports;
+
 use carrystep_hdl::{AnyLink, EngineSim, LinkSim, SpiSim, link};
+use carrystep_levels::vectors::{Bits, Vectors};
 use carrystep_model::Link;
 use carrystep_spec::EngineBuild;
 use carrystep_spec::engine::{CAUSES, Cause, EngineInputs, EngineOutputs};
@@ -22,6 +25,17 @@ pub struct LinkBench {
     pub clocks: u64,
     /// Rising edges of STEP so far, of all axes.
     pub steps: u64,
+    /// What the link was told and showed, if it is kept.
+    pub vectors: Option<Both>,
+}
+
+/// The cycles of link and line.
+#[derive(Debug, Clone)]
+pub struct Both {
+    /// Of the link.
+    pub link: Vectors,
+    /// Of its line.
+    pub line: Vectors,
 }
 
 /// The link with its line, and the host's end of that.
@@ -56,6 +70,7 @@ impl LinkBench {
             outputs: EngineOutputs::default(),
             clocks: 0,
             steps: 0,
+            vectors: None,
         }
     }
 
@@ -91,6 +106,9 @@ impl LinkBench {
         seen.get_valid = self.engine.get(axis, item).is_some();
         seen.get_data = self.engine.latched();
         let (shown, level) = self.wire.settle(&seen);
+        if let Some(both) = &mut self.vectors {
+            self.wire.keep(&seen, &shown, level, both);
+        }
         let byte = self.wire.clock(&seen, &shown, level, self.clocks);
         self.engine.clock();
         self.clocks += 1;
@@ -134,6 +152,25 @@ impl Wire {
                 (link.settle(seen, line), miso)
             }
         }
+    }
+
+    /// Keeps what the modules were told and showed in the present cycle.
+    fn keep(&self, seen: &LinkInputs, shown: &LinkOutputs, level: bool, both: &mut Both) {
+        let (bytes, offered) = match self {
+            Self::Uart { link, .. } => link.bytes(),
+            Self::Spi { link, line, .. } => (line.last(), link.offered()),
+        };
+        both.link.add(ports::link_inputs(seen, bytes), ports::link_outputs(shown, offered));
+        let told = match self {
+            Self::Uart { .. } => Bits::default().and(1, u64::from(seen.rx)),
+            Self::Spi { host, .. } => {
+                host.pins().into_iter().fold(Bits::default(), |bits, pin| bits.and(1, u64::from(pin)))
+            }
+        };
+        both.line.add(
+            told.and(1, u64::from(offered.is_some())).and(8, offered.map_or(0, u64::from)),
+            ports::line_outputs(bytes, level),
+        );
     }
 
     /// To the next cycle; a byte that has come.
