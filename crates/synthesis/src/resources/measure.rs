@@ -67,6 +67,7 @@ pub(super) fn machine(row: &Row) -> Result<EngineBuild, SynthesisError> {
     Ok(build)
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
 pub(super) fn failed(error: impl ToString) -> SynthesisError {
     SynthesisError::Gateware(error.to_string())
 }
