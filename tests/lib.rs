@@ -7,6 +7,7 @@ pub mod effort;
 pub mod engine_programs;
 pub mod engine_twins;
 pub mod golden;
+pub mod link_bench;
 pub mod lockstep;
 pub mod moves;
 pub mod mutants;

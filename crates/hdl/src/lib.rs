@@ -24,7 +24,7 @@ pub mod word;
 
 pub use axis::Axis;
 pub use engine::{AnyEngine, EngineSim, engine};
-pub use link::uart_link;
+pub use link::{AnyLink, LinkSim, uart_link};
 pub use sim::{AxisSim, SixAxisSim};
 pub use six_axis::SixAxis;
 

@@ -35,8 +35,8 @@ fn the_frames_of_the_page_are_those_of_the_conversation() {
     let (block, _) = rest.split_once("```").expect("the end of the block");
     let shown: Vec<(char, Vec<u8>)> = block
         .lines()
-        .filter(|line| !line.starts_with('#'))
-        .filter_map(|line| Some((line.chars().next()?, unhex(line.get(1..)?.trim()))))
+        .filter(|line| !line.starts_with('#') && !line.starts_with("<x"))
+        .filter_map(|line| Some((line.chars().next()?, unhex(line.split_once(' ')?.1))))
         .collect();
     let script = std::fs::read_to_string(root.join("tests/conversations/example_frames.txt")).unwrap();
     let mut said = Vec::new();
