@@ -34,6 +34,7 @@ fn main() -> ExitCode {
         Subcommand::Home(home) => commands::run::home(home),
         Subcommand::Status(status) => commands::status::status(status),
         Subcommand::Stop(stop) => commands::status::stop(stop),
+        Subcommand::Build(build) => commands::build::run(build),
         Subcommand::Boards(boards) => commands::boards::run(boards),
         Subcommand::Doctor(doctor) => commands::doctor::run(doctor),
     };

@@ -34,6 +34,7 @@ const ALLOWED: [(&str, &[&str]); 17] = [
             "levels",
             "link",
             "sweep",
+            "synthesis",
             "doctor",
         ],
     ),
