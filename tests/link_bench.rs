@@ -1,17 +1,19 @@
-//! The link and the engine together, with a host at the other end of the line: Rust-HDL's modules of both.
+//! The link and the engine together, with a host at the other end of the line: Rust-HDL's modules of both, the model of the
+//! link in lock-step.
 
-use carrystep_hdl::{EngineSim, LinkSim};
+use carrystep_hdl::{AnyLink, EngineSim, LinkSim, SpiSim, link};
+use carrystep_model::Link;
 use carrystep_spec::EngineBuild;
 use carrystep_spec::engine::{CAUSES, Cause, EngineInputs, EngineOutputs};
-use carrystep_spec::link::{END, ESC, ESC_END, ESC_ESC, LinkInputs, Uart};
+use carrystep_spec::link::{END, ESC, ESC_END, ESC_ESC, Line, LinkInputs, LinkOutputs, Uart};
 use std::collections::VecDeque;
 
 /// Both modules, the line between them and the test.
 pub struct LinkBench {
-    link: LinkSim,
+    wire: Wire,
     engine: EngineSim,
-    sender: Sender,
-    receiver: Receiver,
+    /// Bytes to be sent.
+    bytes: VecDeque<u8>,
     /// The pins of switches.
     pub pins: EngineInputs,
     /// What the engine showed last.
@@ -22,14 +24,34 @@ pub struct LinkBench {
     pub steps: u64,
 }
 
+/// The link with its line, and the host's end of that.
+#[expect(clippy::large_enum_variant, reason = "there is one of them")]
+enum Wire {
+    Uart { link: LinkSim, model: Link, sender: Sender, receiver: Receiver },
+    Spi { link: Box<dyn AnyLink>, line: SpiSim, host: SpiHost },
+}
+
 impl LinkBench {
     /// Both as they are configured, the line at rest.
-    pub fn new(build: &EngineBuild, uart: Uart) -> Self {
+    pub fn uart(build: &EngineBuild, uart: Uart) -> Self {
+        let bit_clocks = uart.bit_clocks();
+        let link = LinkSim::new(build, uart).expect("a link");
+        let (sender, receiver) = (Sender::new(bit_clocks), Receiver::new(bit_clocks));
+        Self::new(build, Wire::Uart { link, model: Link::new(build, uart), sender, receiver })
+    }
+
+    /// The same over SPI, SCK's half period in tenths of a clock.
+    pub fn spi(build: &EngineBuild, tenths: u32) -> Self {
+        let mut link = link(build, Line::Spi.build_id(build)).expect("a link");
+        link.connect_all();
+        Self::new(build, Wire::Spi { link, line: SpiSim::new().expect("a line"), host: SpiHost::new(tenths) })
+    }
+
+    fn new(build: &EngineBuild, wire: Wire) -> Self {
         Self {
-            link: LinkSim::new(build, uart).expect("a link"),
+            wire,
             engine: EngineSim::new(build).expect("an engine"),
-            sender: Sender::new(uart.bit_clocks()),
-            receiver: Receiver::new(uart.bit_clocks()),
+            bytes: VecDeque::new(),
             pins: EngineInputs::default(),
             outputs: EngineOutputs::default(),
             clocks: 0,
@@ -39,32 +61,40 @@ impl LinkBench {
 
     /// Bytes that are to be sent.
     pub fn send(&mut self, bytes: &[u8]) {
-        self.sender.bytes.extend(bytes);
+        self.bytes.extend(bytes);
     }
 
     /// All bytes are sent.
     pub fn has_sent(&self) -> bool {
-        self.sender.bytes.is_empty() && self.sender.left == 0
+        let busy = match &self.wire {
+            Wire::Uart { sender, .. } => sender.left > 0,
+            Wire::Spi { host, .. } => host.sends.is_some_and(|byte| byte != END),
+        };
+        self.bytes.is_empty() && !busy
     }
 
     /// One cycle; a byte that has come.
     pub fn clock(&mut self) -> Option<u8> {
-        let rx = self.sender.clock();
-        let mut seen = LinkInputs { rx, ..LinkInputs::default() };
-        let asked = self.link.settle(&seen);
+        let mut seen = LinkInputs::default();
+        match &mut self.wire {
+            Wire::Uart { sender, .. } => seen.rx = sender.clock(&mut self.bytes),
+            Wire::Spi { host, .. } => host.clock(&mut self.bytes),
+        }
+        let asked = self.wire.settle(&seen).0;
         let EngineInputs { estop, limit_min, limit_max, .. } = self.pins;
         let told = EngineInputs { estop, limit_min, limit_max, ..asked.engine };
         let (axis, item) = (asked.get_axis.into(), asked.get_item.into());
         self.engine.get(axis, item);
         let before = std::mem::replace(&mut self.outputs, self.engine.settle(&told)).step;
         self.steps += u64::from((self.outputs.step & !before).count_ones());
-        let valid = self.engine.get(axis, item).is_some();
-        seen = LinkInputs { rx, engine: self.outputs, get_valid: valid, get_data: self.engine.latched() };
-        let shown = self.link.settle(&seen);
-        self.link.clock();
+        seen.engine = self.outputs;
+        seen.get_valid = self.engine.get(axis, item).is_some();
+        seen.get_data = self.engine.latched();
+        let (shown, level) = self.wire.settle(&seen);
+        let byte = self.wire.clock(&seen, &shown, level, self.clocks);
         self.engine.clock();
         self.clocks += 1;
-        self.receiver.clock(shown.tx)
+        byte
     }
 
     /// So many cycles in which nothing comes.
@@ -91,7 +121,40 @@ impl LinkBench {
     }
 }
 
-/// A request without its CRC.
+impl Wire {
+    /// The outputs of the present cycle, and the level of the line to the host.
+    fn settle(&mut self, seen: &LinkInputs) -> (LinkOutputs, bool) {
+        match self {
+            Self::Uart { link, .. } => {
+                let shown = link.settle(seen);
+                (shown, shown.tx)
+            }
+            Self::Spi { link, line, host } => {
+                let (line, miso) = line.settle(host.pins(), link.offered());
+                (link.settle(seen, line), miso)
+            }
+        }
+    }
+
+    /// To the next cycle; a byte that has come.
+    fn clock(&mut self, seen: &LinkInputs, shown: &LinkOutputs, level: bool, clocks: u64) -> Option<u8> {
+        match self {
+            Self::Uart { link, model, receiver, .. } => {
+                assert_eq!(model.outputs(), *shown, "cycle {clocks}: model and Rust-HDL");
+                model.clock(seen);
+                link.clock();
+                receiver.clock(level)
+            }
+            Self::Spi { link, line, host } => {
+                link.clock();
+                line.clock();
+                host.look(level)
+            }
+        }
+    }
+}
+
+/// A whole request.
 pub fn frame(sequence: u8, address: u8, words: &[u32]) -> Vec<u8> {
     let head = [sequence, address];
     let words = words.iter().flat_map(|word| word.to_le_bytes());
@@ -184,7 +247,6 @@ impl Said {
 /// The host's transmitter.
 struct Sender {
     bit_clocks: u32,
-    bytes: VecDeque<u8>,
     /// Bits of the present byte, the next one lowest: start, eight, stop.
     bits: u32,
     /// Clocks that they take yet.
@@ -193,13 +255,13 @@ struct Sender {
 
 impl Sender {
     fn new(bit_clocks: u32) -> Self {
-        Self { bit_clocks, bytes: VecDeque::new(), bits: 0, left: 0 }
+        Self { bit_clocks, bits: 0, left: 0 }
     }
 
     /// The line in this cycle.
-    fn clock(&mut self) -> bool {
+    fn clock(&mut self, bytes: &mut VecDeque<u8>) -> bool {
         if self.left == 0 {
-            let Some(byte) = self.bytes.pop_front() else { return true };
+            let Some(byte) = bytes.pop_front() else { return true };
             self.bits = 1 << 9 | u32::from(byte) << 1;
             self.left = 10 * self.bit_clocks;
         }
@@ -242,5 +304,70 @@ impl Receiver {
             }
         }
         None
+    }
+}
+
+/// A host that speaks SPI all the time, mode 0: END where it has nothing to say. It lets go of select behind each seventh byte.
+struct SpiHost {
+    /// Half a period of SCK, and when its next edge is, in tenths of a clock from now.
+    half: u32,
+    due: u32,
+    sends: Option<u8>,
+    bit: u32,
+    bytes: u32,
+    rest: u32,
+    sck: bool,
+    rises: bool,
+    comes: u8,
+}
+
+impl SpiHost {
+    fn new(half: u32) -> Self {
+        Self { half, due: 0, sends: None, bit: 0, bytes: 0, rest: 0, sck: false, rises: false, comes: 0 }
+    }
+
+    /// SCK, select (low), MOSI.
+    fn pins(&self) -> [bool; 3] {
+        let mosi = self.sends.is_some_and(|byte| byte << self.bit >> 7 == 1);
+        [self.sck, self.sends.is_none(), mosi]
+    }
+
+    /// What the pins are in this cycle.
+    fn clock(&mut self, bytes: &mut VecDeque<u8>) {
+        self.rises = false;
+        if self.rest > 0 {
+            self.rest -= 1;
+            return;
+        }
+        if self.sends.is_none() {
+            self.sends = Some(bytes.pop_front().unwrap_or(END));
+            (self.bit, self.due) = (0, self.half);
+            return;
+        }
+        if self.due >= 10 {
+            self.due -= 10;
+            return;
+        }
+        self.due += self.half - 10;
+        self.sck = !self.sck;
+        self.rises = self.sck;
+        if !self.sck {
+            self.bit += 1;
+        }
+        if self.bit == 8 {
+            self.bit = 0;
+            self.bytes += 1;
+            self.sends = if self.bytes % 7 == 0 { None } else { Some(bytes.pop_front().unwrap_or(END)) };
+            self.rest = if self.sends.is_none() { 9 } else { 0 };
+        }
+    }
+
+    /// Looks at MISO as SCK rises; a byte that is whole with it.
+    fn look(&mut self, miso: bool) -> Option<u8> {
+        if !self.rises {
+            return None;
+        }
+        self.comes = self.comes << 1 | u8::from(miso);
+        (self.bit == 7).then_some(self.comes)
     }
 }

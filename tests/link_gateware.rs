@@ -9,12 +9,16 @@ use carrystep_tests::link_bench::{LinkBench, Said, frame, on_the_line, unframe};
 /// An answer comes within so many cycles.
 const PATIENCE: u64 = 30_000;
 
-fn bench() -> LinkBench {
+fn build() -> EngineBuild {
     let timebase = Timebase::new(48_000_000, 2000, 16).expect("a timebase");
     let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
     let mut build = EngineBuild::minimal(&build, 1 << 54);
     build.guard.limits = Limits::Pair;
-    LinkBench::new(&build, Uart::new(48_000_000, 3_000_000).expect("a UART"))
+    build
+}
+
+fn bench() -> LinkBench {
+    LinkBench::uart(&build(), Uart::new(48_000_000, 3_000_000).expect("a UART"))
 }
 
 /// Sends a request, and takes its answer.
@@ -231,7 +235,6 @@ fn segments_back_to_back_are_all_taken() {
     let mut next = 0;
     powered(&mut bench, &mut next);
     let first = next;
-    let start = bench.clocks;
     for _ in 0..7 {
         for axis in 0..AXES as u8 {
             bench.send(&on_the_line(&frame(next, 0x80 | of_axis(SEGMENT, axis), &cruise(100, QUARTER))));
@@ -242,9 +245,31 @@ fn segments_back_to_back_are_all_taken() {
         let answer = bench.answer(PATIENCE).expect("an answer");
         let said = Said::of(&unframe(&answer).expect("a frame"));
         assert_eq!((said.sequence, said.next, said.refused), (sequence, sequence + 1, false));
-        if bench.has_sent() {
-            eprintln!("sent before {sequence} of {first}..{next}, {} clocks", bench.clocks - start);
-        }
     }
-    eprintln!("{} clocks for {} segments", bench.clocks - start, next - first);
+}
+
+/// SPI at a fifth of the clock and slower, in any relation to it: six in flight, as docs/protocol.md has it.
+#[test]
+fn segments_over_spi() {
+    for tenths in [25, 26, 31, 47, 80] {
+        let mut bench = LinkBench::spi(&build(), tenths);
+        let mut next = 0;
+        powered(&mut bench, &mut next);
+        for _ in 0..7 {
+            let first = next;
+            for axis in 0..AXES as u8 {
+                // END and ESC go both ways.
+                let mut words = cruise(0xc0c0_dbdb, QUARTER);
+                words[6] = 0xdbc0_c0db;
+                bench.send(&on_the_line(&frame(next, 0x80 | of_axis(SEGMENT, axis), &words)));
+                next += 1;
+            }
+            for sequence in first..next {
+                let answer = bench.answer(PATIENCE).expect("an answer");
+                let said = Said::of(&unframe(&answer).expect("a frame"));
+                assert_eq!((said.sequence, said.next, said.refused), (sequence, sequence + 1, false), "{tenths}");
+            }
+        }
+        assert_eq!(ask(&mut bench, 0xc0, of_axis(POSITION, 5), &[]).free, 0);
+    }
 }

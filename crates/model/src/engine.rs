@@ -11,6 +11,7 @@
 mod guard;
 mod lane;
 mod plain;
+mod told;
 
 use crate::shaper;
 use carrystep_spec::EngineBuild;

@@ -1,5 +1,5 @@
 //! The gateware as integer functions: `state, input -> state, output`, tick by tick for the
-//! accumulator, clock by clock for the pins.
+//! accumulator, clock by clock for the pins and the host link.
 //!
 //! Written from docs/clock-by-clock.md and from nothing of `crates/hdl`: the two are strangers, so
 //! that their agreement proves something (docs/decisions/0004). Start with [`axis::tick`]: it is the
@@ -8,10 +8,12 @@
 pub mod axis;
 pub mod engine;
 pub mod fast;
+pub mod link;
 pub mod phase;
 pub mod shaper;
 pub mod six_axis;
 
 pub use engine::Engine;
 pub use fast::{Fast, FastEngine};
+pub use link::Link;
 pub use six_axis::SixAxis;

@@ -4,7 +4,7 @@ use crate::shell::{self, Done};
 use std::collections::BTreeSet;
 
 /// Each crate and all crates of the house that it may reach, directly or through others.
-const ALLOWED: [(&str, &[&str]); 17] = [
+const ALLOWED: [(&str, &[&str]); 18] = [
     ("spec", &[]),
     ("profile", &["spec"]),
     ("table", &["spec", "profile"]),
@@ -15,6 +15,7 @@ const ALLOWED: [(&str, &[&str]); 17] = [
     ("export", &["spec", "hdl"]),
     ("trace", &["spec", "profile"]),
     ("link", &["spec"]),
+    ("board", &["spec", "model"]),
     ("levels", &["spec", "profile", "model", "hdl", "export", "trace"]),
     ("sweep", &["spec"]),
     ("synthesis", &["spec", "hdl", "export"]),
@@ -33,6 +34,7 @@ const ALLOWED: [(&str, &[&str]); 17] = [
             "trace",
             "levels",
             "link",
+            "board",
             "sweep",
             "synthesis",
             "doctor",

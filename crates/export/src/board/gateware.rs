@@ -2,11 +2,11 @@
 
 use super::{CLOCK_NAME, Design, rendered};
 use crate::ExportError;
-use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, link_ports, link_verilog};
+use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, line_name, line_verilog, link_ports, link_verilog};
 use crate::write::TextFile;
 use carrystep_spec::board::{Board, Clocking, Part};
 use carrystep_spec::engine::Limits;
-use carrystep_spec::link::{BuildId, Uart};
+use carrystep_spec::link::{BuildId, Line, Uart};
 use carrystep_spec::{EngineBuild, Machine, Source};
 use minijinja::{Value, context};
 
@@ -88,7 +88,8 @@ impl<'a> Gateware<'a> {
         Ok(vec![
             file(&self.top(), self.top_level()?),
             self.design(&[], &[]).clock()?,
-            file(LINK_NAME, link_verilog(&self.build, self.uart, &description)?),
+            file(line_name(self.line()), line_verilog(self.line(), &description)?),
+            file(LINK_NAME, link_verilog(&self.build, self.line(), &description)?),
             file(ENGINE_NAME, engine_verilog(&self.build, &description)?),
         ])
     }
@@ -124,6 +125,10 @@ impl<'a> Gateware<'a> {
             .collect()
     }
 
+    fn line(&self) -> Line {
+        self.uart.into()
+    }
+
     fn has_led(&self) -> bool {
         self.board.bits("led") > 0
     }
@@ -144,12 +149,13 @@ impl<'a> Gateware<'a> {
         let axes = self.build.axes();
         let (low, high) = limit_bits(&self.build);
         // An output of the link is an input of the engine of the same name, or the other way round.
-        let between = link_ports(&self.build, self.uart)?;
+        let (bytes, between) = link_ports(&self.build, self.line())?;
         let row = |(name, width): &(String, usize)| context! { name, range => range(*width) };
         let values = context! {
             title => &self.board.title,
             top => self.top(),
             clock => CLOCK_NAME,
+            line => line_name(self.line()),
             link => LINK_NAME,
             engine => ENGINE_NAME,
             axes => range(axes),
@@ -160,6 +166,7 @@ impl<'a> Gateware<'a> {
             count => axes,
             led => self.has_led(),
             led_low => self.board.led_low,
+            bytes => bytes.iter().map(row).collect::<Vec<Value>>(),
             between => between.iter().map(row).collect::<Vec<Value>>(),
             ties => super::ties(self.board),
         };

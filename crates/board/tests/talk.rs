@@ -1,0 +1,124 @@
+//! A host and a board in one process: who it is, a move, a stop, in simulated time.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+use carrystep_board::{Board, Switches};
+use carrystep_link::{Clock, Command, Ended, Exchanged, Host, HostError, Line, Patience, Program, Segment, Wish};
+use carrystep_spec::link::Uart;
+use carrystep_spec::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
+use std::cell::RefCell;
+use std::convert::Infallible;
+use std::rc::Rc;
+
+const CLOCK_HZ: u64 = 48_000_000;
+
+fn build() -> EngineBuild {
+    let timebase = Timebase::new(CLOCK_HZ, 2000, 16).unwrap();
+    let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+    let mut build = EngineBuild::minimal(&build, 1 << 40);
+    build.guard.watchdog = 100;
+    build.guard.round = 1024;
+    build
+}
+
+/// The host's end: each exchange is half a millisecond of the board.
+#[derive(Clone)]
+struct End(Rc<RefCell<Board>>);
+
+impl End {
+    fn new(uart: Uart) -> Self {
+        Self(Rc::new(RefCell::new(Board::new(&build(), uart))))
+    }
+}
+
+impl Clock for End {
+    fn milliseconds(&mut self) -> u32 {
+        (self.0.borrow().cycle() / (CLOCK_HZ / 1000)) as u32
+    }
+}
+
+impl Line for End {
+    type Error = Infallible;
+
+    fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> Result<Exchanged, Infallible> {
+        let mut board = self.0.borrow_mut();
+        out.iter().for_each(|&byte| board.say(byte));
+        let end = board.cycle() + CLOCK_HZ / 2000;
+        board.run(end, &mut ());
+        let mut received = 0;
+        for place in into {
+            let Some(byte) = board.next_byte() else { break };
+            *place = byte;
+            received += 1;
+        }
+        Ok(Exchanged { sent: out.len(), received })
+    }
+}
+
+fn connected(baud: u32) -> (End, Host<End, End>) {
+    let uart = Uart::new(CLOCK_HZ, baud).unwrap();
+    let end = End::new(uart);
+    let id = uart.build_id(&build());
+    let host = Host::connect(end.clone(), end.clone(), Some(id.0), Patience::default()).unwrap();
+    (end, host)
+}
+
+/// A hundred steps forward and as many back, in pieces, on two axes.
+fn commands(pieces: u32) -> Vec<Command> {
+    let v = i64::MAX / 100;
+    let mut commands = Vec::new();
+    for piece in 0..pieces {
+        for axis in [0, 3] {
+            let v = if piece % 2 == 0 { v } else { -v };
+            let segment = Segment { ticks: 1000, v, a: 0, j: 0, last: piece + 1 == pieces };
+            commands.push(Command::Segment { axis, segment });
+        }
+    }
+    commands.push(Command::Start { mask: 0b1001 });
+    commands
+}
+
+#[test]
+fn it_knows_who_it_is_and_moves() {
+    for baud in [921_600, 3_000_000] {
+        let (end, mut host) = connected(baud);
+        assert_eq!((host.facts().axes, host.facts().tick_ns, host.facts().watchdog_ticks), (6, 2000, 102_400));
+        host.enable().unwrap();
+        let commands = commands(41);
+        let ended = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap();
+        assert_eq!(ended, Ended::Done);
+        // Half of a step is behind it when it begins.
+        assert_eq!(host.status().positions[..6], [5, 0, 0, 5, 0, 0], "{:?}", host.status());
+        assert_eq!(end.0.borrow().engine().core().shaper(3).position, 5);
+    }
+}
+
+#[test]
+fn it_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
+    let (end, mut host) = connected(921_600);
+    host.enable().unwrap();
+    let commands = commands(401);
+    let program = || Program::new(&commands, 6).unwrap();
+    let mut looks = 0;
+    let ended = host.stream(program(), |_| {
+        looks += 1;
+        if looks == 100 { Wish::Stop } else { Wish::GoOn }
+    });
+    assert_eq!(ended, Ok(Ended::Stopped));
+    let true_position = end.0.borrow().engine().core().shaper(0).position;
+    assert_eq!(host.status().positions[0], true_position);
+    host.clear().unwrap();
+
+    let pressed = end.clone();
+    let mut looks = 0;
+    let error = host.stream(program(), |_| {
+        looks += 1;
+        if looks == 60 {
+            pressed.0.borrow_mut().press(Switches { estop: true, ..Switches::default() });
+        }
+        Wish::GoOn
+    });
+    assert_eq!(error, Err(HostError::Fault { cause: 0, culprits: 0 }));
+    assert!(matches!(host.clear(), Err(HostError::TooLong { .. })));
+    end.0.borrow_mut().press(Switches::default());
+    host.clear().unwrap();
+}

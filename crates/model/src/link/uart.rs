@@ -1,0 +1,107 @@
+//! The UART's two ends: eight data bits, low bit first, no parity, one stop bit, each of so many clocks.
+
+/// Above the bits that are still to come or to go.
+const MARK: u16 = 0x100;
+
+/// Bytes from the line, which is looked at in the middle of each bit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Receiver {
+    bit_clocks: u32,
+    /// The line, one clock and two clocks ago.
+    sync: bool,
+    now: bool,
+    /// Clocks to the next look, and the bits that have come under a mark; at rest, nothing.
+    byte: Option<(u32, u16)>,
+}
+
+impl Receiver {
+    pub(super) const fn new(bit_clocks: u32) -> Self {
+        Self { bit_clocks, sync: true, now: true, byte: None }
+    }
+
+    /// The byte whose stop bit is looked at in this clock, if it is one.
+    pub(super) fn byte(&self) -> Option<u8> {
+        match self.byte {
+            Some((0, bits)) if bits & 1 == 1 && self.now => Some((bits >> 1) as u8),
+            _ => None,
+        }
+    }
+
+    pub(super) fn clock(&mut self, rx: bool) {
+        self.byte = match self.byte {
+            None if self.now => None,
+            None => Some((self.bit_clocks + self.bit_clocks / 2 - 1, MARK)),
+            Some((0, bits)) if bits & 1 == 1 => None,
+            Some((0, bits)) => Some((self.bit_clocks - 1, bits >> 1 | if self.now { MARK } else { 0 })),
+            Some((left, bits)) => Some((left - 1, bits)),
+        };
+        self.now = self.sync;
+        self.sync = rx;
+    }
+
+    /// For so many clocks it only counts, while the line stays at `rx`.
+    pub(super) fn quiet(&self, rx: bool) -> u64 {
+        match self.byte {
+            Some((left, _)) => left.into(),
+            None if self.now && self.sync && rx => u64::MAX,
+            None => 0,
+        }
+    }
+
+    pub(super) fn pass(&mut self, clocks: u64, rx: bool) {
+        if let Some((left, _)) = &mut self.byte {
+            *left -= clocks as u32;
+        }
+        match clocks {
+            0 => {}
+            1 => (self.now, self.sync) = (self.sync, rx),
+            _ => (self.now, self.sync) = (rx, rx),
+        }
+    }
+}
+
+/// Bytes to the line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Transmitter {
+    bit_clocks: u32,
+    line: bool,
+    /// Clocks to the next bit.
+    left: u32,
+    /// Bits that are still to go, the stop bit above them.
+    bits: u16,
+}
+
+impl Transmitter {
+    pub(super) const fn new(bit_clocks: u32) -> Self {
+        Self { bit_clocks, line: true, left: 0, bits: 0 }
+    }
+
+    pub(super) const fn line(&self) -> bool {
+        self.line
+    }
+
+    /// Whether a byte that is offered is taken in this clock.
+    pub(super) const fn takes(&self, offered: bool) -> bool {
+        offered && self.left == 0 && self.bits == 0
+    }
+
+    pub(super) fn clock(&mut self, taken: Option<u8>) {
+        if let Some(byte) = taken {
+            *self = Self { line: false, left: self.bit_clocks - 1, bits: MARK | u16::from(byte), ..*self };
+        } else if self.left > 0 {
+            self.left -= 1;
+        } else if self.bits != 0 {
+            let bits = self.bits;
+            *self = Self { line: bits & 1 == 1, left: self.bit_clocks - 1, bits: bits >> 1, ..*self };
+        }
+    }
+
+    /// For so many clocks it only counts, while a byte is offered, or none is.
+    pub(super) fn quiet(&self, offered: bool) -> u64 {
+        if self.bits == 0 && !offered { u64::MAX } else { self.left.into() }
+    }
+
+    pub(super) fn pass(&mut self, clocks: u64) {
+        self.left = u64::from(self.left).saturating_sub(clocks) as u32;
+    }
+}
