@@ -1,0 +1,10 @@
+//! Writes what is made from tables of `spec` into the workspace: `cargo run -p carrystep-export --example generated`.
+
+use carrystep_export::write_generated_files;
+use std::error::Error;
+use std::path::Path;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    write_generated_files(Path::new("."))?;
+    Ok(())
+}
