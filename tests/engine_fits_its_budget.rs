@@ -2,7 +2,7 @@
 //! `cargo xtask resources` measures as a whole; sizes are measured here for all of them, speed for those marked `always`.
 
 use carrystep_export::ENGINE_NAME;
-use carrystep_synthesis::resources::{self, EIGHT_TO_SIX, FAMILIES, PAGE, ROWS, Row};
+use carrystep_synthesis::resources::{self, EIGHT_TO_SIX, FAMILIES, LINES, LINK_BUDGET, PAGE, ROWS, Row};
 use carrystep_synthesis::{ice40, xilinx};
 use carrystep_tests::effort;
 
@@ -46,6 +46,15 @@ fn the_clock_is_reached() {
         let mhz = reached(row);
         effort::say(&format!("{} at {} ns: {mhz:?} MHz", row.part.device, row.tick_ns));
         assert!(mhz.is_some(), "no seed reaches the clock of {row:?}");
+    }
+}
+
+#[test]
+fn the_link_is_small_enough() {
+    for (name, found) in LINES.iter().zip(resources::links().expect("two links")) {
+        effort::say(&format!("{name}: {found:?}"));
+        assert!(found.logic_cells <= LINK_BUDGET.logic_cells, "{name}: {found:?} of {LINK_BUDGET:?}");
+        assert!(found.block_rams <= LINK_BUDGET.block_rams, "{name}: {found:?} of {LINK_BUDGET:?}");
     }
 }
 

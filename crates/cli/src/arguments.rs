@@ -61,6 +61,8 @@ pub enum Subcommand {
     /// `estop 1`, `min x 1`, `max x 0` press and release switches; Ctrl-C or `end` ends it.
     #[cfg(unix)]
     VirtualBoard(VirtualBoard),
+    /// Make a board's bitstream: synthesis, placement, timing, with the open tools.
+    Build(Build),
     /// Show the boards, or one of them: part, clock, ticks, and which pin does what.
     Boards(Boards),
     /// Check tools, serial ports and permissions, and name the real cause.
@@ -224,6 +226,26 @@ pub struct Sweep {
     #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "sample", "seed", "shard"])]
     pub merge: Vec<PathBuf>,
     /// One JSON document instead of the table; shards are merged from these.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `carrystep build`
+#[derive(Debug, Args)]
+pub struct Build {
+    /// The board, by its name or by the file of a board of your own.
+    #[arg(long, value_name = "BOARD")]
+    pub board: String,
+    /// Which of its parts; default: its first.
+    #[arg(long, value_name = "PART")]
+    pub part: Option<String>,
+    /// The machine whose gateware it is; default: the shipped machine at the board's clock.
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub machine: Option<PathBuf>,
+    /// Folder for all files; default: sim/out/BOARD.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
 }

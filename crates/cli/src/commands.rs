@@ -1,6 +1,7 @@
 //! One file a subcommand.
 
 pub mod boards;
+pub mod build;
 pub mod check;
 pub mod demo;
 pub mod doctor;

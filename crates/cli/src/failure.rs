@@ -5,6 +5,7 @@ use carrystep_levels::LevelError;
 use carrystep_plan::PlanError;
 use carrystep_spec::board::BoardError;
 use carrystep_spec::{InputError, MoveFile};
+use carrystep_synthesis::SynthesisError;
 use carrystep_trace::TraceError;
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report};
 use std::io::{IsTerminal as _, Write as _};
@@ -118,6 +119,15 @@ impl From<ExportError> for Failure {
         match error {
             ExportError::Machine(error) => Self::Input(error),
             _ => Self::input(error.to_string()),
+        }
+    }
+}
+
+impl From<SynthesisError> for Failure {
+    fn from(error: SynthesisError) -> Self {
+        match error {
+            SynthesisError::Missing { .. } => Self::Tool(error.to_string()),
+            _ => Self::Run(error.to_string()),
         }
     }
 }

@@ -40,6 +40,7 @@ fn main() -> ExitCode {
         Subcommand::Stop(stop) => commands::status::stop(stop),
         #[cfg(unix)]
         Subcommand::VirtualBoard(board) => commands::virtual_board::run(board),
+        Subcommand::Build(build) => commands::build::run(build),
         Subcommand::Boards(boards) => commands::boards::run(boards),
         Subcommand::Doctor(doctor) => commands::doctor::run(doctor),
     };

@@ -42,6 +42,32 @@ impl Progress {
     }
 }
 
+/// What is going on, where nobody knows how long it takes.
+pub struct Stages(ProgressBar);
+
+impl Stages {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+        let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self(bar)
+    }
+
+    /// This begins.
+    pub fn next(&mut self, what: &str) {
+        self.0.set_message(what.to_owned());
+        self.0.reset_elapsed();
+    }
+}
+
+impl Drop for Stages {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
 impl Drop for Progress {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {

@@ -6,8 +6,8 @@ use crate::module::module_text;
 use crate::names::{Names, split_index};
 use crate::netlist::{self, Module};
 use crate::write::{TextFile, write};
-use carrystep_hdl::{HdlError, SixAxis, engine, uart_link};
-use carrystep_spec::link::Uart;
+use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
+use carrystep_spec::link::Line;
 use carrystep_spec::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use rust_hdl::prelude::{Block, check_all};
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
 const RUST_HDL: &str = "0.46.0";
 
 /// What each module is for, in a line.
-const PURPOSES: [(&str, &str); 29] = [
+const PURPOSES: [(&str, &str); 34] = [
     ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
     ("carrystep_sequencer", "The running and the waiting segment of an axis."),
     ("carrystep_step_edge", "When in its tick a step is due: bisection, then the request to the shaper."),
@@ -54,11 +54,16 @@ const PURPOSES: [(&str, &str); 29] = [
     ("carrystep_watch", "The e-stop, the host's signs of life, the drivers' power."),
     ("carrystep_uart_in", "Bytes from the line."),
     ("carrystep_uart_out", "Bytes to the line."),
+    ("carrystep_uart", "A UART, both directions."),
+    ("carrystep_spi", "SPI mode 0, the host's clock up to a fifth of this one."),
     ("carrystep_check", "The CRC of frames."),
     ("carrystep_machine", "The little machine that reads requests and writes answers."),
     ("carrystep_program", "What it does."),
-    ("carrystep_sent", "The answer that is being sent."),
     ("carrystep_facts", "What can be read."),
+    ("carrystep_known", "Facts of the build, and what the engine has last said of its axes."),
+    ("carrystep_words", "The words of a segment, as the engine takes them."),
+    ("carrystep_data", "A request and the answer to it, constants, and what is remembered."),
+    ("carrystep_ring", "Received bytes that wait."),
     (LINK_NAME, "The host link: bytes in, words of segments out."),
     (ENGINE_NAME, "Axes on one adder, their queues, starts, and the guard."),
 ];
@@ -86,27 +91,46 @@ pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, 
 ///
 /// # Errors
 /// [`ExportError`] where the build cannot be made.
-pub fn link_verilog(build: &EngineBuild, uart: Uart, description: &str) -> Result<String, ExportError> {
-    let lines = format!(
-        "// Clock        {} Hz\n// UART         {} baud, {} clocks a bit\n// Build id     {}\n",
-        build.timebase.clock_hz(),
-        uart.baud(),
-        uart.bit_clocks(),
-        uart.build_id(build)
-    );
-    let facts = Facts { title: "the host link of an engine, over a UART".to_owned(), lines, pins: &[] };
-    file_text(uart_link(build, uart)?.as_mut(), LINK_NAME, &facts, description)
+pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Result<String, ExportError> {
+    let id = line.build_id(build);
+    let lines =
+        format!("// Clock        {} Hz\n// Line         {line}\n// Build id     {id}\n", build.timebase.clock_hz());
+    let facts = Facts { title: "the host link of an engine".to_owned(), lines, pins: &[] };
+    file_text(link(build, id)?.as_mut(), LINK_NAME, &facts, description)
 }
 
-/// The ports that the link shares with the engine, and their widths.
-pub(crate) fn link_ports(build: &EngineBuild, uart: Uart) -> Result<Vec<(String, usize)>, ExportError> {
-    let mut link = uart_link(build, uart)?;
+/// The line to the host as Verilog-2005, top module [`line_name`]; otherwise as [`six_axis_verilog`].
+///
+/// # Errors
+/// [`ExportError`] where it cannot be made.
+pub fn line_verilog(line: Line, description: &str) -> Result<String, ExportError> {
+    let facts =
+        Facts { title: "the line to the host".to_owned(), lines: format!("// Line         {line}\n"), pins: &[] };
+    let mut module: Box<dyn Block> = match line {
+        Line::Uart(uart) => Box::new(UartLine::new(uart)),
+        Line::Spi => Box::new(Spi::new()),
+    };
+    file_text(module.as_mut(), line_name(line), &facts, description)
+}
+
+/// Name of a line's top module and of its file.
+pub const fn line_name(line: Line) -> &'static str {
+    match line {
+        Line::Uart(_) => "carrystep_uart",
+        Line::Spi => "carrystep_spi",
+    }
+}
+
+/// Names and widths of some ports.
+pub(crate) type Ports = Vec<(String, usize)>;
+
+/// The ports that the link shares with the line, and those that it shares with the engine.
+pub(crate) fn link_ports(build: &EngineBuild, line: Line) -> Result<(Ports, Ports), ExportError> {
+    let mut link = link(build, line.build_id(build))?;
     link.connect_all();
     let ports = Names::new(&netlist::read(link.as_ref())?)?.ports.into_iter();
-    Ok(ports
-        .filter(|port| !["clock", "rx", "tx"].contains(&port.name.as_str()))
-        .map(|port| (port.name, port.width))
-        .collect())
+    let ports = ports.filter(|port| port.name != "clock").map(|port| (port.name, port.width));
+    Ok(ports.partition(|(name, _)| name.starts_with("received") || name.starts_with("answer")))
 }
 
 /// What the header tells of a build.

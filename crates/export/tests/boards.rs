@@ -102,7 +102,7 @@ fn a_top_level_gets_the_pins_of_its_ports_and_no_others() {
 /// What is asked of a board, as its machine file with one thing changed.
 fn asked(name: &str, was: &str, becomes: &str) -> Result<(), String> {
     let board = board(name).unwrap();
-    let text = shipped_machine(board, &board.clocks[0]);
+    let text = shipped_machine(board, &board.clocks[0]).unwrap();
     assert!(text.contains(was), "the text is gone: {was}");
     let source = Source { path: "machine.toml".into(), text: text.replacen(was, becomes, 1).into() };
     Gateware::new(board, &board.parts[0], source).map(|_| ()).map_err(|error| error.to_string())
@@ -125,6 +125,8 @@ fn what_a_board_cannot_do_is_refused_with_what_it_can() {
             "too few for two for each of 6 axes: limits = \"each\" or \"one\" would do",
         ),
         ("icestick", "tick_ns = 2000", "tick_ns = 1000", "6 axes need 13 clocks each and one to close the tick"),
+        ("s3board", "115200", "921600", "s3board's serial chip takes at most 115200 baud, not 921600"),
+        ("icestick", "3000000", "5600000", "a clock of 48000000 Hz does not make 5600000 baud within 2 %"),
         ("icestick", "driver = \"a4988\"", "driver = \"a4988\"\nstep_ns = 9000000", "step_ns"),
         (
             "icestick",

@@ -12,6 +12,7 @@ pub mod constant;
 pub mod edge;
 pub mod engine;
 pub mod lanes;
+pub mod line;
 pub mod link;
 pub mod memory;
 pub mod register;
@@ -24,7 +25,8 @@ pub mod word;
 
 pub use axis::Axis;
 pub use engine::{AnyEngine, EngineSim, engine};
-pub use link::{AnyLink, LinkSim, uart_link};
+pub use line::{Spi, SpiSim, UartLine, UartSim};
+pub use link::{AnyLink, LinkSim, link};
 pub use sim::{AxisSim, SixAxisSim};
 pub use six_axis::SixAxis;
 

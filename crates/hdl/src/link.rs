@@ -1,13 +1,13 @@
 //! The host link: requests in, answers out (docs/protocol.md), by a little machine and its program.
 //!
 //! ```text
-//!          .---------. bytes  .---------. put, start, home, control
-//!  rx ---->| uart_in |------->|         |--------------------------------> engine
-//!          '---------'        | machine | state, room, culprits, homing
-//!          .----------. bytes |         |<-------------------------------- engine
-//!  tx <----| uart_out |<------|         | facts  .-------. get, latch
-//!          '----------'       '---------'<-------| facts |<--------------- engine
-//!                                                '-------'
+//!          .------. received .---------. put, start, home, control
+//!  rx ---->|      |--------->|         |--------------------------------> engine
+//!          | line |          | machine | state, room, culprits, homing
+//!          |      | answer   |         |<-------------------------------- engine
+//!  tx <----|      |<---------|         | facts  .-------. get, latch
+//!          '------'          '---------'<-------| facts |<--------------- engine
+//!                                               '-------'
 //! ```
 //!
 //! A request lies in block RAM until its CRC has come; only then a word of it reaches the engine.
@@ -15,32 +15,34 @@
 use crate::register::Input;
 use crate::word::Word;
 use carrystep_spec::EngineBuild;
-use carrystep_spec::link::{Uart, facts, image};
+use carrystep_spec::link::{BuildId, facts, image};
 use rust_hdl::prelude::*;
 
 pub mod check;
 pub mod facts;
 pub mod machine;
 mod sim;
-pub mod uart_in;
-pub mod uart_out;
 
-pub use sim::{AnyLink, LinkSim, uart_link};
+pub use sim::{AnyLink, LinkSim, link};
 
 use self::facts::Facts;
 use machine::Machine;
-use uart_in::UartIn;
-use uart_out::UartOut;
 
-/// The link over a UART, for an engine of N axes; its other ports are the engine's.
+/// The link for an engine of N axes: a byte from the line, a byte to it; its other ports are the engine's.
 #[derive(LogicBlock, Default)]
-pub struct UartLink<const N: usize> {
+pub struct Link<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The line from the host, asynchronous.
-    pub rx: Input<Bit>,
-    /// The line to the host.
-    pub tx: Signal<Out, Bit>,
+    /// A byte has come,
+    pub received_valid: Input<Bit>,
+    /// this one.
+    pub received: Input<Word<8>>,
+    /// A byte to the host is offered until it is taken,
+    pub answer_valid: Signal<Out, Bit>,
+    /// this one.
+    pub answer: Signal<Out, Word<8>>,
+    /// It is taken in this cycle.
+    pub answer_take: Input<Bit>,
     /// A word of a segment is offered,
     pub put_valid: Signal<Out, Bit>,
     /// for this axis,
@@ -103,37 +105,26 @@ pub struct UartLink<const N: usize> {
     pub culprits: Input<Word<N>>,
     /// The axes that wait for their limit.
     pub homing: Input<Word<N>>,
-    uart_in: UartIn,
-    uart_out: UartOut,
     machine: Machine<N>,
     facts: Facts,
 }
 
-impl<const N: usize> UartLink<N> {
-    /// The link of this build, with this line.
-    fn new(build: &EngineBuild, uart: Uart) -> Self {
-        let bit_clocks = uart.bit_clocks();
-        Self {
-            uart_in: UartIn::new(bit_clocks),
-            uart_out: UartOut::new(bit_clocks),
-            machine: Machine::new(&image()),
-            facts: Facts::new(&facts(build, uart)),
-            ..Self::default()
-        }
+impl<const N: usize> Link<N> {
+    /// The link of this build.
+    fn new(build: &EngineBuild, id: BuildId) -> Self {
+        Self { machine: Machine::new(&image()), facts: Facts::new(&facts(build, id)), ..Self::default() }
     }
 }
 
-impl<const N: usize> Logic for UartLink<N> {
+impl<const N: usize> Logic for Link<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        clock!(self, clock, uart_in, uart_out, machine, facts);
-        self.uart_in.line.next = self.rx.val();
-        self.machine.received.next = self.uart_in.valid.val();
-        self.machine.received_data.next = self.uart_in.data.val();
-        self.uart_out.data.next = self.machine.a.val();
-        self.uart_out.valid.next = self.machine.answer_valid.val();
-        self.machine.answer_take.next = self.uart_out.take.val();
-        self.tx.next = self.uart_out.line.val();
+        clock!(self, clock, machine, facts);
+        self.machine.received.next = self.received_valid.val();
+        self.machine.received_data.next = self.received.val();
+        self.answer.next = self.machine.a.val();
+        self.answer_valid.next = self.machine.answer_valid.val();
+        self.machine.answer_take.next = self.answer_take.val();
 
         self.put_valid.next = self.machine.put_valid.val();
         self.put_axis.next = self.machine.x.val().get_bits::<3>(3);
@@ -178,13 +169,15 @@ impl<const N: usize> Logic for UartLink<N> {
 mod tests {
     use super::*;
     use crate::sim::assert_synthesizes;
+    use carrystep_spec::link::Line;
     use carrystep_spec::{AXES, Build, PinTiming, StartPhase, Timebase};
 
     #[test]
     fn link_synthesizes() {
         let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-        let uart = Uart::new(48_000_000, 3_000_000).unwrap();
-        assert_synthesizes(UartLink::<6>::new(&EngineBuild::minimal(&build, 1), uart), "carrystep_link");
+        let build = EngineBuild::minimal(&build, 1);
+        let id = Line::Spi.build_id(&build);
+        assert_synthesizes(Link::<6>::new(&build, id), "carrystep_link");
     }
 }

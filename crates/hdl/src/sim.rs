@@ -28,7 +28,7 @@ pub(crate) fn rising_edge<B: Block>(block: &mut B) {
     block.update_all();
 }
 
-fn connected<B: Block>(mut block: B) -> Result<Box<B>, HdlError> {
+pub(crate) fn connected<B: Block>(mut block: B) -> Result<Box<B>, HdlError> {
     block.connect_all();
     check_all(&block).map_err(|error| HdlError::Check(format!("{error:?}")))?;
     Ok(Box::new(block))

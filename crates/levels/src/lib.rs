@@ -12,6 +12,7 @@ mod icarus;
 pub mod pins;
 pub mod replay;
 mod tool;
+pub mod vectors;
 mod verilator;
 
 use carrystep_spec::ports::Outputs;

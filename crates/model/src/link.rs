@@ -43,7 +43,7 @@ impl Link {
             receiver: Receiver::new(uart.bit_clocks()),
             transmitter: Transmitter::new(uart.bit_clocks()),
             machine: Machine::new(&image()),
-            facts: Facts::new(build, uart),
+            facts: Facts::new(build, uart.build_id(build)),
         }
     }
 

@@ -246,6 +246,17 @@ impl Board {
         made.map_or_else(|| Uart::new(clock_hz, most), Ok)
     }
 
+    /// Whether its serial chip takes this baud rate.
+    ///
+    /// # Errors
+    /// [`BoardError::Baud`] names the greatest that it takes.
+    pub fn takes(&self, baud: u32) -> Result<(), BoardError> {
+        match self.max_baud {
+            Some(most) if most < baud => Err(BoardError::Baud { board: self.name.clone(), most, wanted: baud }),
+            _ => Ok(()),
+        }
+    }
+
     /// Whether it has pins for so many axes and their limit switches.
     ///
     /// # Errors

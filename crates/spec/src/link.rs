@@ -9,6 +9,7 @@
 mod assembler;
 mod build_id;
 mod facts;
+mod line;
 pub mod machine;
 mod ports;
 mod program;
@@ -18,6 +19,7 @@ mod uart;
 pub use assembler::Image;
 pub use build_id::BuildId;
 pub use facts::facts;
+pub use line::Line;
 pub use ports::{LinkInputs, LinkOutputs};
 pub use program::image;
 pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};

@@ -6,12 +6,12 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum SynthesisError {
     /// A program is not installed.
-    #[error("{tool} is not installed: `sudo apt-get install {package}` installs it")]
+    #[error("{tool} is not installed: {install} installs it")]
     Missing {
         /// Its name.
         tool: &'static str,
-        /// The Debian packages that bring it.
-        package: &'static str,
+        /// The commands that install it.
+        install: &'static str,
     },
     /// A program failed.
     #[error("{tool} failed: {message}")]

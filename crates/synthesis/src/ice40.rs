@@ -1,16 +1,18 @@
 //! Verilog to an iCE40 bitstream by yosys, nextpnr and icepack; and what each stage says of it.
 
+use crate::cells::pattern;
 use crate::tool::{self, ICEBOX_VLOG, ICEPACK, ICEUNPACK, NEXTPNR};
 use crate::{SynthesisError, cells, read_back};
 use serde_json::Value;
+use std::collections::HashMap;
 
 /// A part: what nextpnr calls its device, and its package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part {
+pub struct Part<'a> {
     /// `hx8k`, `up5k` and so on.
-    pub device: &'static str,
+    pub device: &'a str,
     /// `ct256` and so on.
-    pub package: &'static str,
+    pub package: &'a str,
 }
 
 /// What a design takes of a part.
@@ -20,6 +22,13 @@ pub struct Size {
     pub logic_cells: u32,
     /// Block RAMs of 4 kbit.
     pub block_rams: u32,
+}
+
+impl Size {
+    /// What nextpnr's log says of it.
+    fn of(log: &str) -> Result<Self, SynthesisError> {
+        Ok(Self { logic_cells: used(log, "ICESTORM_LC:")?, block_rams: used(log, "ICESTORM_RAM:")? })
+    }
 }
 
 /// A synthesised design.
@@ -37,6 +46,8 @@ pub struct Placed {
     pub asc: String,
     /// The greatest clock at which every path between flip-flops and memories is in time, by nextpnr's models.
     pub mhz: f64,
+    /// What it takes.
+    pub size: Size,
     /// Where every cell is.
     placement: Value,
 }
@@ -78,34 +89,54 @@ impl Netlist {
     ///
     /// # Errors
     /// [`SynthesisError`]: nextpnr is missing or fails.
-    pub fn size(&self, part: Part) -> Result<Size, SynthesisError> {
-        let (_, log) = self.nextpnr(part, &["--pack-only"])?;
-        Ok(Size { logic_cells: used(&log, "ICESTORM_LC:")?, block_rams: used(&log, "ICESTORM_RAM:")? })
+    pub fn size(&self, part: Part<'_>) -> Result<Size, SynthesisError> {
+        let (_, log) = self.nextpnr(part, None, &["--pack-only"])?;
+        Size::of(&log)
     }
 
     /// Places and routes it for a clock, whether that is reached or not; pins where nextpnr likes.
     ///
     /// # Errors
     /// [`SynthesisError`]: nextpnr is missing, or the part is too small.
-    pub fn place(&self, part: Part, clock_hz: u64, seed: u32) -> Result<Placed, SynthesisError> {
+    pub fn place(&self, part: Part<'_>, clock_hz: u64, seed: u32) -> Result<Placed, SynthesisError> {
+        self.placed(part, None, clock_hz, seed)
+    }
+
+    /// Places and routes it on these pins, which must be all of them, whether the clock is reached or not.
+    ///
+    /// # Errors
+    /// [`SynthesisError`]: nextpnr is missing, the part is too small, or a port has no pin.
+    pub fn place_on(&self, part: Part<'_>, pcf: &str, clock_hz: u64, seed: u32) -> Result<Placed, SynthesisError> {
+        self.placed(part, Some(pcf), clock_hz, seed)
+    }
+
+    fn placed(&self, part: Part<'_>, pcf: Option<&str>, clock_hz: u64, seed: u32) -> Result<Placed, SynthesisError> {
         let (mhz, seed) = ((clock_hz as f64 / 1e6).to_string(), seed.to_string());
         let more = ["--freq", &mhz, "--seed", &seed, "--timing-allow-fail", "--asc", "placed.asc", "--write"];
-        let (folder, log) = self.nextpnr(part, &[&more[..], &["placed.json"]].concat())?;
+        let (folder, log) = self.nextpnr(part, pcf, &[&more[..], &["placed.json"]].concat())?;
         let placement = serde_json::from_str(&tool::read(folder.path(), "placed.json")?);
         Ok(Placed {
             asc: tool::read(folder.path(), "placed.asc")?,
             mhz: greatest_clock(&log)?,
+            size: Size::of(&log)?,
             placement: placement.map_err(|error| unread(format!("placed.json: {error}")))?,
         })
     }
 
     /// Runs nextpnr; its folder and its log.
-    fn nextpnr(&self, part: Part, more: &[&str]) -> Result<(tempfile::TempDir, String), SynthesisError> {
+    fn nextpnr(
+        &self,
+        part: Part<'_>,
+        pcf: Option<&str>,
+        more: &[&str],
+    ) -> Result<(tempfile::TempDir, String), SynthesisError> {
         let folder = tool::folder()?;
         tool::write(folder.path(), "core.json", &self.json)?;
+        tool::write(folder.path(), "core.pcf", pcf.unwrap_or_default())?;
+        let pins: &[&str] = if pcf.is_some() { &["--pcf", "core.pcf"] } else { &["--pcf-allow-unconstrained"] };
         let device = format!("--{}", part.device);
-        let common = [&device, "--package", part.package, "--json", "core.json", "--pcf-allow-unconstrained"];
-        tool::run(&NEXTPNR, folder.path(), &[&common[..], &["--quiet", "--log", "log.txt"], more].concat())?;
+        let common = [&device, "--package", part.package, "--json", "core.json", "--quiet", "--log", "log.txt"];
+        tool::run(&NEXTPNR, folder.path(), &[&common[..], pins, more].concat())?;
         let log = tool::read(folder.path(), "log.txt")?;
         Ok((folder, log))
     }
@@ -153,7 +184,9 @@ fn used(log: &str, name: &str) -> Result<u32, SynthesisError> {
 
 /// The last clock that nextpnr reports is that of the routed design.
 fn greatest_clock(log: &str) -> Result<f64, SynthesisError> {
-    let line = log.lines().rfind(|line| line.contains("Max frequency for clock"));
-    let number = line.and_then(|line| line.split("': ").nth(1)?.split_whitespace().next()?.parse().ok());
-    number.ok_or_else(|| unread("Max frequency for clock".to_owned()))
+    let clock = pattern(r"Max frequency for clock +'(\S+)': ([0-9.]+) MHz");
+    // What is said last of each clock counts; the slowest one is the design's.
+    let last: HashMap<&str, f64> =
+        clock.captures_iter(log).filter_map(|found| Some((found.get(1)?.as_str(), found[2].parse().ok()?))).collect();
+    last.into_values().min_by(f64::total_cmp).ok_or_else(|| unread("Max frequency for clock".to_owned()))
 }

@@ -8,6 +8,7 @@
 //!
 //! Nothing here knows the engine but [`resources`], which is the table of what it costs.
 
+pub mod board;
 mod cells;
 pub mod equivalence;
 mod error;

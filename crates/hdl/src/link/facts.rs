@@ -37,7 +37,7 @@ pub struct Facts {
     pub latch_axis: Input<Word<3>>,
     /// The last item of the last axis is.
     pub scanned: Signal<Out, Bit>,
-    words: Memory<7, 32>,
+    known: Memory<7, 32>,
     asked: Register<Word<5>>,
     place: Signal<Local, Word<7>>,
     bits: Signal<Local, Word<32>>,
@@ -55,7 +55,7 @@ impl Facts {
     pub fn new(facts: &[(u8, u32)]) -> Self {
         let words: Vec<_> =
             facts.iter().map(|&(address, fact)| (usize::from(address), Word::from(u64::from(fact)))).collect();
-        Self { words: Memory::of_words(&words), ..Self::default() }
+        Self { known: Memory::of_words(&words), ..Self::default() }
     }
 }
 
@@ -63,7 +63,7 @@ impl Logic for Facts {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, asked);
-        clock!(self, clock, words);
+        clock!(self, clock, known);
         if self.get_valid.val() {
             self.asked.d.next = self.asked.q.val() + self.one.val();
         }
@@ -71,21 +71,21 @@ impl Logic for Facts {
         self.get_item.next = self.asked.q.val().get_bits::<2>(0);
         self.get_axis.next = self.asked.q.val().get_bits::<3>(2);
 
-        self.words.read_address.next = self.address.val();
-        self.data.next = self.words.read_data.val();
+        self.known.read_address.next = self.address.val();
+        self.data.next = self.known.read_data.val();
         self.place.next = self.of_axes.val()
             | (bit_cast::<7, 3>(self.asked.q.val().get_bits::<3>(2)) << self.at_3.val())
             | bit_cast::<7, 2>(self.asked.q.val().get_bits::<2>(0));
         if self.latch.val() {
             self.place.next = self.latched.val() | (bit_cast::<7, 3>(self.latch_axis.val()) << self.at_3.val());
         }
-        self.words.write_address.next = self.place.val();
-        self.words.write_data.next = self.get_data.val();
+        self.known.write_address.next = self.place.val();
+        self.known.write_data.next = self.get_data.val();
         self.bits.next = self.none.val();
         if self.latch.val() | self.get_valid.val() {
             self.bits.next = self.all.val();
         }
-        self.words.write_bits.next = self.bits.val();
+        self.known.write_bits.next = self.bits.val();
     }
 }
 

@@ -337,6 +337,8 @@ impl<const N: usize> Logic for Machine<N> {
         self.ring.write_bits.next = self.none.val();
         if self.received.val() {
             self.ring.write_bits.next = self.all.val();
+        }
+        if self.received.val() {
             self.written.d.next = self.written.q.val() + self.one.val();
         }
 

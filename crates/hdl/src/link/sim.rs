@@ -1,18 +1,21 @@
 //! The link of a build, whose number of axes is known only when it is built; and the same under simulation.
 
-use super::UartLink;
+use super::Link;
 use crate::HdlError;
+use crate::line::{LineOutputs, UartSim};
 use crate::sim::{rising_edge, settle};
 use crate::word::Word;
 use carrystep_spec::EngineBuild;
 use carrystep_spec::engine::{EngineError, EngineInputs, Put};
-use carrystep_spec::link::{LinkInputs, LinkOutputs, Uart};
+use carrystep_spec::link::{BuildId, LinkInputs, LinkOutputs, Uart};
 use rust_hdl::prelude::{Block, check_all};
 
 /// A link for any number of axes.
 pub trait AnyLink: Block {
-    /// Drives the inputs; the outputs of the present cycle.
-    fn settle(&mut self, inputs: &LinkInputs) -> LinkOutputs;
+    /// Drives the inputs; the outputs of the present cycle, but for those of the line.
+    fn settle(&mut self, inputs: &LinkInputs, line: LineOutputs) -> LinkOutputs;
+    /// The byte that is offered to the line.
+    fn offered(&self) -> Option<u8>;
     /// Goes to the next cycle, with the inputs as last settled.
     fn clock(&mut self);
 }
@@ -21,25 +24,27 @@ pub trait AnyLink: Block {
 ///
 /// # Errors
 /// [`HdlError::Engine`] where a parameter of the build cannot be.
-pub fn uart_link(build: &EngineBuild, uart: Uart) -> Result<Box<dyn AnyLink>, HdlError> {
+pub fn link(build: &EngineBuild, id: BuildId) -> Result<Box<dyn AnyLink>, HdlError> {
     build.check()?;
     Ok(match build.axes() {
-        1 => Box::new(UartLink::<1>::new(build, uart)),
-        2 => Box::new(UartLink::<2>::new(build, uart)),
-        3 => Box::new(UartLink::<3>::new(build, uart)),
-        4 => Box::new(UartLink::<4>::new(build, uart)),
-        5 => Box::new(UartLink::<5>::new(build, uart)),
-        6 => Box::new(UartLink::<6>::new(build, uart)),
-        7 => Box::new(UartLink::<7>::new(build, uart)),
-        8 => Box::new(UartLink::<8>::new(build, uart)),
+        1 => Box::new(Link::<1>::new(build, id)),
+        2 => Box::new(Link::<2>::new(build, id)),
+        3 => Box::new(Link::<3>::new(build, id)),
+        4 => Box::new(Link::<4>::new(build, id)),
+        5 => Box::new(Link::<5>::new(build, id)),
+        6 => Box::new(Link::<6>::new(build, id)),
+        7 => Box::new(Link::<7>::new(build, id)),
+        8 => Box::new(Link::<8>::new(build, id)),
         axes => return Err(EngineError::Axes(axes).into()),
     })
 }
 
-impl<const N: usize> AnyLink for UartLink<N> {
-    fn settle(&mut self, inputs: &LinkInputs) -> LinkOutputs {
+impl<const N: usize> AnyLink for Link<N> {
+    fn settle(&mut self, inputs: &LinkInputs, line: LineOutputs) -> LinkOutputs {
         self.clock.next = false.into();
-        self.rx.next = inputs.rx;
+        self.received.next = Word::from(u64::from(line.received.unwrap_or(0)));
+        self.received_valid.next = line.received.is_some();
+        self.answer_take.next = line.take;
         self.get_data.next = Word::from(u64::from(inputs.get_data));
         self.get_valid.next = inputs.get_valid;
         let engine = &inputs.engine;
@@ -62,7 +67,7 @@ impl<const N: usize> AnyLink for UartLink<N> {
         let [axis, word] = [self.put_axis.val(), self.put_word.val()].map(|place| place.value() as u8);
         let data = self.put_data.val().value() as u32;
         LinkOutputs {
-            tx: self.tx.val(),
+            tx: true,
             engine: EngineInputs {
                 put: self.put_valid.val().then_some(Put { axis, word, data }),
                 room_of: axis,
@@ -80,36 +85,51 @@ impl<const N: usize> AnyLink for UartLink<N> {
         }
     }
 
+    fn offered(&self) -> Option<u8> {
+        self.answer_valid.val().then(|| self.answer.val().value() as u8)
+    }
+
     fn clock(&mut self) {
         self.clock.next = true.into();
         rising_edge(self);
     }
 }
 
-/// The link under simulation.
+/// The link and a UART under simulation.
 pub struct LinkSim {
     link: Box<dyn AnyLink>,
+    line: UartSim,
+    said: LineOutputs,
 }
 
 impl LinkSim {
-    /// The link of this build in cycle 0.
+    /// Both of this build in cycle 0.
     ///
     /// # Errors
     /// [`HdlError`] where the build cannot be made.
     pub fn new(build: &EngineBuild, uart: Uart) -> Result<Self, HdlError> {
-        let mut link = uart_link(build, uart)?;
+        let mut link = link(build, uart.build_id(build))?;
         link.connect_all();
         check_all(link.as_ref()).map_err(|error| HdlError::Check(format!("{error:?}")))?;
-        Ok(Self { link })
+        Ok(Self { link, line: UartSim::new(uart)?, said: LineOutputs::default() })
     }
 
     /// The outputs of the present cycle with these inputs.
     pub fn settle(&mut self, inputs: &LinkInputs) -> LinkOutputs {
-        self.link.settle(inputs)
+        // What is offered comes from registers; whether it is taken does not.
+        let (line, tx) = self.line.settle(inputs.rx, self.link.offered());
+        self.said = line;
+        LinkOutputs { tx, ..self.link.settle(inputs, line) }
+    }
+
+    /// What goes between link and line in the present cycle: from the line, and the byte that is offered to it.
+    pub fn bytes(&self) -> (LineOutputs, Option<u8>) {
+        (self.said, self.link.offered())
     }
 
     /// Goes to the next cycle, with the inputs as last settled.
     pub fn clock(&mut self) {
         self.link.clock();
+        self.line.clock();
     }
 }

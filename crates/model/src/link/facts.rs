@@ -4,7 +4,7 @@
 use carrystep_spec::EngineBuild;
 use carrystep_spec::link::machine::SCAN;
 use carrystep_spec::link::registers as map;
-use carrystep_spec::link::{self, LinkInputs, Uart};
+use carrystep_spec::link::{self, BuildId, LinkInputs};
 
 /// Words of the memory.
 const WORDS: usize = 128;
@@ -19,9 +19,9 @@ pub(super) struct Facts {
 }
 
 impl Facts {
-    pub(super) fn new(build: &EngineBuild, uart: Uart) -> Self {
+    pub(super) fn new(build: &EngineBuild, id: BuildId) -> Self {
         let mut words = [0; WORDS];
-        for (address, word) in link::facts(build, uart) {
+        for (address, word) in link::facts(build, id) {
             words[usize::from(address)] = word;
         }
         Self { words, read: 0, asked: 0 }

@@ -55,6 +55,16 @@ pub enum BoardError {
         /// The port.
         port: String,
     },
+    /// A baud rate that its serial chip does not take.
+    #[error("{board}'s serial chip takes at most {most} baud, not {wanted}: set `baud` in [machine.link]")]
+    Baud {
+        /// The board.
+        board: String,
+        /// What it takes.
+        most: u32,
+        /// What the machine has.
+        wanted: u32,
+    },
     /// A clock that cannot be made on it.
     #[error("{board}: {source}; it is proposed to run at {proposed}")]
     Clock {

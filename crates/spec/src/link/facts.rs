@@ -1,6 +1,6 @@
 //! What a gateware says of itself: the registers that hold nothing but its build.
 
-use super::Uart;
+use super::BuildId;
 use super::registers::{
     AXIS_COUNT, BUILD_HIGH, BUILD_LOW, CLOCK_HZ, IDENTITY, IDENTITY_VALUE, PHASES, PROTOCOL, PROTOCOL_VERSION, TICK_NS,
     WATCHDOG_TICKS,
@@ -8,8 +8,8 @@ use super::registers::{
 use crate::EngineBuild;
 
 /// Each of them: its address, and what it holds.
-pub fn facts(build: &EngineBuild, uart: Uart) -> [(u8, u32); 9] {
-    let [low, high] = uart.build_id(build).halves();
+pub fn facts(build: &EngineBuild, id: BuildId) -> [(u8, u32); 9] {
+    let [low, high] = id.halves();
     let time = &build.timebase;
     [
         (IDENTITY, IDENTITY_VALUE),

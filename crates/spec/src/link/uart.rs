@@ -1,6 +1,6 @@
 //! The UART of a build: its baud rate, as whole clocks a bit.
 
-use super::BuildId;
+use super::{BuildId, Line};
 use crate::EngineBuild;
 use std::fmt;
 use thiserror::Error;
@@ -77,7 +77,7 @@ impl Uart {
 
     /// The id of a build with this UART.
     pub fn build_id(self, build: &EngineBuild) -> BuildId {
-        BuildId::new(build, &self.to_string())
+        Line::from(self).build_id(build)
     }
 }
 

@@ -4,7 +4,7 @@ use super::rows::{Row, SEEDS};
 use crate::SynthesisError;
 use crate::ice40::{self, Size};
 use carrystep_export::{ENGINE_NAME, engine_verilog};
-use carrystep_spec::{Machine, Source};
+use carrystep_spec::{EngineBuild, Machine, Source};
 
 /// The machine whose engine is measured; clock and tick are those of the row.
 const MACHINE: &str = include_str!("../../../../sim/engine.toml");
@@ -53,14 +53,23 @@ impl Measured {
 /// # Errors
 /// [`SynthesisError::Gateware`]: there is no such engine.
 pub fn verilog(row: &Row) -> Result<String, SynthesisError> {
+    engine_verilog(&machine(row)?, "sim/engine.toml").map_err(failed)
+}
+
+/// The engine of a row.
+pub(super) fn machine(row: &Row) -> Result<EngineBuild, SynthesisError> {
     let text = MACHINE.replace("48_000_000", &row.clock_hz.to_string()).replace("2000", &row.tick_ns.to_string());
     let source = Source { path: "sim/engine.toml".into(), text: text.into() };
-    let machine = Machine::from_source(&source).map_err(|error| SynthesisError::Gateware(error.to_string()))?;
-    let mut build = machine.engine();
+    let mut build = Machine::from_source(&source).map_err(failed)?.engine();
     // More axes than the machine has are its first ones once more.
     build.pins = build.pins.into_iter().cycle().take(row.axes).collect();
     build.guard.stop = build.guard.stop.into_iter().cycle().take(row.axes).collect();
-    engine_verilog(&build, "sim/engine.toml").map_err(|error| SynthesisError::Gateware(error.to_string()))
+    Ok(build)
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
+pub(super) fn failed(error: impl ToString) -> SynthesisError {
+    SynthesisError::Gateware(error.to_string())
 }
 
 /// The clock in MHz that each seed reaches, one after the other as they are asked for.

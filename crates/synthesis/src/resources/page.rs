@@ -1,15 +1,17 @@
 //! `hdl-out/resources.md`: written from measurements, and read again by the test that guards it.
 
+use super::link::{LINES, LINK_BUDGET};
 use super::measure::Measured;
 use super::peers::PEERS;
 use super::rows::{FAMILIES, Family, ROWS, Row, SEEDS};
+use crate::ice40::Size;
 use crate::xilinx::Cells;
 
 /// Where it is, from the root of the workspace.
 pub const PAGE: &str = "hdl-out/resources.md";
 
-/// The page, from what was found for each of the [`ROWS`] and [`FAMILIES`].
-pub fn page(rows: &[Measured], families: &[Cells]) -> String {
+/// The page, from what was found for each of the [`ROWS`], the [`LINES`] and the [`FAMILIES`].
+pub fn page(rows: &[Measured], links: &[Size], families: &[Cells]) -> String {
     let mut text = format!(
         "# What the engine costs\n\n\
          Written by `cargo xtask resources` with yosys 0.23 and nextpnr 0.4; `tests/engine_fits_its_budget.rs` fails where a change goes \
@@ -25,7 +27,13 @@ pub fn page(rows: &[Measured], families: &[Cells]) -> String {
         text += &line(row, found);
     }
     text += "\nThe schedule needs the clocks of its turns, and the least clock whose tick holds them and divides into phases.\n\n\
-         ## Xilinx\n\n\
+         ## The host link\n\n\
+         Beside the engine of the first row: the link and its line, each by itself.\n\n\
+         | line | logic cells (budget) | block RAM |\n|---|---|---|\n";
+    for (name, found) in LINES.iter().zip(links) {
+        text += &link_line(name, found);
+    }
+    text += "\n## Xilinx\n\n\
          Cells by yosys (`synth_xilinx -nowidelut -flatten`), which calls these families experimental; not placed. The engine of the \
          first row. A carry cell\nis one bit in xc3s, four in the others.\n\n\
          | family | LUTs (budget) | flip-flops | carry cells | block RAMs |\n|---|---|---|---|---|\n";
@@ -60,6 +68,10 @@ fn line(row: &Row, found: &Measured) -> String {
 /// Whether the best seed reaches the row's clock.
 fn is_met(row: &Row, found: &Measured) -> bool {
     found.best() * 1e6 >= row.clock_hz as f64
+}
+
+fn link_line(name: &str, found: &Size) -> String {
+    format!("| {name} | {} ({}) | {} |\n", found.logic_cells, LINK_BUDGET.logic_cells, found.block_rams)
 }
 
 fn cells_line(family: &Family, found: &Cells) -> String {
@@ -115,6 +127,13 @@ pub fn check(page: &str) -> Result<(), String> {
             return Err(format!("{PAGE}:{wrong} of {key}{rest} are not those of {row:?}"));
         }
     }
+    for name in LINES {
+        let rest = page.lines().find_map(|line| line.strip_prefix(&format!("| {name} |")));
+        let cells = rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {name}"))?;
+        if cells > LINK_BUDGET.logic_cells {
+            return Err(format!("{PAGE}: {cells} logic cells of the link over {name} are over budget"));
+        }
+    }
     for family in &FAMILIES {
         let rest = page.lines().find_map(|line| line.strip_prefix(&format!("| {} |", family.name)));
         let luts = rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {}", family.name))?;
@@ -134,7 +153,6 @@ fn number(text: &str) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ice40::Size;
 
     /// Measurements with nothing to spare.
     fn found(row: &Row) -> Measured {
@@ -146,11 +164,12 @@ mod tests {
     fn a_page_is_of_its_rows() {
         let mut rows = ROWS.map(|row| found(&row));
         let families = FAMILIES.map(|family| family.budget);
-        assert_eq!(check(&page(&rows, &families)), Ok(()));
+        let links = [LINK_BUDGET; LINES.len()];
+        assert_eq!(check(&page(&rows, &links, &families)), Ok(()));
         rows[0].size = Size { logic_cells: rows[0].size.logic_cells + 1, ..rows[0].size };
-        assert!(check(&page(&rows, &families)).is_err(), "over budget");
+        assert!(check(&page(&rows, &links, &families)).is_err(), "over budget");
         rows[0] = found(&ROWS[0]);
         rows[0].mhz = [1.0; 3];
-        assert!(check(&page(&rows, &families)).is_err(), "too slow");
+        assert!(check(&page(&rows, &links, &families)).is_err(), "too slow");
     }
 }

@@ -14,7 +14,7 @@ const PHASES: u32 = 16;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Row {
     /// Where it is placed.
-    pub part: Part,
+    pub part: Part<'static>,
     /// Axes of the engine; `sim/engine.toml` says what they are.
     pub axes: usize,
     /// Tick in ns.
@@ -46,10 +46,10 @@ impl Row {
     }
 }
 
-const HX1K: Part = Part { device: "hx1k", package: "tq144" };
-const HX8K: Part = Part { device: "hx8k", package: "ct256" };
-const LP8K: Part = Part { device: "lp8k", package: "cm81" };
-const UP5K: Part = Part { device: "up5k", package: "sg48" };
+const HX1K: Part<'_> = Part { device: "hx1k", package: "tq144" };
+const HX8K: Part<'_> = Part { device: "hx8k", package: "ct256" };
+const LP8K: Part<'_> = Part { device: "lp8k", package: "cm81" };
+const UP5K: Part<'_> = Part { device: "up5k", package: "sg48" };
 
 /// 2 us at 48 MHz.
 const TWO: Row = Row {

@@ -1,0 +1,146 @@
+//! `carrystep build`: a board's bitstream, and what the tools say of it.
+
+use crate::arguments::Build;
+use crate::commands::boards;
+use crate::failure::Failure;
+use crate::output;
+use crate::progress::Stages;
+use carrystep_export::{Gateware, TextFile};
+use carrystep_spec::board::{Board, Toolchain};
+use carrystep_spec::clock::mhz;
+use carrystep_synthesis::board::{Built, Job, build};
+use carrystep_synthesis::ice40;
+use serde::Serialize;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Report {
+    /// Whether the clock is reached.
+    passed: bool,
+    /// Whether carrystep was ever run on a real one.
+    tried_on_hardware: bool,
+    board: String,
+    part: String,
+    build_id: String,
+    logic_cells: Use,
+    block_rams: Use,
+    clock_hz: u64,
+    /// By nextpnr.
+    mhz: f64,
+    icetime_mhz: f64,
+    seed: u32,
+    /// Where the clock is reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bitstream: Option<PathBuf>,
+    load: String,
+}
+
+/// So many of so many.
+#[derive(Serialize)]
+struct Use {
+    used: u32,
+    of: Option<u32>,
+}
+
+/// Writes the board's folder and the bitstream into it.
+pub fn run(arguments: &Build) -> Result<(), Failure> {
+    let board = boards::find(&arguments.board)?;
+    let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
+    let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
+    let files = gateware.files()?;
+    carrystep_export::write(&out, &files)?;
+    match board.family.toolchain() {
+        Toolchain::Open => bitstream(arguments, &board, &gateware, &files, &out),
+        Toolchain::Ise => Err(not_ours(&out, "ISE 14.7", "./build.sh, with ISE's settings64.sh read")),
+        Toolchain::Vivado => Err(not_ours(&out, "Vivado", "vivado -mode batch -source build.tcl")),
+    }
+}
+
+fn not_ours(out: &Path, name: &str, how: &str) -> Failure {
+    let out = out.display();
+    Failure::Tool(format!(
+        "{name} makes this board's bitstreams, and carrystep does not run it. All that it needs is in {out}; there: {how}"
+    ))
+}
+
+fn bitstream(
+    arguments: &Build,
+    board: &Board,
+    gateware: &Gateware<'_>,
+    files: &[TextFile],
+    out: &Path,
+) -> Result<(), Failure> {
+    let texts = |extension: &str| {
+        files.iter().filter(|file| file.name.ends_with(extension)).map(|file| file.text.as_str()).collect::<String>()
+    };
+    let (part, top) = (gateware.part(), gateware.top());
+    let clock_hz = gateware.build().timebase.clock_hz();
+    let job = Job {
+        verilog: &texts(".v"),
+        top: &top,
+        pcf: &texts(".pcf"),
+        part: ice40::Part { device: &part.name, package: &part.package },
+        clock_hz,
+    };
+    let mut stages = Stages::new();
+    let built = build(&job, &mut |stage| stages.next(stage))?;
+    drop(stages);
+    let passed = built.reaches(clock_hz);
+    let file = out.join(format!("{top}.{}", board.bitstream));
+    if passed {
+        let mut whole = output::OutputFile::create(&file)?;
+        whole
+            .write_all(&built.bitstream)
+            .map_err(|error| Failure::input(format!("cannot write {}: {error}", file.display())))?;
+        whole.keep()?;
+    }
+    let report = Report {
+        passed,
+        tried_on_hardware: false,
+        board: board.name.clone(),
+        part: part.ordered(),
+        build_id: gateware.build_id().to_string(),
+        logic_cells: Use { used: built.size.logic_cells, of: part.logic_cells },
+        block_rams: Use { used: built.size.block_rams, of: Some(part.block_rams) },
+        clock_hz,
+        mhz: built.mhz,
+        icetime_mhz: built.icetime_mhz,
+        seed: built.seed,
+        bitstream: passed.then(|| file.clone()),
+        load: board.flash.replace("FILE", &file.display().to_string()),
+    };
+    if arguments.json {
+        output::print_json(&report)?;
+    } else {
+        output::print(&told(&report, &built))?;
+    }
+    if passed { Ok(()) } else { Err(Failure::Check) }
+}
+
+fn told(report: &Report, built: &Built) -> String {
+    let share = |Use { used, of }: &Use| match of {
+        Some(of) => format!("{used:>6}  of {of}, {} %", used * 100 / of),
+        None => format!("{used:>6}"),
+    };
+    let Report { board, part, build_id, clock_hz, seed, .. } = report;
+    let head = format!(
+        "{board}: {part}, build {build_id}\nlogic cells  {}\nblock RAMs   {}\nclock        {:>6.1}  MHz by nextpnr (seed {seed}), {:.1} by icetime, {} needed\n",
+        share(&report.logic_cells),
+        share(&report.block_rams),
+        built.mhz,
+        built.icetime_mhz,
+        mhz(*clock_hz)
+    );
+    match &report.bitstream {
+        Some(file) => format!(
+            "{head}bitstream    {}\nload it with: {}\nIt was never run on a real board: none was at hand.\n",
+            file.display(),
+            report.load
+        ),
+        None => format!(
+            "{head}THE CLOCK IS NOT REACHED: no bitstream. A longer tick at a slower clock, or fewer axes, would do.\n"
+        ),
+    }
+}

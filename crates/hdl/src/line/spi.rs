@@ -1,0 +1,130 @@
+//! SPI mode 0, eight bits, most significant first, up to a fifth of the clock.
+//!
+//! ```text
+//! select_n  ^^\___________________________________/^^^
+//! sck       ______/^^\__/^^\__ ... __/^^\_____________
+//! mosi      ---< bit 7 >< bit 6 > ... < bit 0 >--------   taken where SCK rises, seen two to three clocks later
+//! miso      ---< bit 7    >< bit 6   > ... < bit 0  >---   turns three clocks after SCK has risen: long before it
+//!                                                         rises again, and long after the host has looked
+//! ```
+//!
+//! MISO waits for no fall of SCK: with the two clocks that it takes to see an edge, half a bit would be too short.
+//! Where there is nothing to say it says END; an END behind an END is not passed on, so the host may ask by ENDs.
+
+use crate::constant::Literal;
+use crate::register::{Input, Register};
+use crate::word::Word;
+use carrystep_spec::link::END;
+use rust_hdl::prelude::*;
+
+/// The host's SPI, to which this is a peripheral.
+#[derive(LogicBlock, Default)]
+pub struct Spi {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// The host's clock, asynchronous.
+    pub sck: Input<Bit>,
+    /// Low while the host speaks, asynchronous.
+    pub select_n: Input<Bit>,
+    /// From the host.
+    pub mosi: Input<Bit>,
+    /// To the host.
+    pub miso: Signal<Out, Bit>,
+    /// A byte,
+    pub received: Signal<Out, Word<8>>,
+    /// in this cycle.
+    pub received_valid: Signal<Out, Bit>,
+    /// A byte to the host,
+    pub answer: Input<Word<8>>,
+    /// which is offered until it is taken: in the next byte's time, or the frame is cut by an END.
+    pub answer_valid: Input<Bit>,
+    /// The offered byte is taken in this cycle.
+    pub answer_take: Signal<Out, Bit>,
+    sck_1: Register<Bit>,
+    sck_2: Register<Bit>,
+    sck_3: Register<Bit>,
+    mosi_1: Register<Bit>,
+    mosi_2: Register<Bit>,
+    rest_1: Register<Bit>,
+    rest_2: Register<Bit>, // not selected
+    bits: Register<Word<8>>,
+    goes: Register<Word<8>>,
+    count: Register<Word<3>>,
+    ended: Register<Bit>, // the last byte was an END
+    rise: Signal<Local, Bit>,
+    last: Signal<Local, Bit>,
+    comes: Signal<Local, Word<8>>,
+    is_end: Signal<Local, Bit>,
+    one: Literal<3, 1>,
+    none: Literal<3, 0>,
+    full: Literal<3, 7>,
+    by_one: Literal<1, 1>,
+    low: Literal<8, 1>,
+    end_byte: Literal<8, { END as u64 }>,
+}
+
+impl Spi {
+    /// An SPI whose host has not yet spoken.
+    pub fn new() -> Self {
+        Self {
+            rest_1: Register::new(true),
+            rest_2: Register::new(true),
+            goes: Register::new(Word::from(u64::from(END))),
+            ended: Register::new(true),
+            ..Self::default()
+        }
+    }
+}
+
+impl Logic for Spi {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, sck_1, sck_2, sck_3, mosi_1, mosi_2, rest_1, rest_2, bits, goes, count, ended);
+        self.sck_1.d.next = self.sck.val();
+        self.sck_2.d.next = self.sck_1.q.val();
+        self.sck_3.d.next = self.sck_2.q.val();
+        self.mosi_1.d.next = self.mosi.val();
+        self.mosi_2.d.next = self.mosi_1.q.val();
+        self.rest_1.d.next = self.select_n.val();
+        self.rest_2.d.next = self.rest_1.q.val();
+
+        self.rise.next = self.sck_2.q.val() & !self.sck_3.q.val() & !self.rest_2.q.val();
+        self.last.next = self.rise.val() & (self.count.q.val() == self.full.val());
+        self.comes.next = self.bits.q.val() << self.by_one.val();
+        if self.mosi_2.q.val() {
+            self.comes.next = (self.bits.q.val() << self.by_one.val()) | self.low.val();
+        }
+        if self.rise.val() {
+            self.bits.d.next = self.comes.val();
+            self.goes.d.next = self.goes.q.val() << self.by_one.val();
+            self.count.d.next = self.count.q.val() + self.one.val();
+        }
+        self.is_end.next = self.comes.val() == self.end_byte.val();
+        if self.last.val() {
+            self.ended.d.next = self.is_end.val();
+            self.goes.d.next = self.end_byte.val();
+            if self.answer_valid.val() {
+                self.goes.d.next = self.answer.val();
+            }
+        }
+        if self.rest_2.q.val() {
+            self.count.d.next = self.none.val();
+        }
+
+        self.received.next = self.comes.val();
+        self.received_valid.next = self.last.val() & !(self.is_end.val() & self.ended.q.val());
+        self.answer_take.next = self.last.val() & self.answer_valid.val();
+        self.miso.next = self.goes.q.val().get_bit(7);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn spi_synthesizes() {
+        assert_synthesizes(Spi::new(), "carrystep_spi");
+    }
+}

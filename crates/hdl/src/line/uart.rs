@@ -1,0 +1,64 @@
+//! A UART: both directions of it.
+
+use super::uart_in::UartIn;
+use super::uart_out::UartOut;
+use crate::register::Input;
+use crate::word::Word;
+use carrystep_spec::link::Uart;
+use rust_hdl::prelude::*;
+
+/// Receiver and transmitter.
+#[derive(LogicBlock, Default)]
+pub struct UartLine {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// The line from the host, asynchronous; high at rest.
+    pub rx: Input<Bit>,
+    /// The line to the host.
+    pub tx: Signal<Out, Bit>,
+    /// A byte,
+    pub received: Signal<Out, Word<8>>,
+    /// in this cycle. It stays until the next one begins.
+    pub received_valid: Signal<Out, Bit>,
+    /// A byte to the host,
+    pub answer: Input<Word<8>>,
+    /// which is offered until it is taken.
+    pub answer_valid: Input<Bit>,
+    /// The offered byte is taken in this cycle.
+    pub answer_take: Signal<Out, Bit>,
+    uart_in: UartIn,
+    uart_out: UartOut,
+}
+
+impl UartLine {
+    /// The line of this UART.
+    pub fn new(uart: Uart) -> Self {
+        let bit_clocks = uart.bit_clocks();
+        Self { uart_in: UartIn::new(bit_clocks), uart_out: UartOut::new(bit_clocks), ..Self::default() }
+    }
+}
+
+impl Logic for UartLine {
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, uart_in, uart_out);
+        self.uart_in.line.next = self.rx.val();
+        self.received.next = self.uart_in.data.val();
+        self.received_valid.next = self.uart_in.valid.val();
+        self.uart_out.data.next = self.answer.val();
+        self.uart_out.valid.next = self.answer_valid.val();
+        self.answer_take.next = self.uart_out.take.val();
+        self.tx.next = self.uart_out.line.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::assert_synthesizes;
+
+    #[test]
+    fn uart_synthesizes() {
+        assert_synthesizes(UartLine::new(Uart::new(48_000_000, 3_000_000).unwrap()), "carrystep_uart");
+    }
+}

@@ -1,0 +1,108 @@
+//! A board's gateware to a bitstream, on its pins, and what the tools say of it.
+
+use crate::SynthesisError;
+use crate::ice40::{self, Part, Placed, Size};
+use crate::tool::{self, ICEPACK, ICETIME};
+
+/// Placements are tried with these, in this order, until one reaches the clock; the board's `build.sh` does the same.
+pub const SEEDS: [u32; 5] = [1, 2, 3, 4, 5];
+
+/// What is to be built.
+#[derive(Debug, Clone, Copy)]
+pub struct Job<'a> {
+    /// All Verilog.
+    pub verilog: &'a str,
+    /// Its top module.
+    pub top: &'a str,
+    /// Which port goes to which pin.
+    pub pcf: &'a str,
+    /// Where it is placed.
+    pub part: Part<'a>,
+    /// Hz.
+    pub clock_hz: u64,
+}
+
+/// What has been built.
+pub struct Built {
+    /// What it takes of the part.
+    pub size: Size,
+    /// The placement that was taken.
+    pub seed: u32,
+    /// The clock that it reaches, MHz, as nextpnr has it,
+    pub mhz: f64,
+    /// and as icetime has it.
+    pub icetime_mhz: f64,
+    /// The bitstream.
+    pub bitstream: Vec<u8>,
+}
+
+impl Built {
+    /// Whether nextpnr says that a clock, Hz, is reached.
+    pub fn reaches(&self, clock_hz: u64) -> bool {
+        self.mhz * 1e6 >= clock_hz as f64
+    }
+}
+
+/// Builds a bitstream; `stage` hears of each program before it is started.
+///
+/// # Errors
+/// [`SynthesisError`]: a tool is missing or refuses the design; for want of room, it is nextpnr.
+pub fn build(job: &Job<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
+    stage("yosys");
+    let netlist = ice40::synthesise(job.verilog, job.top)?;
+    let mut best: Option<(u32, Placed)> = None;
+    let mut failed = None;
+    for seed in SEEDS {
+        stage(&format!("nextpnr-ice40, seed {seed}"));
+        // Near a part's limits it is luck whether a placement is found.
+        match netlist.place_on(job.part, job.pcf, job.clock_hz, seed) {
+            Ok(placed) if best.as_ref().is_none_or(|(_, best)| placed.mhz > best.mhz) => best = Some((seed, placed)),
+            Ok(_) => {}
+            Err(error @ SynthesisError::Tool { .. }) => failed = Some(error),
+            Err(error) => return Err(error),
+        }
+        if best.as_ref().is_some_and(|(_, best)| best.mhz * 1e6 >= job.clock_hz as f64) {
+            break;
+        }
+    }
+    let (seed, placed) = match (best, failed) {
+        (Some(best), _) => best,
+        (None, Some(error)) => return Err(error),
+        (None, None) => unreachable!("there are seeds"),
+    };
+    let folder = tool::folder()?;
+    tool::write(folder.path(), "top.asc", &placed.asc)?;
+    tool::write(folder.path(), "top.pcf", job.pcf)?;
+    stage("icetime");
+    let said = tool::run(
+        &ICETIME,
+        folder.path(),
+        &["-d", job.part.device, "-P", job.part.package, "-p", "top.pcf", "-t", "top.asc"],
+    )?;
+    stage("icepack");
+    tool::run(&ICEPACK, folder.path(), &["top.asc", "top.bin"])?;
+    let bitstream = std::fs::read(folder.path().join("top.bin"))
+        .map_err(|source| SynthesisError::Io { context: "cannot read top.bin".to_owned(), source })?;
+    Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: slowest_path(&said)?, bitstream })
+}
+
+/// `Total path delay: 11.64 ns (85.92 MHz)`
+fn slowest_path(said: &str) -> Result<f64, SynthesisError> {
+    let mhz =
+        said.lines().find_map(|line| line.strip_prefix("Total path delay:")?.split_once('(')?.1.strip_suffix(" MHz)"));
+    let unread = || SynthesisError::Unread { tool: ICETIME.name, what: "the slowest path".to_owned() };
+    mhz.and_then(|mhz| mhz.parse().ok()).ok_or_else(unread)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::slowest_path;
+
+    #[test]
+    fn icetime_is_read() {
+        let said =
+            "// Reading input .asc file..\nTotal number of logic levels: 9\nTotal path delay: 11.64 ns (85.92 MHz)\n";
+        assert_eq!(slowest_path(said).unwrap(), 85.92);
+        assert!(slowest_path("").is_err());
+    }
+}

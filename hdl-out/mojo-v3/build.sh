@@ -1,0 +1,20 @@
+#!/bin/sh
+# Embedded Micro (Alchitry) Mojo v3: Verilog to bitstream with ISE 14.7, whose settings64.sh has been read. Generated: change the generator,
+# not this file. This script was never run: ISE was not at hand. SYNTHESIS=yosys ./build.sh leaves synthesis to yosys, which calls this family experimental.
+set -eu
+cd "$(dirname "$0")"
+
+if [ "${SYNTHESIS:-xst}" = yosys ]; then
+    # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing.
+    yosys -q -l yosys.log -p 'read_verilog carrystep_mojo_v3_top.v carrystep_clock.v carrystep_link.v carrystep_engine.v; synth_xilinx -family xc6s -ise -nowidelut -flatten -top carrystep_mojo_v3_top; write_edif -pvector bra carrystep_mojo_v3_top.edif'
+    ngdbuild -p xc6slx9-tqg144-2 -uc carrystep_mojo_v3_top.ucf carrystep_mojo_v3_top.edif carrystep_mojo_v3_top.ngd
+else
+    xst -ifn carrystep_mojo_v3_top.xst -ofn carrystep_mojo_v3_top.syr
+    ngdbuild -p xc6slx9-tqg144-2 -uc carrystep_mojo_v3_top.ucf carrystep_mojo_v3_top.ngc carrystep_mojo_v3_top.ngd
+fi
+map -ol high -w -o carrystep_mojo_v3_top_map.ncd carrystep_mojo_v3_top.ngd carrystep_mojo_v3_top_map.pcf
+par -ol high -w carrystep_mojo_v3_top_map.ncd carrystep_mojo_v3_top.ncd carrystep_mojo_v3_top_map.pcf
+trce -v 3 carrystep_mojo_v3_top.ncd carrystep_mojo_v3_top_map.pcf -o carrystep_mojo_v3_top.twr
+grep "All constraints were met" carrystep_mojo_v3_top.par || { echo "80 MHz is not reached: see carrystep_mojo_v3_top.twr"; exit 1; }
+bitgen -g Binary:Yes -w carrystep_mojo_v3_top.ncd carrystep_mojo_v3_top.bit carrystep_mojo_v3_top_map.pcf
+echo "carrystep_mojo_v3_top.bin is made; load it with: mojo.py carrystep_mojo_v3_top.bin"

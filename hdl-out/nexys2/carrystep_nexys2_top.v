@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// The top level for Digilent Nexys2: clock, host link and engine on its pins. Generated: change the generator, not this file.
+
+`default_nettype none
+
+module carrystep_nexys2_top (
+    input wire oscillator,
+    input wire uart_rx,
+    output wire uart_tx,
+    input wire estop,
+    input wire [5:0] limit_min,
+    output wire led,
+    output wire enable_n,
+    output wire [5:0] step,
+    output wire [5:0] dir
+);
+    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    wire clock;
+    carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
+
+    wire put_valid;
+    wire [2:0] put_axis;
+    wire [2:0] put_word;
+    wire [31:0] put_data;
+    wire put_ready;
+    wire [2:0] room;
+    wire room_valid;
+    wire start_valid;
+    wire [5:0] start_mask;
+    wire start_ready;
+    wire clear;
+    wire stop;
+    wire broken;
+    wire home_valid;
+    wire [5:0] home_mask;
+    wire kick;
+    wire enable;
+    wire [2:0] get_axis;
+    wire [1:0] get_item;
+    wire [31:0] get_data;
+    wire get_valid;
+    wire latch;
+    wire [2:0] latch_axis;
+    wire fault;
+    wire halted;
+    wire idle;
+    wire ready;
+    wire armed;
+    wire [2:0] cause;
+    wire [5:0] culprits;
+    wire [5:0] homing;
+
+    carrystep_link link (
+        .put_valid(put_valid),
+        .put_axis(put_axis),
+        .put_word(put_word),
+        .put_data(put_data),
+        .put_ready(put_ready),
+        .room(room),
+        .room_valid(room_valid),
+        .start_valid(start_valid),
+        .start_mask(start_mask),
+        .start_ready(start_ready),
+        .clear(clear),
+        .stop(stop),
+        .broken(broken),
+        .home_valid(home_valid),
+        .home_mask(home_mask),
+        .kick(kick),
+        .enable(enable),
+        .get_axis(get_axis),
+        .get_item(get_item),
+        .get_data(get_data),
+        .get_valid(get_valid),
+        .latch(latch),
+        .latch_axis(latch_axis),
+        .fault(fault),
+        .halted(halted),
+        .idle(idle),
+        .ready(ready),
+        .armed(armed),
+        .cause(cause),
+        .culprits(culprits),
+        .homing(homing),
+        .clock(clock),
+        .rx(uart_rx),
+        .tx(uart_tx)
+    );
+
+    wire enabled;
+    assign enable_n = !enabled;
+    carrystep_engine engine (
+        .put_valid(put_valid),
+        .put_axis(put_axis),
+        .put_word(put_word),
+        .put_data(put_data),
+        .put_ready(put_ready),
+        .room(room),
+        .room_valid(room_valid),
+        .start_valid(start_valid),
+        .start_mask(start_mask),
+        .start_ready(start_ready),
+        .clear(clear),
+        .stop(stop),
+        .broken(broken),
+        .home_valid(home_valid),
+        .home_mask(home_mask),
+        .kick(kick),
+        .enable(enable),
+        .get_axis(get_axis),
+        .get_item(get_item),
+        .get_data(get_data),
+        .get_valid(get_valid),
+        .latch(latch),
+        .latch_axis(latch_axis),
+        .fault(fault),
+        .halted(halted),
+        .idle(idle),
+        .ready(ready),
+        .armed(armed),
+        .cause(cause),
+        .culprits(culprits),
+        .homing(homing),
+        .clock(clock),
+        .estop(estop),
+        .limit_min(limit_min),
+        .limit_max(6'd0),
+        .step(step),
+        .dir(dir),
+        .enabled(enabled),
+        .started()
+    );
+
+    // Lit: the gateware is loaded, and no stop has been called.
+    assign led = !fault;
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,20 @@
+#!/bin/sh
+# Gadget Factory Papilio One: Verilog to bitstream with ISE 14.7, whose settings64.sh has been read. Generated: change the generator,
+# not this file. This script was never run: ISE was not at hand. SYNTHESIS=yosys ./build.sh leaves synthesis to yosys, which calls this family experimental.
+set -eu
+cd "$(dirname "$0")"
+
+if [ "${SYNTHESIS:-xst}" = yosys ]; then
+    # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing.
+    yosys -q -l yosys.log -p 'read_verilog carrystep_papilio_one_top.v carrystep_clock.v carrystep_link.v carrystep_engine.v; synth_xilinx -family xc3se -ise -nowidelut -flatten -top carrystep_papilio_one_top; write_edif -pvector bra carrystep_papilio_one_top.edif'
+    ngdbuild -p xc3s500e-vq100-4 -uc carrystep_papilio_one_top.ucf carrystep_papilio_one_top.edif carrystep_papilio_one_top.ngd
+else
+    xst -ifn carrystep_papilio_one_top.xst -ofn carrystep_papilio_one_top.syr
+    ngdbuild -p xc3s500e-vq100-4 -uc carrystep_papilio_one_top.ucf carrystep_papilio_one_top.ngc carrystep_papilio_one_top.ngd
+fi
+map -ol high -w -o carrystep_papilio_one_top_map.ncd carrystep_papilio_one_top.ngd carrystep_papilio_one_top_map.pcf
+par -ol high -w carrystep_papilio_one_top_map.ncd carrystep_papilio_one_top.ncd carrystep_papilio_one_top_map.pcf
+trce -v 3 carrystep_papilio_one_top.ncd carrystep_papilio_one_top_map.pcf -o carrystep_papilio_one_top.twr
+grep "All constraints were met" carrystep_papilio_one_top.par || { echo "40 MHz is not reached: see carrystep_papilio_one_top.twr"; exit 1; }
+bitgen -g Binary:Yes -w carrystep_papilio_one_top.ncd carrystep_papilio_one_top.bit carrystep_papilio_one_top_map.pcf
+echo "carrystep_papilio_one_top.bit is made; load it with: openFPGALoader -b papilio_one carrystep_papilio_one_top.bit"

@@ -1,0 +1,20 @@
+#!/bin/sh
+# Gadget Factory Papilio Pro: Verilog to bitstream with ISE 14.7, whose settings64.sh has been read. Generated: change the generator,
+# not this file. This script was never run: ISE was not at hand. SYNTHESIS=yosys ./build.sh leaves synthesis to yosys, which calls this family experimental.
+set -eu
+cd "$(dirname "$0")"
+
+if [ "${SYNTHESIS:-xst}" = yosys ]; then
+    # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing.
+    yosys -q -l yosys.log -p 'read_verilog carrystep_papilio_pro_top.v carrystep_clock.v carrystep_link.v carrystep_engine.v; synth_xilinx -family xc6s -ise -nowidelut -flatten -top carrystep_papilio_pro_top; write_edif -pvector bra carrystep_papilio_pro_top.edif'
+    ngdbuild -p xc6slx9-tqg144-2 -uc carrystep_papilio_pro_top.ucf carrystep_papilio_pro_top.edif carrystep_papilio_pro_top.ngd
+else
+    xst -ifn carrystep_papilio_pro_top.xst -ofn carrystep_papilio_pro_top.syr
+    ngdbuild -p xc6slx9-tqg144-2 -uc carrystep_papilio_pro_top.ucf carrystep_papilio_pro_top.ngc carrystep_papilio_pro_top.ngd
+fi
+map -ol high -w -o carrystep_papilio_pro_top_map.ncd carrystep_papilio_pro_top.ngd carrystep_papilio_pro_top_map.pcf
+par -ol high -w carrystep_papilio_pro_top_map.ncd carrystep_papilio_pro_top.ncd carrystep_papilio_pro_top_map.pcf
+trce -v 3 carrystep_papilio_pro_top.ncd carrystep_papilio_pro_top_map.pcf -o carrystep_papilio_pro_top.twr
+grep "All constraints were met" carrystep_papilio_pro_top.par || { echo "80 MHz is not reached: see carrystep_papilio_pro_top.twr"; exit 1; }
+bitgen -g Binary:Yes -w carrystep_papilio_pro_top.ncd carrystep_papilio_pro_top.bit carrystep_papilio_pro_top_map.pcf
+echo "carrystep_papilio_pro_top.bit is made; load it with: openFPGALoader -c papilio carrystep_papilio_pro_top.bit"

@@ -1,0 +1,20 @@
+#!/bin/sh
+# Digilent Spartan-3 Starter Kit (S3BOARD): Verilog to bitstream with ISE 14.7, whose settings64.sh has been read. Generated: change the generator,
+# not this file. This script was never run: ISE was not at hand. SYNTHESIS=yosys ./build.sh leaves synthesis to yosys, which calls this family experimental.
+set -eu
+cd "$(dirname "$0")"
+
+if [ "${SYNTHESIS:-xst}" = yosys ]; then
+    # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing.
+    yosys -q -l yosys.log -p 'read_verilog carrystep_s3board_top.v carrystep_clock.v carrystep_link.v carrystep_engine.v; synth_xilinx -family xc3s -ise -nowidelut -flatten -top carrystep_s3board_top; write_edif -pvector bra carrystep_s3board_top.edif'
+    ngdbuild -p xc3s400-ft256-4 -uc carrystep_s3board_top.ucf carrystep_s3board_top.edif carrystep_s3board_top.ngd
+else
+    xst -ifn carrystep_s3board_top.xst -ofn carrystep_s3board_top.syr
+    ngdbuild -p xc3s400-ft256-4 -uc carrystep_s3board_top.ucf carrystep_s3board_top.ngc carrystep_s3board_top.ngd
+fi
+map -ol high -w -o carrystep_s3board_top_map.ncd carrystep_s3board_top.ngd carrystep_s3board_top_map.pcf
+par -ol high -w carrystep_s3board_top_map.ncd carrystep_s3board_top.ncd carrystep_s3board_top_map.pcf
+trce -v 3 carrystep_s3board_top.ncd carrystep_s3board_top_map.pcf -o carrystep_s3board_top.twr
+grep "All constraints were met" carrystep_s3board_top.par || { echo "40 MHz is not reached: see carrystep_s3board_top.twr"; exit 1; }
+bitgen -g Binary:Yes -w carrystep_s3board_top.ncd carrystep_s3board_top.bit carrystep_s3board_top_map.pcf
+echo "carrystep_s3board_top.bit is made; load it with: openFPGALoader -c CABLE carrystep_s3board_top.bit"

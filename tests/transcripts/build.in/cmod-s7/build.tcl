@@ -1,0 +1,17 @@
+# Digilent Cmod S7: Verilog to bitstream with Vivado: vivado -mode batch -source build.tcl. Generated: change the generator,
+# not this file. This script was never run: Vivado was not at hand.
+cd [file dirname [file normalize [info script]]]
+create_project -in_memory -part xc7s25csga225-1
+read_verilog [list carrystep_cmod_s7_top.v carrystep_clock.v carrystep_link.v carrystep_engine.v]
+read_xdc carrystep_cmod_s7_top.xdc
+synth_design -top carrystep_cmod_s7_top
+opt_design
+place_design
+route_design
+report_utilization -file utilization.txt
+report_timing_summary -file timing.txt
+if {[get_property SLACK [get_timing_paths]] < 0} {
+    error "80 MHz is not reached: see timing.txt"
+}
+write_bitstream -force carrystep_cmod_s7_top.bit
+puts "carrystep_cmod_s7_top.bit is made; load it with: openFPGALoader -b cmod_s7 carrystep_cmod_s7_top.bit"

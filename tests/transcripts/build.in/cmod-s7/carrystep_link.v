@@ -1,0 +1,1059 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// carrystep_link: the host link of an engine, over a UART. Generated: change the generator, not this file.
+//
+// Made from    machine.toml for Digilent Cmod S7
+// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Clock        80000000 Hz
+// UART         3000000 baud, 27 clocks a bit
+// Build id     5e21d66f82ac1c23
+
+`default_nettype none
+
+// Bytes from the line.
+module carrystep_uart_in (
+    input  wire         clock,
+    input  wire         line,
+    output wire   [7:0] data,
+    output wire         valid
+);
+    localparam [15:0] TO_FIRST = 16'd39;
+    localparam [15:0] TO_NEXT = 16'd26;
+    localparam [15:0] TIMER_BITS = 16'd63;
+    localparam [15:0] ONE = 16'd1;
+    localparam [8:0] MARK = 9'd256;
+    localparam [8:0] TOP = 9'd256;
+    localparam BY_ONE = 1'b1;
+
+    reg sync = 1'b1;
+    reg now = 1'b1;
+    reg busy = 1'b0;
+    reg [8:0] bits = 9'd0;
+    reg [15:0] timer = 16'd0;
+
+    wire due = timer == 16'd0;
+    wire done = busy & due & bits[0];
+
+    assign data = bits[8:1];
+    assign valid = done & now;
+
+    always @(posedge clock) begin
+        sync <= line;
+        now <= sync;
+        timer <= (timer - ONE) & TIMER_BITS;
+        if (due) begin
+            timer <= TO_NEXT;
+        end
+        if (busy & due & !bits[0]) begin
+            bits <= bits >> BY_ONE;
+            if (now) begin
+                bits <= (bits >> BY_ONE) | TOP;
+            end
+        end
+        if (done) begin
+            busy <= 1'b0;
+        end
+        if (!busy & !now) begin
+            busy <= 1'b1;
+            bits <= MARK;
+            timer <= TO_FIRST;
+        end
+    end
+endmodule
+
+// Bytes to the line.
+module carrystep_uart_out (
+    input  wire         clock,
+    input  wire   [7:0] data,
+    input  wire         valid,
+    output wire         take,
+    output wire         line
+);
+    localparam [15:0] BIT_CLOCKS = 16'd26;
+    localparam [15:0] TIMER_BITS = 16'd31;
+    localparam [15:0] ONE = 16'd1;
+    localparam [8:0] STOP = 9'd256;
+    localparam BY_ONE = 1'b1;
+
+    reg pin = 1'b1;
+    reg [8:0] bits = 9'd0;
+    reg [15:0] timer = 16'd0;
+
+    wire due = timer == 16'd0;
+    wire taken = due & (bits == 9'd0) & valid;
+
+    assign take = taken;
+    assign line = pin;
+
+    always @(posedge clock) begin
+        if (!due) begin
+            timer <= (timer - ONE) & TIMER_BITS;
+        end
+        if (due & (bits != 9'd0)) begin
+            timer <= BIT_CLOCKS;
+            bits <= bits >> BY_ONE;
+            pin <= bits[0];
+        end
+        if (taken) begin
+            timer <= BIT_CLOCKS;
+            bits <= {1'b0, data} | STOP;
+            pin <= 1'b0;
+        end
+    end
+endmodule
+
+// What it does.
+module carrystep_program (
+    input  wire         clock,
+    input  wire   [7:0] read_address,
+    output wire  [15:0] read_data,
+    input  wire   [7:0] write_address,
+    input  wire  [15:0] write_bits,
+    input  wire  [15:0] write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:255];
+    reg [15:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 256; i = i + 1) words[i] = 0;
+        words[0] = 16'h80fb;
+        words[1] = 16'h1011;
+        words[2] = 16'h2402;
+        words[3] = 16'h8200;
+        words[4] = 16'h2709;
+        words[5] = 16'h2202;
+        words[6] = 16'h100c;
+        words[7] = 16'h5102;
+        words[8] = 16'h2002;
+        words[9] = 16'h4080;
+        words[10] = 16'h88fa;
+        words[11] = 16'h2123;
+        words[12] = 16'h8080;
+        words[13] = 16'h88f9;
+        words[14] = 16'h2111;
+        words[15] = 16'h8080;
+        words[16] = 16'h2005;
+        words[17] = 16'h2411;
+        words[18] = 16'h8200;
+        words[19] = 16'h4080;
+        words[20] = 16'h88f8;
+        words[21] = 16'h211f;
+        words[22] = 16'h8080;
+        words[23] = 16'h88f7;
+        words[24] = 16'h2121;
+        words[25] = 16'h8080;
+        words[26] = 16'h88fa;
+        words[27] = 16'h2100;
+        words[28] = 16'h80f6;
+        words[29] = 16'h1001;
+        words[30] = 16'h2002;
+        words[31] = 16'h80fa;
+        words[32] = 16'h2005;
+        words[33] = 16'h80f9;
+        words[34] = 16'h2005;
+        words[35] = 16'h8300;
+        words[36] = 16'h4081;
+        words[37] = 16'h801f;
+        words[38] = 16'h1001;
+        words[39] = 16'h80f5;
+        words[40] = 16'h2a2c;
+        words[41] = 16'h80f4;
+        words[42] = 16'h232c;
+        words[43] = 16'h80f3;
+        words[44] = 16'h8881;
+        words[45] = 16'h2900;
+        words[46] = 16'h80f2;
+        words[47] = 16'h1001;
+        words[48] = 16'h8400;
+        words[49] = 16'h8900;
+        words[50] = 16'h2900;
+        words[51] = 16'h1006;
+        words[52] = 16'h2230;
+        words[53] = 16'h1080;
+        words[54] = 16'h80f1;
+        words[55] = 16'h4083;
+        words[56] = 16'h801f;
+        words[57] = 16'h1001;
+        words[58] = 16'h2a8a;
+        words[59] = 16'h801e;
+        words[60] = 16'h1001;
+        words[61] = 16'h8882;
+        words[62] = 16'h214b;
+        words[63] = 16'h1002;
+        words[64] = 16'h8300;
+        words[65] = 16'h881e;
+        words[66] = 16'h88f6;
+        words[67] = 16'h2148;
+        words[68] = 16'h8300;
+        words[69] = 16'h8882;
+        words[70] = 16'h293f;
+        words[71] = 16'h208a;
+        words[72] = 16'h80f0;
+        words[73] = 16'h4083;
+        words[74] = 16'h208a;
+        words[75] = 16'h801f;
+        words[76] = 16'h1001;
+        words[77] = 16'h236d;
+        words[78] = 16'h801f;
+        words[79] = 16'h88ef;
+        words[80] = 16'h215b;
+        words[81] = 16'h801f;
+        words[82] = 16'h88ee;
+        words[83] = 16'h2168;
+        words[84] = 16'h801f;
+        words[85] = 16'h88ed;
+        words[86] = 16'h2162;
+        words[87] = 16'h801f;
+        words[88] = 16'h88ec;
+        words[89] = 16'h215f;
+        words[90] = 16'h2085;
+        words[91] = 16'h8020;
+        words[92] = 16'h4084;
+        words[93] = 16'h1040;
+        words[94] = 16'h2085;
+        words[95] = 16'h8020;
+        words[96] = 16'h10c0;
+        words[97] = 16'h2085;
+        words[98] = 16'h8084;
+        words[99] = 16'h1240;
+        words[100] = 16'h1020;
+        words[101] = 16'h1020;
+        words[102] = 16'h1040;
+        words[103] = 16'h2085;
+        words[104] = 16'h2585;
+        words[105] = 16'h2e48;
+        words[106] = 16'h8020;
+        words[107] = 16'h1420;
+        words[108] = 16'h2085;
+        words[109] = 16'h2585;
+        words[110] = 16'h1028;
+        words[111] = 16'h8501;
+        words[112] = 16'h2179;
+        words[113] = 16'h80eb;
+        words[114] = 16'h1001;
+        words[115] = 16'h9102;
+        words[116] = 16'h88ea;
+        words[117] = 16'h297b;
+        words[118] = 16'h8300;
+        words[119] = 16'h88f5;
+        words[120] = 16'h2973;
+        words[121] = 16'h1100;
+        words[122] = 16'h2085;
+        words[123] = 16'h801f;
+        words[124] = 16'h1001;
+        words[125] = 16'h1822;
+        words[126] = 16'h1822;
+        words[127] = 16'h1822;
+        words[128] = 16'h1822;
+        words[129] = 16'h1822;
+        words[130] = 16'h1822;
+        words[131] = 16'h1822;
+        words[132] = 16'h1822;
+        words[133] = 16'h8082;
+        words[134] = 16'h1001;
+        words[135] = 16'h1002;
+        words[136] = 16'h8300;
+        words[137] = 16'h4082;
+        words[138] = 16'h801f;
+        words[139] = 16'h1001;
+        words[140] = 16'h2a91;
+        words[141] = 16'h88e9;
+        words[142] = 16'h2390;
+        words[143] = 16'h80e8;
+        words[144] = 16'h1001;
+        words[145] = 16'h8500;
+        words[146] = 16'h4074;
+        words[147] = 16'h1020;
+        words[148] = 16'h1020;
+        words[149] = 16'h8501;
+        words[150] = 16'h8883;
+        words[151] = 16'h4075;
+        words[152] = 16'h8502;
+        words[153] = 16'h4076;
+        words[154] = 16'h8503;
+        words[155] = 16'h4077;
+        words[156] = 16'h1018;
+        words[157] = 16'h8400;
+        words[158] = 16'h4078;
+        words[159] = 16'h1004;
+        words[160] = 16'h8400;
+        words[161] = 16'h4079;
+        words[162] = 16'h1004;
+        words[163] = 16'h8400;
+        words[164] = 16'h407a;
+        words[165] = 16'h1004;
+        words[166] = 16'h8400;
+        words[167] = 16'h407b;
+        words[168] = 16'h1004;
+        words[169] = 16'h801e;
+        words[170] = 16'h4071;
+        words[171] = 16'h801f;
+        words[172] = 16'h4072;
+        words[173] = 16'h8082;
+        words[174] = 16'h4073;
+        words[175] = 16'h80e7;
+        words[176] = 16'h1011;
+        words[177] = 16'h9102;
+        words[178] = 16'h100c;
+        words[179] = 16'h8300;
+        words[180] = 16'h88e6;
+        words[181] = 16'h29b1;
+        words[182] = 16'h8400;
+        words[183] = 16'h88ea;
+        words[184] = 16'h5102;
+        words[185] = 16'h1004;
+        words[186] = 16'h2ab6;
+        words[187] = 16'h80e7;
+        words[188] = 16'h1001;
+        words[189] = 16'h80fa;
+        words[190] = 16'h1220;
+        words[191] = 16'h22d2;
+        words[192] = 16'h9102;
+        words[193] = 16'h2fbe;
+        words[194] = 16'h4080;
+        words[195] = 16'h88fa;
+        words[196] = 16'h21ca;
+        words[197] = 16'h8080;
+        words[198] = 16'h88f9;
+        words[199] = 16'h21ce;
+        words[200] = 16'h8080;
+        words[201] = 16'h20be;
+        words[202] = 16'h80f9;
+        words[203] = 16'h1220;
+        words[204] = 16'h80f8;
+        words[205] = 16'h20be;
+        words[206] = 16'h80f9;
+        words[207] = 16'h1220;
+        words[208] = 16'h80f7;
+        words[209] = 16'h20be;
+        words[210] = 16'h80fa;
+        words[211] = 16'h1220;
+        words[212] = 16'h2000;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        if (write_bits[0]) words[write_address] <= write_data;
+    end
+endmodule
+
+// 
+module carrystep_data (
+    input  wire         clock,
+    input  wire   [7:0] read_address,
+    output wire   [7:0] read_data,
+    input  wire   [7:0] write_address,
+    input  wire   [7:0] write_bits,
+    input  wire   [7:0] write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:255];
+    reg [7:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 256; i = i + 1) words[i] = 0;
+        words[230] = 8'h7c;
+        words[231] = 8'h71;
+        words[232] = 8'h42;
+        words[233] = 8'h82;
+        words[234] = 8'hff;
+        words[235] = 8'h20;
+        words[236] = 8'ha3;
+        words[237] = 8'ha2;
+        words[238] = 8'ha1;
+        words[239] = 8'ha0;
+        words[240] = 8'h8;
+        words[242] = 8'hfc;
+        words[243] = 8'h28;
+        words[244] = 8'h44;
+        words[245] = 8'h24;
+        words[246] = 8'h80;
+        words[247] = 8'hdd;
+        words[248] = 8'hdc;
+        words[249] = 8'hdb;
+        words[250] = 8'hc0;
+        words[251] = 8'h1e;
+        words[252] = 8'he3;
+        words[253] = 8'h20;
+        words[254] = 8'hbb;
+        words[255] = 8'hde;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        if (write_bits[0]) words[write_address] <= write_data;
+    end
+endmodule
+
+// 
+module carrystep_words (
+    input  wire         clock,
+    input  wire   [2:0] read_address,
+    output wire  [31:0] read_data,
+    input  wire   [2:0] write_address,
+    input  wire  [31:0] write_bits,
+    input  wire  [31:0] write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:7];
+    reg [31:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 8; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        for (i = 0; i < 32; i = i + 1) begin
+            if (write_bits[i]) words[write_address][i] <= write_data[i];
+        end
+    end
+endmodule
+
+// 
+module carrystep_ring (
+    input  wire         clock,
+    input  wire   [7:0] read_address,
+    output wire   [7:0] read_data,
+    input  wire   [7:0] write_address,
+    input  wire   [7:0] write_bits,
+    input  wire   [7:0] write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:255];
+    reg [7:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 256; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        if (write_bits[0]) words[write_address] <= write_data;
+    end
+endmodule
+
+// The CRC of frames.
+module carrystep_check (
+    input  wire         clock,
+    input  wire         begins,
+    input  wire  [31:0] word,
+    input  wire         step,
+    input  wire   [7:0] data,
+    input  wire         feed,
+    output wire         over,
+    output wire   [7:0] low
+);
+    localparam [2:0] ONE = 3'd1;
+    localparam [2:0] LAST = 3'd7;
+    localparam BY_ONE = 1'b1;
+    localparam [31:0] ONES = 32'hffffffff;
+    localparam [31:0] POLYNOMIAL = 32'hedb88320;
+
+    reg [31:0] sum = 32'd0;
+    reg [2:0] count = 3'd0;
+
+    wire [7:0] shifted = data >> count;
+    wire data_bit = shifted[0];
+    wire feedback = feed & (sum[0] ^ data_bit);
+
+    assign over = count == LAST;
+    assign low = sum[7:0];
+
+    always @(posedge clock) begin
+        if (step) begin
+            count <= count + ONE;
+            sum <= sum >> BY_ONE;
+            if (feedback) begin
+                sum <= (sum >> BY_ONE) ^ POLYNOMIAL;
+            end
+        end
+        if (begins & feed) begin
+            sum <= word;
+        end
+        if (begins & !feed) begin
+            sum <= ONES;
+        end
+    end
+endmodule
+
+// The little machine that reads requests and writes answers.
+module carrystep_machine (
+    input  wire         clock,
+    input  wire         received,
+    input  wire   [7:0] received_data,
+    output wire         answer_valid,
+    input  wire         answer_take,
+    output wire   [7:0] x,
+    output wire   [7:0] a,
+    input  wire  [31:0] facts,
+    output wire         put_valid,
+    output wire  [31:0] put_data,
+    input  wire         put_ready,
+    output wire         start_valid,
+    input  wire         start_ready,
+    output wire         clear,
+    output wire         broken,
+    output wire         home_valid,
+    output wire         kick,
+    output wire         enable,
+    output wire         stop,
+    input  wire         scanned,
+    input  wire         fault,
+    input  wire         halted,
+    input  wire         idle,
+    input  wire         ready,
+    input  wire         armed,
+    input  wire   [2:0] cause,
+    input  wire   [2:0] room,
+    input  wire         room_valid,
+    input  wire   [5:0] culprits,
+    input  wire   [5:0] homing
+);
+    localparam [1:0] FETCH = 2'd0;
+    localparam [1:0] EXECUTE = 2'd2;
+    localparam [1:0] NEXT_STAGE = 2'd1;
+    localparam [7:0] ONE = 8'd1;
+    localparam [2:0] FROM_DATA = 3'd0;
+    localparam [2:0] FROM_DATA_AT_X = 3'd1;
+    localparam [2:0] FROM_RING = 3'd2;
+    localparam [2:0] FROM_X = 3'd3;
+    localparam [2:0] FROM_CHECK = 3'd4;
+    localparam [2:0] OF_WORDS = 3'd1;
+    localparam [31:0] BYTE_0 = 32'd255;
+    localparam [31:0] BYTE_1 = 32'd65280;
+    localparam [31:0] BYTE_2 = 32'hff0000;
+    localparam [31:0] BYTE_3 = 32'hff000000;
+    localparam [31:0] NO_BYTES = 32'd0;
+    localparam [7:0] NONE = 8'd0;
+    localparam [15:0] NO_CODE = 16'd0;
+    localparam [7:0] ALL = 8'd255;
+    localparam [3:0] AT_5 = 4'd5;
+    localparam [4:0] AT_8 = 5'd8;
+    localparam [7:0] BIT_0 = 8'd1;
+    localparam [7:0] BIT_1 = 8'd2;
+    localparam [7:0] BIT_2 = 8'd4;
+    localparam [7:0] BIT_3 = 8'd8;
+    localparam [7:0] BIT_4 = 8'd16;
+    localparam [4:0] AT_16 = 5'd16;
+    localparam [4:0] AT_24 = 5'd24;
+    localparam [2:0] IF_ZERO = 3'd1;
+    localparam [2:0] IF_X7 = 3'd2;
+    localparam [2:0] IF_X6 = 3'd3;
+    localparam [2:0] IF_NOTHING = 3'd4;
+    localparam [2:0] IF_FAULT = 3'd5;
+    localparam [2:0] IF_STARTABLE = 3'd6;
+    localparam [2:0] IF_SPECIAL = 3'd7;
+
+    reg [1:0] stage = 2'd0;
+    reg [7:0] pc = 8'd0;
+    reg [7:0] sum = 8'd0;
+    reg [7:0] index = 8'd0;
+    reg [7:0] written = 8'd0;
+    reg [7:0] read = 8'd0;
+    reg [2:0] space = 3'd0;
+    reg [1:0] control = 2'd0;
+    reg clears = 1'b0;
+    reg [7:0] state;
+    reg waited;
+    reg holds;
+    reg [7:0] port;
+    reg [7:0] value;
+    reg [7:0] place;
+    reg [7:0] data_write_bits;
+    reg [31:0] mask;
+    reg [31:0] words_write_bits;
+    reg [7:0] ring_write_bits;
+
+    wire [15:0] program_read_data;
+    wire [7:0] data_read_data;
+    wire [31:0] words_read_data;
+    wire [7:0] ring_read_data;
+    wire check_over;
+    wire [7:0] check_low;
+
+    wire [15:0] code = program_read_data;
+    wire executes = stage == EXECUTE;
+    wire sets = executes & code[15];
+    wire stores = executes & code[14];
+    wire jumps = code[13];
+    wire acts = executes & code[12];
+    wire does = acts & !code[15] & !code[14];
+    wire steps = does & code[2];
+    wire waits = does & code[5];
+    wire over = (!waits | waited) & (!steps | check_over);
+    wire empty = read == written;
+    wire stored = stores & !code[9];
+    wire in_words = stored & (place[7:5] == OF_WORDS);
+
+    assign answer_valid = waits & code[9];
+    assign x = index;
+    assign a = sum;
+    assign put_valid = does & code[11];
+    assign put_data = words_read_data;
+    assign start_valid = does & code[10];
+    assign clear = clears;
+    assign broken = does & code[8];
+    assign home_valid = does & code[6] & code[7];
+    assign kick = does & code[7] & !code[6];
+    assign enable = control[0];
+    assign stop = control[1];
+
+    always @(*) begin
+        state = {5'b0, cause} << AT_5;
+        if (fault) begin
+            state = state | BIT_0;
+        end
+        if (halted) begin
+            state = state | BIT_1;
+        end
+        if (idle) begin
+            state = state | BIT_2;
+        end
+        if (ready) begin
+            state = state | BIT_3;
+        end
+        if (armed) begin
+            state = state | BIT_4;
+        end
+    end
+
+    always @(*) begin
+        waited = scanned | (code[3] & room_valid);
+        if (code[11]) begin
+            waited = put_ready | fault;
+        end
+        if (code[9]) begin
+            waited = answer_take;
+        end
+        if (code[10]) begin
+            waited = start_ready | fault;
+        end
+    end
+
+    always @(*) begin
+        holds = 1'b1;
+        if (code[10:8] == IF_ZERO) begin
+            holds = sum == 8'd0;
+        end
+        if (code[10:8] == IF_X7) begin
+            holds = index[7];
+        end
+        if (code[10:8] == IF_X6) begin
+            holds = index[6];
+        end
+        if (code[10:8] == IF_NOTHING) begin
+            holds = empty;
+        end
+        if (code[10:8] == IF_FAULT) begin
+            holds = fault;
+        end
+        if (code[10:8] == IF_STARTABLE) begin
+            holds = ready & !armed;
+        end
+        if (code[10:8] == IF_SPECIAL) begin
+            holds = sum[7] & sum[6];
+        end
+    end
+
+    always @(*) begin
+        port = state;
+        if (code[0]) begin
+            port = {5'b0, space};
+        end
+        if (code[1]) begin
+            port = {2'b0, culprits};
+            if (code[0]) begin
+                port = {2'b0, homing};
+            end
+        end
+    end
+
+    always @(*) begin
+        value = port;
+        if ((code[10:8] == FROM_DATA) | (code[10:8] == FROM_DATA_AT_X)) begin
+            value = data_read_data;
+        end
+        if (code[10:8] == FROM_RING) begin
+            value = ring_read_data;
+        end
+        if (code[10:8] == FROM_X) begin
+            value = index;
+        end
+        if (code[10:8] == FROM_CHECK) begin
+            value = check_low;
+        end
+    end
+
+    always @(*) begin
+        place = code[7:0];
+        if (code[8]) begin
+            place = index;
+        end
+    end
+
+    always @(*) begin
+        data_write_bits = NONE;
+        if (stored) begin
+            data_write_bits = ALL;
+        end
+    end
+
+    always @(*) begin
+        mask = BYTE_0;
+        if (place[0]) begin
+            mask = BYTE_1;
+        end
+        if (place[1]) begin
+            mask = BYTE_2;
+            if (place[0]) begin
+                mask = BYTE_3;
+            end
+        end
+    end
+
+    always @(*) begin
+        words_write_bits = NO_BYTES;
+        if (in_words) begin
+            words_write_bits = mask;
+        end
+    end
+
+    always @(*) begin
+        ring_write_bits = NONE;
+        if (received) begin
+            ring_write_bits = ALL;
+        end
+    end
+
+    carrystep_program program (
+        .clock(clock),
+        .read_address(pc),
+        .read_data(program_read_data),
+        .write_address(NONE),
+        .write_bits(NO_CODE),
+        .write_data(NO_CODE)
+    );
+
+    carrystep_data data (
+        .clock(clock),
+        .read_address(place),
+        .read_data(data_read_data),
+        .write_address(place),
+        .write_bits(data_write_bits),
+        .write_data(sum)
+    );
+
+    carrystep_words words (
+        .clock(clock),
+        .read_address(index[2:0]),
+        .read_data(words_read_data),
+        .write_address(place[4:2]),
+        .write_bits(words_write_bits),
+        .write_data({24'b0, sum} | ({24'b0, sum} << AT_8) | ({24'b0, sum} << AT_16) | ({24'b0, sum} << AT_24))
+    );
+
+    carrystep_ring ring (
+        .clock(clock),
+        .read_address(read),
+        .read_data(ring_read_data),
+        .write_address(written),
+        .write_bits(ring_write_bits),
+        .write_data(received_data)
+    );
+
+    carrystep_check check (
+        .clock(clock),
+        .begins(does & code[4]),
+        .word(facts),
+        .step(steps),
+        .data(sum),
+        .feed(code[3]),
+        .over(check_over),
+        .low(check_low)
+    );
+
+    always @(posedge clock) begin
+        if (!executes) begin
+            stage <= stage + NEXT_STAGE;
+        end else if (over) begin
+            stage <= FETCH;
+        end
+        if (executes & over) begin
+            pc <= pc + ONE;
+            if (jumps & (holds ^ code[11])) begin
+                pc <= code[7:0];
+            end
+        end
+        if (sets) begin
+            sum <= value;
+            if (code[11]) begin
+                sum <= sum ^ value;
+            end
+        end
+        if (acts & code[0]) begin
+            index <= sum;
+        end
+        if (acts & code[1] & over) begin
+            index <= index + ONE;
+        end
+        if (sets & (code[10:8] == FROM_RING)) begin
+            read <= read + ONE;
+        end
+        if (received) begin
+            written <= written + ONE;
+        end
+        if (room_valid) begin
+            space <= room;
+        end
+        if (does & code[6] & !code[7]) begin
+            control <= sum[1:0];
+            clears <= code[9];
+        end
+    end
+endmodule
+
+// 
+module carrystep_known (
+    input  wire         clock,
+    input  wire   [6:0] read_address,
+    output wire  [31:0] read_data,
+    input  wire   [6:0] write_address,
+    input  wire  [31:0] write_bits,
+    input  wire  [31:0] write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:127];
+    reg [31:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 128; i = i + 1) words[i] = 0;
+        words[0] = 32'h50545343;
+        words[1] = 32'h1;
+        words[2] = 32'h82ac1c23;
+        words[3] = 32'h5e21d66f;
+        words[4] = 32'h6;
+        words[5] = 32'h4c4b400;
+        words[6] = 32'h3e8;
+        words[7] = 32'h10;
+        words[8] = 32'h186c0;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        if (write_bits[0]) words[write_address] <= write_data;
+    end
+endmodule
+
+// What can be read.
+module carrystep_facts (
+    input  wire         clock,
+    input  wire   [6:0] address,
+    output wire  [31:0] data,
+    output wire   [2:0] get_axis,
+    output wire   [1:0] get_item,
+    input  wire  [31:0] get_data,
+    input  wire         get_valid,
+    input  wire         latch,
+    input  wire   [2:0] latch_axis,
+    output wire         scanned
+);
+    localparam [4:0] ONE = 5'd1;
+    localparam [4:0] LAST_ITEM = 5'd31;
+    localparam [2:0] AT_3 = 3'd3;
+    localparam [6:0] OF_AXES = 7'd64;
+    localparam [6:0] LATCHED = 7'd68;
+    localparam [31:0] NONE = 32'd0;
+    localparam [31:0] ALL = 32'hffffffff;
+
+    reg [4:0] asked = 5'd0;
+    reg [6:0] place;
+    reg [31:0] bits;
+
+    wire [31:0] known_read_data;
+
+    assign data = known_read_data;
+    assign get_axis = asked[4:2];
+    assign get_item = asked[1:0];
+    assign scanned = get_valid & (asked == LAST_ITEM);
+
+    always @(*) begin
+        place = OF_AXES | ({4'b0, asked[4:2]} << AT_3) | {5'b0, asked[1:0]};
+        if (latch) begin
+            place = LATCHED | ({4'b0, latch_axis} << AT_3);
+        end
+    end
+
+    always @(*) begin
+        bits = NONE;
+        if (latch | get_valid) begin
+            bits = ALL;
+        end
+    end
+
+    carrystep_known known (
+        .clock(clock),
+        .read_address(address),
+        .read_data(known_read_data),
+        .write_address(place),
+        .write_bits(bits),
+        .write_data(get_data)
+    );
+
+    always @(posedge clock) begin
+        if (get_valid) begin
+            asked <= asked + ONE;
+        end
+    end
+endmodule
+
+// The host link: bytes in, words of segments out.
+module carrystep_link (
+    input  wire         clock,
+    input  wire         rx,
+    output wire         tx,
+    output wire         put_valid,
+    output wire   [2:0] put_axis,
+    output wire   [2:0] put_word,
+    output wire  [31:0] put_data,
+    input  wire         put_ready,
+    input  wire   [2:0] room,
+    input  wire         room_valid,
+    output wire         start_valid,
+    output wire   [5:0] start_mask,
+    input  wire         start_ready,
+    output wire         clear,
+    output wire         stop,
+    output wire         broken,
+    output wire         home_valid,
+    output wire   [5:0] home_mask,
+    output wire         kick,
+    output wire         enable,
+    output wire   [2:0] get_axis,
+    output wire   [1:0] get_item,
+    input  wire  [31:0] get_data,
+    input  wire         get_valid,
+    input  wire         latch,
+    input  wire   [2:0] latch_axis,
+    input  wire         fault,
+    input  wire         halted,
+    input  wire         idle,
+    input  wire         ready,
+    input  wire         armed,
+    input  wire   [2:0] cause,
+    input  wire   [5:0] culprits,
+    input  wire   [5:0] homing
+);
+
+    wire [7:0] uart_in_data;
+    wire uart_in_valid;
+    wire uart_out_take;
+    wire uart_out_line;
+    wire machine_answer_valid;
+    wire [7:0] machine_x;
+    wire [7:0] machine_a;
+    wire machine_put_valid;
+    wire [31:0] machine_put_data;
+    wire machine_start_valid;
+    wire machine_clear;
+    wire machine_broken;
+    wire machine_home_valid;
+    wire machine_kick;
+    wire machine_enable;
+    wire machine_stop;
+    wire [31:0] facts_data;
+    wire [2:0] facts_get_axis;
+    wire [1:0] facts_get_item;
+    wire facts_scanned;
+
+    assign tx = uart_out_line;
+    assign put_valid = machine_put_valid;
+    assign put_axis = machine_x[5:3];
+    assign put_word = machine_x[2:0];
+    assign put_data = machine_put_data;
+    assign start_valid = machine_start_valid;
+    assign start_mask = machine_a[5:0];
+    assign clear = machine_clear;
+    assign stop = machine_stop;
+    assign broken = machine_broken;
+    assign home_valid = machine_home_valid;
+    assign home_mask = machine_a[5:0];
+    assign kick = machine_kick;
+    assign enable = machine_enable;
+    assign get_axis = facts_get_axis;
+    assign get_item = facts_get_item;
+
+    carrystep_uart_in uart_in (
+        .clock(clock),
+        .line(rx),
+        .data(uart_in_data),
+        .valid(uart_in_valid)
+    );
+
+    carrystep_uart_out uart_out (
+        .clock(clock),
+        .data(machine_a),
+        .valid(machine_answer_valid),
+        .take(uart_out_take),
+        .line(uart_out_line)
+    );
+
+    carrystep_machine machine (
+        .clock(clock),
+        .received(uart_in_valid),
+        .received_data(uart_in_data),
+        .answer_valid(machine_answer_valid),
+        .answer_take(uart_out_take),
+        .x(machine_x),
+        .a(machine_a),
+        .facts(facts_data),
+        .put_valid(machine_put_valid),
+        .put_data(machine_put_data),
+        .put_ready(put_ready),
+        .start_valid(machine_start_valid),
+        .start_ready(start_ready),
+        .clear(machine_clear),
+        .broken(machine_broken),
+        .home_valid(machine_home_valid),
+        .kick(machine_kick),
+        .enable(machine_enable),
+        .stop(machine_stop),
+        .scanned(facts_scanned),
+        .fault(fault),
+        .halted(halted),
+        .idle(idle),
+        .ready(ready),
+        .armed(armed),
+        .cause(cause),
+        .room(room),
+        .room_valid(room_valid),
+        .culprits(culprits),
+        .homing(homing)
+    );
+
+    carrystep_facts facts (
+        .clock(clock),
+        .address(machine_x[6:0]),
+        .data(facts_data),
+        .get_axis(facts_get_axis),
+        .get_item(facts_get_item),
+        .get_data(get_data),
+        .get_valid(get_valid),
+        .latch(latch),
+        .latch_axis(latch_axis),
+        .scanned(facts_scanned)
+    );
+endmodule
+
+`default_nettype wire

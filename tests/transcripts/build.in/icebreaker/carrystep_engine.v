@@ -1,0 +1,2562 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// carrystep_engine: step and direction for six axes. Generated: change the generator, not this file.
+//
+// Made from    machine.toml for 1BitSquared iCEBreaker V1.0
+// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Clock        37500000 Hz
+// Tick         2560 ns, 96 clocks in 16 phases
+// Latency      193 clocks from the load of a move to the edge of its tick 1, phase 0
+// P starts at  half a step
+// Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
+//   axis 0     W 4, S 4, D 1, H 1
+//   axis 1     W 38, S 38, D 8, H 8
+//   axis 2     W 72, S 72, D 25, H 25
+//   axis 3     W 94, S 94, D 188, H 188
+//   axis 4     W 4, S 4, D 1, H 1
+//   axis 5     W 113, S 113, D 57, H 57
+// Guard        counts in rounds of 16 ticks, 40.96 us
+//   watchdog   100.02432 to 100.06784 ms without a sign of the host: ramp
+//   enable     1.024 to 1.06752 ms from ENABLE to the first start
+//   e-stop     active high: freeze
+//   limits     one an axis, active high, believed after 532.48 to 576 us: ramp
+//   axis 0     ramps by 800000 steps/s^2
+//   axis 1     ramps by 640000 steps/s^2
+//   axis 2     ramps by 600000 steps/s^2
+//   axis 3     ramps by 355556 steps/s^2
+//   axis 4     ramps by 888889 steps/s^2
+//   axis 5     ramps by 150000 steps/s^2
+
+`default_nettype none
+
+// Whose turn it is: one axis after the other, thirteen beats each.
+module carrystep_turn (
+    input  wire         clock,
+    input  wire         strobe,
+    output wire  [16:0] beat,
+    output wire   [2:0] axis,
+    output wire   [2:0] axis_next,
+    output wire   [5:0] lane
+);
+    localparam BY_ONE = 1'b1;
+    localparam [16:0] FIRST_BEAT = 17'd1;
+    localparam [2:0] FIRST_AXIS = 3'd0;
+    localparam [2:0] ONE_AXIS = 3'd1;
+    localparam [5:0] LAST_LANE = 6'd32;
+    localparam [2:0] TO_TOP = 3'd5;
+
+    reg [16:0] beats = 17'd0;
+    reg [2:0] number = 3'd0;
+    reg [5:0] lanes = 6'd1;
+    reg [2:0] axis_to_come;
+
+    wire ends = (lanes & LAST_LANE) != 6'd0;
+    wire begins = strobe | (beats[12] & !ends);
+    wire [16:0] shifted = beats << BY_ONE;
+
+    assign beat = beats;
+    assign axis = number;
+    assign axis_next = axis_to_come;
+    assign lane = lanes;
+
+    always @(*) begin
+        axis_to_come = number;
+        if (beats[12]) begin
+            axis_to_come = number + ONE_AXIS;
+            if (ends) begin
+                axis_to_come = FIRST_AXIS;
+            end
+        end
+    end
+
+    always @(posedge clock) begin
+        beats <= shifted;
+        if (begins) begin
+            beats <= shifted | FIRST_BEAT;
+        end
+        if (beats[12]) begin
+            lanes <= (lanes << BY_ONE) | (lanes >> TO_TOP);
+        end
+        number <= axis_to_come;
+    end
+endmodule
+
+// The one adder: P + V, V + A, A + J, ticks - 1, positions, and the bisection.
+module carrystep_adder (
+    input  wire         clock,
+    input  wire  [16:0] beat,
+    input  wire  [31:0] word,
+    input  wire  [31:0] put,
+    input  wire         counts,
+    input  wire         lost,
+    input  wire         up,
+    input  wire         down,
+    input  wire         wipe,
+    output wire  [31:0] sum,
+    output wire         ended,
+    output wire         overflow,
+    output wire         turned,
+    output wire         crosses,
+    output wire         back,
+    output wire         still,
+    output wire         least,
+    output wire   [3:0] q
+);
+    localparam [31:0] NOTHING = 32'd0;
+    localparam [31:0] ONES = 32'hffffffff;
+    localparam [31:0] SIGN = 32'h80000000;
+    localparam [32:0] ABOVE = 33'h100000000;
+    localparam BY_ONE = 1'b1;
+    localparam [33:0] CARRY = 34'h1;
+    localparam [33:0] NO_CARRY = 34'h0;
+    localparam [3:0] Q_BIT = 4'd1;
+
+    reg [31:0] a = 32'd0;
+    reg [31:0] b = 32'd0;
+    reg [31:0] r = 32'd0;
+    reg top = 1'b0;
+    reg carry_0 = 1'b0;
+    reg carry_1 = 1'b0;
+    reg carry_2 = 1'b0;
+    reg over = 1'b0;
+    reg unfit = 1'b0;
+    reg sign_of_a = 1'b0;
+    reg sign_of_b = 1'b0;
+    reg other = 1'b0;
+    reg low_zero = 1'b0;
+    reg minus = 1'b0;
+    reg zero = 1'b0;
+    reg bound = 1'b0;
+    reg crossed = 1'b0;
+    reg bisects = 1'b0;
+    reg carry_if_top = 1'b0;
+    reg carry_if_not = 1'b0;
+    reg [3:0] bits = 4'd0;
+    reg [31:0] x;
+    reg carry_in;
+    reg [33:0] low;
+    reg [32:0] extended;
+
+    wire counting = beat[5] | beat[6];
+    wire ones_in = (beat[5] & counts) | (beat[6] & !up);
+    wire load = beat[2] | beat[3] | beat[7] | beat[9];
+    wire halve = beat[11] | beat[12] | beat[13] | beat[14];
+    wire [31:0] half = (b >> BY_ONE) | (b & SIGN);
+    wire halves_on = beat[12] | beat[13] | beat[14];
+    wire crosses_now = top ^ crossed;
+    wire carry_due = (beat[5] & lost) | (beat[6] & !down) | ((beat[8] | beat[9] | beat[10]) & carry_2);
+    wire odd = halves_on & b[0];
+    wire odd_beyond = odd & bisects & crosses_now;
+    wire [33:0] wide = (({2'b0, x} << BY_ONE) | CARRY) + (({1'b0, extended} << BY_ONE) | low);
+    wire wiping = wipe & (beat[5] | beat[11]);
+    wire empty = (b & ~SIGN) == 32'd0;
+
+    assign sum = r;
+    assign ended = over;
+    assign overflow = unfit;
+    assign turned = other;
+    assign crosses = top;
+    assign back = minus;
+    assign still = zero;
+    assign least = bound;
+    assign q = bits;
+
+    always @(*) begin
+        x = a;
+        if (bisects) begin
+            x = r;
+            if (top) begin
+                x = ~r;
+            end
+        end
+    end
+
+    always @(*) begin
+        carry_in = carry_if_not;
+        if (top) begin
+            carry_in = carry_if_top;
+        end
+    end
+
+    always @(*) begin
+        low = NO_CARRY;
+        if (carry_in) begin
+            low = CARRY;
+        end
+    end
+
+    always @(*) begin
+        extended = {1'b0, b};
+        if (b[31]) begin
+            extended = {1'b0, b} | ABOVE;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (beat[1] | beat[4] | beat[5] | beat[6] | beat[8] | beat[10]) begin
+            a <= word;
+        end
+        if (beat[7]) begin
+            a <= put;
+        end
+        if (ones_in) begin
+            b <= ONES;
+        end else if (counting) begin
+            b <= NOTHING;
+        end else if (load) begin
+            b <= word;
+        end else if (halve) begin
+            b <= half;
+        end
+        bisects <= halves_on;
+        carry_if_not <= carry_due | odd_beyond;
+        carry_if_top <= carry_due | (odd & !odd_beyond);
+        r <= wide[32:1];
+        if (beat[8]) begin
+            r <= x;
+        end
+        if (wiping) begin
+            r <= NOTHING;
+        end
+        top <= wide[33];
+        sign_of_b <= b[31];
+        if (beat[4] | beat[5] | beat[6] | beat[8] | beat[9]) begin
+            carry_0 <= top ^ sign_of_b;
+            carry_1 <= carry_0;
+            carry_2 <= carry_1;
+        end
+        if (beat[7]) begin
+            over <= top;
+        end
+        sign_of_a <= a[31];
+        if (beat[11]) begin
+            unfit <= r[31] ^ top ^ sign_of_a;
+            other <= r[31] ^ b[31];
+        end
+        if (beat[5]) begin
+            low_zero <= empty & !b[31];
+        end
+        if (beat[11]) begin
+            minus <= b[31];
+            zero <= low_zero & empty & !b[31];
+            bound <= low_zero & empty & b[31];
+        end
+        if (beat[12]) begin
+            crossed <= 1'b0;
+        end
+        if (bisects) begin
+            crossed <= crosses_now;
+        end
+        if (bisects | beat[16]) begin
+            bits <= bits << BY_ONE;
+            if (!crosses_now) begin
+                bits <= (bits << BY_ONE) | Q_BIT;
+            end
+        end
+    end
+endmodule
+
+// The control words of the axes.
+module carrystep_control (
+    input  wire         clock,
+    input  wire   [2:0] read_address,
+    output wire  [15:0] read_data,
+    input  wire   [2:0] write_address,
+    input  wire  [15:0] write_bits,
+    input  wire  [15:0] write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:7];
+    reg [15:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 8; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        if (write_bits[0]) words[write_address] <= write_data;
+    end
+endmodule
+
+// Which segments are the last of their move.
+module carrystep_lasts (
+    input  wire         clock,
+    input  wire   [5:0] read_address,
+    output wire         read_data,
+    input  wire   [5:0] write_address,
+    input  wire         write_bits,
+    input  wire         write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg words [0:63];
+    reg value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 64; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        if (write_bits) words[write_address] <= write_data;
+    end
+endmodule
+
+// Which segment an axis runs, and which ones wait.
+module carrystep_queue (
+    input  wire         clock,
+    input  wire  [16:0] beat,
+    input  wire   [2:0] axis,
+    input  wire   [2:0] axis_next,
+    input  wire         starts,
+    input  wire         halted,
+    input  wire         ramp,
+    input  wire         clear,
+    input  wire         empties,
+    input  wire         take,
+    input  wire         commit,
+    input  wire         last,
+    input  wire         ended,
+    input  wire         overflow,
+    input  wire         least,
+    input  wire         turned,
+    input  wire         back,
+    input  wire   [2:0] pulses,
+    input  wire   [2:0] losses,
+    output wire   [2:0] live,
+    output wire   [2:0] fresh,
+    output wire         full,
+    output wire   [2:0] room,
+    output wire         empty,
+    output wire         running,
+    output wire         sound,
+    output wire         slows,
+    output wire         upward,
+    output wire         steady,
+    output wire         moves,
+    output wire         goes_on,
+    output wire         too_fast,
+    output wire         dry,
+    output wire         up,
+    output wire         down,
+    output wire         lost
+);
+    localparam [2:0] ONE = 3'd1;
+    localparam [2:0] MINUS_ONE = 3'd7;
+    localparam [2:0] ZERO = 3'd0;
+    localparam [15:0] NO = 16'd0;
+    localparam [15:0] RUNNING_BIT = 16'd64;
+    localparam [15:0] UNFIT_BIT = 16'd128;
+    localparam [15:0] BACK_BIT = 16'd16384;
+    localparam [15:0] KNOWN_BIT = 16'd32768;
+    localparam [15:0] ALL = 16'd65535;
+    localparam SET = 1'b1;
+    localparam UNSET = 1'b0;
+    localparam [3:0] AT_3 = 4'd3;
+    localparam [3:0] AT_8 = 4'd8;
+    localparam [3:0] AT_11 = 4'd11;
+
+    reg committed = 1'b0;
+    reg forward = 1'b0;
+    reg backward = 1'b0;
+    reg gone = 1'b0;
+    reg [2:0] live_now;
+    reg over;
+    reg lasts_write_data;
+    reg lasts_write_bits;
+    reg [2:0] next_live;
+    reg [2:0] next_newest;
+    reg [15:0] next_running;
+    reg [15:0] next_unfit;
+    reg [15:0] next_known;
+    reg [15:0] next_back;
+    reg [2:0] next_seen;
+    reg [2:0] next_lost;
+    reg [15:0] control_write_bits;
+
+    wire [15:0] control_read_data;
+    wire lasts_read_data;
+
+    wire [15:0] word = control_read_data;
+    wire [2:0] old_live = word[2:0];
+    wire [2:0] newest = word[5:3];
+    wire [2:0] fresh_now = newest + ONE;
+    wire runs = (word[6] | starts) & !halted;
+    wire fits = runs & !word[7];
+    wire none = newest == live_now;
+    wire last_one = lasts_read_data != 1'b0;
+    wire ramps = ramp & word[15];
+    wire follows = ended & !last_one & !none & !ramp;
+    wire stays = moves & !over;
+    wire [2:0] missing = pulses - word[10:8];
+    wire [2:0] unseen = losses ^ word[13:11];
+
+    assign live = live_now;
+    assign fresh = fresh_now;
+    assign full = fresh_now == live_now;
+    assign room = live_now + ~newest;
+    assign empty = none;
+    assign running = runs;
+    assign sound = fits;
+    assign slows = ramps;
+    assign upward = word[14];
+    assign steady = ramp & !word[15];
+    assign moves = fits & !least;
+    assign goes_on = stays;
+    assign too_fast = runs & (word[7] | least);
+    assign dry = moves & ended & !last_one & none & !ramp;
+    assign up = forward;
+    assign down = backward;
+    assign lost = gone;
+
+    always @(*) begin
+        live_now = old_live;
+        if (starts) begin
+            live_now = old_live + ONE;
+        end
+    end
+
+    always @(*) begin
+        over = ended & last_one;
+        if (ramp) begin
+            over = ramps & turned;
+        end
+    end
+
+    always @(*) begin
+        lasts_write_data = UNSET;
+        if (last) begin
+            lasts_write_data = SET;
+        end
+    end
+
+    always @(*) begin
+        lasts_write_bits = UNSET;
+        if (take & commit) begin
+            lasts_write_bits = SET;
+        end
+    end
+
+    always @(*) begin
+        next_live = live_now;
+        if (moves & follows) begin
+            next_live = live_now + ONE;
+        end
+        if (empties) begin
+            next_live = newest;
+        end
+        next_newest = newest;
+        if (committed) begin
+            next_newest = fresh_now;
+        end
+        if (clear) begin
+            next_live = ZERO;
+            next_newest = ZERO;
+        end
+    end
+
+    always @(*) begin
+        next_running = NO;
+        if (stays) begin
+            next_running = RUNNING_BIT;
+        end
+    end
+
+    always @(*) begin
+        next_unfit = NO;
+        if (stays & !follows & !ramp & overflow) begin
+            next_unfit = UNFIT_BIT;
+        end
+    end
+
+    always @(*) begin
+        next_known = NO;
+        if (stays & ramp) begin
+            next_known = KNOWN_BIT;
+        end
+    end
+
+    always @(*) begin
+        next_back = NO;
+        if ((ramps & word[14]) | (!ramps & back)) begin
+            next_back = BACK_BIT;
+        end
+    end
+
+    always @(*) begin
+        next_seen = word[10:8];
+        if (forward) begin
+            next_seen = word[10:8] + ONE;
+        end else if (backward) begin
+            next_seen = word[10:8] + MINUS_ONE;
+        end
+    end
+
+    always @(*) begin
+        next_lost = word[13:11];
+        if (gone) begin
+            next_lost = word[13:11] + ONE;
+        end
+    end
+
+    always @(*) begin
+        control_write_bits = NO;
+        if (beat[12]) begin
+            control_write_bits = ALL;
+        end
+    end
+
+    carrystep_control control (
+        .clock(clock),
+        .read_address(axis_next),
+        .read_data(control_read_data),
+        .write_address(axis),
+        .write_bits(control_write_bits),
+        .write_data({13'b0, next_live} | ({13'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({13'b0, next_seen} << AT_8) | ({13'b0, next_lost} << AT_11))
+    );
+
+    carrystep_lasts lasts (
+        .clock(clock),
+        .read_address(({3'b0, axis} << AT_3) | {3'b0, live_now}),
+        .read_data(lasts_read_data),
+        .write_address(({3'b0, axis} << AT_3) | {3'b0, fresh_now}),
+        .write_bits(lasts_write_bits),
+        .write_data(lasts_write_data)
+    );
+
+    always @(posedge clock) begin
+        if (beat[4]) begin
+            forward <= (missing != 3'd0) & !missing[2];
+            backward <= missing[2];
+            gone <= (unseen != 3'd0) & !runs;
+        end
+        if (beat[0]) begin
+            committed <= 1'b0;
+        end
+        if (take & commit) begin
+            committed <= 1'b1;
+        end
+    end
+endmodule
+
+// Segments, which are also registers, and what an axis keeps between moves.
+module carrystep_segments (
+    input  wire         clock,
+    input  wire   [8:0] read_address,
+    output wire  [31:0] read_data,
+    input  wire   [8:0] write_address,
+    input  wire  [31:0] write_bits,
+    input  wire  [31:0] write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:511];
+    reg [31:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 512; i = i + 1) words[i] = 0;
+        words[15] = 32'h80000000;
+        words[39] = 32'h7a1a6e;
+        words[47] = 32'hffffa80a;
+        words[55] = 32'hff85e592;
+        words[63] = 32'h57f5;
+        words[79] = 32'h80000000;
+        words[103] = 32'h99fb4858;
+        words[111] = 32'hffffb9a1;
+        words[119] = 32'h6604b7a8;
+        words[127] = 32'h465e;
+        words[143] = 32'h80000000;
+        words[167] = 32'h805b93d3;
+        words[175] = 32'hffffbe07;
+        words[183] = 32'h7fa46c2d;
+        words[191] = 32'h41f8;
+        words[207] = 32'h80000000;
+        words[231] = 32'h3644a3;
+        words[239] = 32'hffffd8e8;
+        words[247] = 32'hffc9bb5d;
+        words[255] = 32'h2717;
+        words[271] = 32'h80000000;
+        words[295] = 32'h87ab97;
+        words[303] = 32'hffff9e44;
+        words[311] = 32'hff785469;
+        words[319] = 32'h61bb;
+        words[335] = 32'h80000000;
+        words[359] = 32'he016e4f5;
+        words[367] = 32'hffffef81;
+        words[375] = 32'h1fe91b0b;
+        words[383] = 32'h107e;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        if (write_bits[0]) words[write_address] <= write_data;
+    end
+endmodule
+
+// Where everything is in the memory of the axes.
+module carrystep_store (
+    input  wire         clock,
+    input  wire  [16:0] beat,
+    input  wire   [2:0] axis,
+    input  wire   [2:0] live,
+    input  wire   [2:0] fresh,
+    input  wire         running,
+    input  wire         sound,
+    input  wire         moves,
+    input  wire         slows,
+    input  wire         upward,
+    input  wire         steady,
+    input  wire         wipe,
+    input  wire         put,
+    input  wire   [2:0] put_word,
+    input  wire   [2:0] get_axis,
+    input  wire   [1:0] get_item,
+    input  wire  [31:0] sum,
+    output wire  [31:0] word
+);
+    localparam [2:0] TICKS = 3'd0;
+    localparam [2:0] V_LOW = 3'd1;
+    localparam [2:0] V_HIGH = 3'd2;
+    localparam [2:0] A_LOW = 3'd3;
+    localparam [2:0] A_HIGH = 3'd4;
+    localparam [2:0] J_LOW = 3'd5;
+    localparam [2:0] J_HIGH = 3'd6;
+    localparam [2:0] KEPT = 3'd7;
+    localparam [2:0] P_LOW = 3'd0;
+    localparam [2:0] P_HIGH = 3'd1;
+    localparam [2:0] POSITION = 3'd2;
+    localparam [2:0] DISCARDED = 3'd3;
+    localparam [2:0] DOWN_LOW = 3'd4;
+    localparam [2:0] DOWN_HIGH = 3'd5;
+    localparam [2:0] UP_LOW = 3'd6;
+    localparam [2:0] UP_HIGH = 3'd7;
+    localparam [3:0] AT_3 = 4'd3;
+    localparam [3:0] AT_6 = 4'd6;
+    localparam [31:0] START_HIGH = 32'h80000000;
+    localparam [31:0] NO = 32'd0;
+    localparam [31:0] ALL = 32'hffffffff;
+
+    reg [2:0] read_axis;
+    reg [2:0] read_slot;
+    reg [2:0] read_word;
+    reg [2:0] write_slot;
+    reg [2:0] write_word;
+    reg writes;
+    reg [31:0] segments_write_data;
+    reg [31:0] segments_write_bits;
+
+    wire [31:0] segments_read_data;
+
+    assign word = segments_read_data;
+
+    always @(*) begin
+        read_axis = axis;
+        read_slot = live;
+        read_word = KEPT;
+        if (beat[0]) begin
+            if (slows) begin
+                read_slot = DOWN_LOW;
+                if (upward) begin
+                    read_slot = UP_LOW;
+                end
+            end else begin
+                read_word = A_LOW;
+            end
+        end
+        if (beat[1]) begin
+            read_word = J_LOW;
+        end
+        if (beat[2]) begin
+            read_word = V_LOW;
+        end
+        if (beat[3]) begin
+            read_slot = P_LOW;
+        end
+        if (beat[4]) begin
+            if (running) begin
+                read_word = TICKS;
+            end else begin
+                read_slot = DISCARDED;
+            end
+        end
+        if (beat[5]) begin
+            read_slot = POSITION;
+        end
+        if (beat[6]) begin
+            read_word = J_HIGH;
+        end
+        if (beat[7]) begin
+            if (slows) begin
+                read_slot = DOWN_HIGH;
+                if (upward) begin
+                    read_slot = UP_HIGH;
+                end
+            end else begin
+                read_word = A_HIGH;
+            end
+        end
+        if (beat[8]) begin
+            read_word = V_HIGH;
+        end
+        if (beat[9]) begin
+            read_slot = P_HIGH;
+        end
+        if (beat[10]) begin
+            read_axis = get_axis;
+            read_slot = {1'b0, get_item};
+        end
+    end
+
+    always @(*) begin
+        write_slot = live;
+        write_word = KEPT;
+        writes = 1'b0;
+        if (beat[4]) begin
+            write_word = A_LOW;
+            writes = sound;
+        end
+        if (beat[5]) begin
+            write_word = V_LOW;
+            writes = sound & !steady;
+        end
+        if (beat[6]) begin
+            write_slot = P_LOW;
+            writes = sound | wipe;
+        end
+        if (beat[7]) begin
+            writes = 1'b1;
+            if (running) begin
+                write_word = TICKS;
+            end else begin
+                write_slot = DISCARDED;
+            end
+        end
+        if (beat[8]) begin
+            write_slot = POSITION;
+            writes = 1'b1;
+        end
+        if (beat[9]) begin
+            write_slot = fresh;
+            write_word = put_word;
+            writes = put;
+        end
+        if (beat[10]) begin
+            write_word = A_HIGH;
+            writes = sound;
+        end
+        if (beat[11]) begin
+            write_word = V_HIGH;
+            writes = sound & !steady;
+        end
+        if (beat[12]) begin
+            write_slot = P_HIGH;
+            writes = moves | wipe;
+        end
+    end
+
+    always @(*) begin
+        segments_write_data = sum;
+        if (wipe & beat[12]) begin
+            segments_write_data = sum | START_HIGH;
+        end
+    end
+
+    always @(*) begin
+        segments_write_bits = NO;
+        if (writes) begin
+            segments_write_bits = ALL;
+        end
+    end
+
+    carrystep_segments segments (
+        .clock(clock),
+        .read_address(({6'b0, read_axis} << AT_6) | ({6'b0, read_slot} << AT_3) | {6'b0, read_word}),
+        .read_data(segments_read_data),
+        .write_address(({6'b0, axis} << AT_6) | ({6'b0, write_slot} << AT_3) | {6'b0, write_word}),
+        .write_bits(segments_write_bits),
+        .write_data(segments_write_data)
+    );
+endmodule
+
+// The beat: a strobe in the last cycle of each tick, and the phases in between.
+module carrystep_tick (
+    input  wire         clock,
+    output wire         strobe,
+    output wire         phase_start,
+    output wire   [3:0] phase
+);
+    localparam [15:0] ZERO = 16'd0;
+    localparam [15:0] ONE = 16'd1;
+    localparam [15:0] LAST_SUB = 16'd5;
+    localparam [15:0] SUB_BITS = 16'd7;
+    localparam [3:0] FIRST_PHASE = 4'd0;
+    localparam [3:0] ONE_PHASE = 4'd1;
+    localparam [3:0] LAST_PHASE = 4'd15;
+
+    reg [15:0] sub = 16'd1;
+    reg [3:0] phases = 4'd0;
+
+    wire sub_over = sub == LAST_SUB;
+    wire phase_over = phases == LAST_PHASE;
+
+    assign strobe = sub_over & phase_over;
+    assign phase_start = sub == ZERO;
+    assign phase = phases;
+
+    always @(posedge clock) begin
+        sub <= (sub + ONE) & SUB_BITS;
+        if (sub_over) begin
+            sub <= ZERO;
+            phases <= phases + ONE_PHASE;
+            if (phase_over) begin
+                phases <= FIRST_PHASE;
+            end
+        end
+    end
+endmodule
+
+// What the pins do in each phase of four ticks.
+module carrystep_rim (
+    input  wire         clock,
+    input  wire   [6:0] read_address,
+    output wire  [15:0] read_data,
+    input  wire   [6:0] write_address,
+    input  wire  [15:0] write_bits,
+    input  wire  [15:0] write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:127];
+    reg [15:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 128; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        for (i = 0; i < 16; i = i + 1) begin
+            if (write_bits[i]) words[write_address][i] <= write_data[i];
+        end
+    end
+endmodule
+
+// Events on their way to the pins.
+module carrystep_wheel (
+    input  wire         clock,
+    input  wire         turn_ends,
+    input  wire   [5:0] lane,
+    input  wire         crosses,
+    input  wire         has_sign,
+    input  wire         back,
+    input  wire         phase_known,
+    input  wire   [3:0] q,
+    output wire         strobe,
+    output wire         phase_start,
+    output wire   [5:0] events,
+    output wire   [5:0] backward
+);
+    localparam [1:0] ONE_TICK = 2'd1;
+    localparam [15:0] NO = 16'd0;
+    localparam [15:0] ALL = 16'd65535;
+    localparam [15:0] FORWARD = 16'd255;
+    localparam [6:0] SIGN_KIND = 7'd16;
+    localparam BY_ONE = 1'b1;
+    localparam [2:0] TO_TOP = 3'd5;
+    localparam [3:0] AT_5 = 4'd5;
+    localparam [3:0] AT_8 = 4'd8;
+    localparam [6:0] LAST_PHASE = 7'd15;
+    localparam [3:0] Q_SHIFT = 4'd0;
+
+    reg turned = 1'b0;
+    reg started = 1'b0;
+    reg [1:0] ahead = 2'd0;
+    reg [6:0] read = 7'd0;
+    reg sign_due = 1'b0;
+    reg step_due = 1'b0;
+    reg step_known = 1'b0;
+    reg [1:0] when = 2'd0;
+    reg [6:0] place;
+    reg [6:0] later;
+    reg [6:0] rim_write_address;
+    reg [15:0] data;
+    reg [15:0] bits;
+
+    wire tick_strobe;
+    wire tick_phase_start;
+    wire [3:0] tick_phase;
+    wire [15:0] rim_read_data;
+
+    wire wipes = turned | started;
+    wire writes_sign = !wipes & sign_due;
+    wire writes_step = !wipes & !sign_due & step_due & step_known;
+    wire [1:0] now = when + ONE_TICK;
+    wire [5:0] whose = (lane >> BY_ONE) | (lane << TO_TOP);
+
+    assign strobe = turned;
+    assign phase_start = started;
+    assign events = rim_read_data[5:0];
+    assign backward = rim_read_data[13:8];
+
+    always @(*) begin
+        place = ({5'b0, ahead} << AT_5) | {3'b0, tick_phase};
+        if (tick_strobe) begin
+            place = ({5'b0, ahead} << AT_5) | {3'b0, tick_phase} | SIGN_KIND;
+        end
+    end
+
+    always @(*) begin
+        later = ({5'b0, now} << AT_5) | {3'b0, q >> Q_SHIFT};
+        if (sign_due) begin
+            later = ({5'b0, when} << AT_5) | SIGN_KIND | LAST_PHASE;
+        end
+    end
+
+    always @(*) begin
+        rim_write_address = later;
+        if (wipes) begin
+            rim_write_address = read;
+        end
+    end
+
+    always @(*) begin
+        data = NO;
+        if (!wipes) begin
+            data = FORWARD;
+            if (back) begin
+                data = ALL;
+            end
+        end
+    end
+
+    always @(*) begin
+        bits = NO;
+        if (writes_sign | writes_step) begin
+            bits = {10'b0, whose} | ({10'b0, whose} << AT_8);
+        end
+        if (wipes) begin
+            bits = ALL;
+        end
+    end
+
+    carrystep_tick tick (
+        .clock(clock),
+        .strobe(tick_strobe),
+        .phase_start(tick_phase_start),
+        .phase(tick_phase)
+    );
+
+    carrystep_rim rim (
+        .clock(clock),
+        .read_address(place),
+        .read_data(rim_read_data),
+        .write_address(rim_write_address),
+        .write_bits(bits),
+        .write_data(data)
+    );
+
+    always @(posedge clock) begin
+        turned <= tick_strobe;
+        started <= tick_phase_start;
+        if (tick_strobe) begin
+            ahead <= ahead + ONE_TICK;
+        end
+        read <= place;
+        if (writes_sign) begin
+            sign_due <= 1'b0;
+        end
+        if (writes_step) begin
+            step_due <= 1'b0;
+        end
+        if (phase_known) begin
+            step_known <= 1'b1;
+        end
+        if (turn_ends) begin
+            sign_due <= has_sign;
+            step_due <= crosses;
+            step_known <= 1'b0;
+            when <= read[6:5] + ONE_TICK;
+        end
+    end
+endmodule
+
+// What is believed of each limit switch.
+module carrystep_switches (
+    input  wire         clock,
+    input  wire   [3:0] read_address,
+    output wire   [7:0] read_data,
+    input  wire   [3:0] write_address,
+    input  wire   [7:0] write_bits,
+    input  wire   [7:0] write_data
+);
+    (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:15];
+    reg [7:0] value; // a block RAM gives no value before its first clock
+    integer i;
+
+    assign read_data = value;
+
+    initial begin
+        for (i = 0; i < 16; i = i + 1) words[i] = 0;
+    end
+
+    always @(posedge clock) begin
+        value <= words[read_address];
+        if (write_bits[0]) words[write_address] <= write_data;
+    end
+endmodule
+
+// The limit switches, one look in a turn.
+module carrystep_limits (
+    input  wire         clock,
+    input  wire         turn_ends,
+    input  wire   [2:0] axis,
+    input  wire   [2:0] axis_next,
+    input  wire   [5:0] lane,
+    input  wire         tick_0,
+    input  wire         tick_1,
+    input  wire   [5:0] limit_min,
+    input  wire   [5:0] limit_max,
+    input  wire         goes,
+    input  wire         back,
+    output wire         hit
+);
+    localparam EXIST = 1'b1;
+    localparam PAIR = 1'b0;
+    localparam ONE_FOR_ALL = 1'b0;
+    localparam LOW = 1'b0;
+    localparam [6:0] LAST_LOOK = 7'd13;
+    localparam [5:0] FIRST_LANE = 6'd1;
+    localparam [6:0] ONE = 7'd1;
+    localparam [6:0] NONE = 7'd0;
+    localparam [7:0] ACTIVE = 8'd128;
+    localparam [7:0] NO = 8'd0;
+    localparam [7:0] ALL = 8'd255;
+    localparam [3:0] SIDE = 4'd1;
+    localparam [3:0] NO_SIDE = 4'd0;
+    localparam BY_ONE = 1'b1;
+
+    reg sync = 1'b0;
+    reg now = 1'b0;
+    reg [5:0] pins;
+    reg [5:0] chosen;
+    reg [3:0] max_bit;
+    reg [6:0] count;
+    reg [7:0] next_word;
+    reg [7:0] switches_write_bits;
+
+    wire [7:0] switches_read_data;
+
+    wire max = tick_1 & (PAIR != 1'b0);
+    wire looks = turn_ends & (tick_0 | max);
+    wire [7:0] word = switches_read_data;
+    wire differs = now ^ word[7];
+    wire flips = differs & (word[6:0] == LAST_LOOK);
+    wire state = word[7] ^ flips;
+
+    assign hit = looks & (EXIST != 1'b0) & goes & state & (((PAIR != 1'b0) & (back ^ max)) | ((PAIR == 1'b0) & flips));
+
+    always @(*) begin
+        pins = limit_min;
+        if (max) begin
+            pins = limit_max;
+        end
+    end
+
+    always @(*) begin
+        chosen = pins & lane;
+        if (ONE_FOR_ALL != 1'b0) begin
+            chosen = pins & FIRST_LANE;
+        end
+    end
+
+    always @(*) begin
+        max_bit = NO_SIDE;
+        if (max) begin
+            max_bit = SIDE;
+        end
+    end
+
+    always @(*) begin
+        count = NONE;
+        if (differs & !flips) begin
+            count = word[6:0] + ONE;
+        end
+    end
+
+    always @(*) begin
+        next_word = {1'b0, count};
+        if (state) begin
+            next_word = {1'b0, count} | ACTIVE;
+        end
+    end
+
+    always @(*) begin
+        switches_write_bits = NO;
+        if (looks & (EXIST != 1'b0)) begin
+            switches_write_bits = ALL;
+        end
+    end
+
+    carrystep_switches switches (
+        .clock(clock),
+        .read_address(({1'b0, axis_next} << BY_ONE) | max_bit),
+        .read_data(switches_read_data),
+        .write_address(({1'b0, axis} << BY_ONE) | max_bit),
+        .write_bits(switches_write_bits),
+        .write_data(next_word)
+    );
+
+    always @(posedge clock) begin
+        sync <= (chosen != 6'd0) ^ (LOW != 1'b0);
+        now <= sync;
+    end
+endmodule
+
+// 
+module carrystep_homes (
+    input  wire         clock,
+    input  wire         set,
+    input  wire   [5:0] mask,
+    input  wire         turn_ends,
+    input  wire   [5:0] lane,
+    input  wire         hit,
+    input  wire         goes_on,
+    output wire   [5:0] axes,
+    output wire         waits,
+    output wire         slows
+);
+    localparam [5:0] NONE = 6'd0;
+    localparam BY_ONE = 1'b1;
+    localparam [2:0] TO_TOP = 3'd5;
+
+    reg [5:0] waiting = 6'd0;
+    reg [5:0] slowing = 6'd0;
+    reg mine_slows = 1'b0;
+    reg [5:0] lane_next;
+    reg [5:0] slower;
+
+    wire mine = (waiting & lane) != 6'd0;
+    wire caught = hit & mine;
+
+    assign axes = waiting;
+    assign waits = mine;
+    assign slows = mine_slows;
+
+    always @(*) begin
+        lane_next = lane;
+        if (turn_ends) begin
+            lane_next = (lane << BY_ONE) | (lane >> TO_TOP);
+        end
+    end
+
+    always @(*) begin
+        slower = NONE;
+        if (caught) begin
+            slower = lane;
+        end
+    end
+
+    always @(posedge clock) begin
+        mine_slows <= (slowing & lane_next) != 6'd0;
+        if (caught) begin
+            waiting <= waiting & ~lane;
+        end
+        if (set) begin
+            waiting <= mask;
+        end
+        if (turn_ends) begin
+            slowing <= slowing | slower;
+            if (!goes_on) begin
+                slowing <= (slowing & ~lane) | slower;
+            end
+        end
+    end
+endmodule
+
+// Who stops the axes, and how far the stop has come.
+module carrystep_stops (
+    input  wire         clock,
+    input  wire         strobe,
+    input  wire         turn_ends,
+    input  wire   [5:0] lane,
+    input  wire         runs,
+    input  wire         too_fast,
+    input  wire         limit,
+    input  wire         dry,
+    input  wire   [5:0] late,
+    input  wire         pressed,
+    input  wire         breaks,
+    input  wire         missed,
+    input  wire         asked,
+    input  wire         clear,
+    input  wire         pins_busy,
+    output wire         fault,
+    output wire         finds,
+    output wire         frozen,
+    output wire         ramp,
+    output wire         halted,
+    output wire         clearing,
+    output wire   [2:0] cause,
+    output wire   [5:0] culprits
+);
+    localparam LIMIT_FREEZES = 1'b0;
+    localparam [2:0] E_STOP = 3'd0;
+    localparam [2:0] OVERRUN = 3'd1;
+    localparam [2:0] PROTOCOL = 3'd2;
+    localparam [2:0] WATCHDOG = 3'd3;
+    localparam [2:0] OVERSPEED = 3'd4;
+    localparam [2:0] LIMITED = 3'd5;
+    localparam [2:0] UNDERRUN = 3'd6;
+    localparam [2:0] HOST = 3'd7;
+
+    reg called = 1'b0;
+    reg freeze = 1'b0;
+    reg slow = 1'b0;
+    reg still = 1'b0;
+    reg settled = 1'b0;
+    reg wiping = 1'b0;
+    reg [2:0] first = 3'd0;
+    reg [5:0] axes = 6'd0;
+    reg found = 1'b0;
+    reg [2:0] kind = 3'd0;
+    reg found_freezing = 1'b0;
+    reg ran = 1'b0;
+
+    wire finds_now = turn_ends & (too_fast | limit | dry);
+    wire urgent = (late != 6'd0) | (strobe & pressed) | breaks;
+    wire ripe = strobe & found;
+    wire by_host = (strobe & missed) | asked;
+    wire calls = urgent | ripe | by_host;
+
+    assign fault = called;
+    assign finds = found;
+    assign frozen = freeze;
+    assign ramp = slow;
+    assign halted = still;
+    assign clearing = wiping;
+    assign cause = first;
+    assign culprits = axes;
+
+    always @(posedge clock) begin
+        if (finds_now) begin
+            found <= 1'b1;
+        end
+        if (finds_now & !found) begin
+            kind <= UNDERRUN;
+            if (limit) begin
+                kind <= LIMITED;
+            end
+            if (too_fast) begin
+                kind <= OVERSPEED;
+            end
+        end
+        if (turn_ends & (too_fast | (limit & (LIMIT_FREEZES != 1'b0)))) begin
+            found_freezing <= 1'b1;
+        end
+        if (turn_ends & runs) begin
+            ran <= 1'b1;
+        end
+        if (!called) begin
+            if (urgent | (by_host & !ripe)) begin
+                axes <= late;
+            end else if (finds_now & !found) begin
+                axes <= lane;
+            end
+        end
+        if (calls & !called) begin
+            first <= HOST;
+            if (strobe & missed) begin
+                first <= WATCHDOG;
+            end
+            if (ripe) begin
+                first <= kind;
+            end
+            if (breaks) begin
+                first <= PROTOCOL;
+            end
+            if (strobe & pressed) begin
+                first <= E_STOP;
+            end
+            if (late != 6'd0) begin
+                first <= OVERRUN;
+            end
+        end
+        if (calls) begin
+            called <= 1'b1;
+        end
+        if (urgent | (strobe & found_freezing)) begin
+            freeze <= 1'b1;
+        end
+        if (strobe) begin
+            found <= 1'b0;
+            found_freezing <= 1'b0;
+            ran <= 1'b0;
+            slow <= called | found;
+            still <= freeze | found_freezing | (slow & !ran);
+            settled <= still;
+            wiping <= clear & settled & !wiping & !pins_busy & !pressed;
+            if (wiping) begin
+                called <= 1'b0;
+                freeze <= 1'b0;
+                slow <= 1'b0;
+                still <= 1'b0;
+                settled <= 1'b0;
+            end
+        end
+    end
+endmodule
+
+// The e-stop, the host's signs of life, the drivers' power.
+module carrystep_watch (
+    input  wire         clock,
+    input  wire         strobe,
+    input  wire         estop,
+    input  wire         kick,
+    input  wire         enable,
+    input  wire         idle,
+    output wire         pressed,
+    output wire         missed,
+    output wire         enabled,
+    output wire         warm,
+    output wire         tick_0,
+    output wire         tick_1
+);
+    localparam ESTOP_LOW = 1'b0;
+    localparam [9:0] ROUND_BITS = 10'd15;
+    localparam [11:0] WATCHDOG = 12'd2443;
+    localparam [11:0] SILENCE_BITS = 12'd4095;
+    localparam [11:0] WARM_AT = 12'd26;
+    localparam [11:0] WARM_BITS = 12'd31;
+    localparam [9:0] FIRST_TICK = 10'd0;
+    localparam [9:0] ONE_TICK = 10'd1;
+    localparam [11:0] NO_ROUND = 12'd0;
+    localparam [11:0] ONE_ROUND = 12'd1;
+
+    reg sync = 1'b0;
+    reg now = 1'b0;
+    reg held = 1'b0;
+    reg [9:0] round = 10'd0;
+    reg [11:0] silence = 12'd0;
+    reg power = 1'b0;
+    reg [11:0] warmth = 12'd0;
+
+    wire round_over = strobe & (round == ROUND_BITS);
+    wire silent = silence == WATCHDOG;
+    wire is_warm = warmth == WARM_AT;
+
+    assign pressed = held & now;
+    assign missed = silent & (WATCHDOG != 12'd0);
+    assign enabled = power;
+    assign warm = is_warm & power;
+    assign tick_0 = round == FIRST_TICK;
+    assign tick_1 = round == ONE_TICK;
+
+    always @(posedge clock) begin
+        sync <= estop ^ (ESTOP_LOW != 1'b0);
+        now <= sync;
+        held <= now & (held | strobe);
+        if (strobe) begin
+            round <= (round + ONE_TICK) & ROUND_BITS;
+        end
+        if (round_over & !silent) begin
+            silence <= (silence + ONE_ROUND) & SILENCE_BITS;
+        end
+        if (kick) begin
+            silence <= NO_ROUND;
+        end
+        power <= enable | (power & !idle);
+        if (round_over & !is_warm) begin
+            warmth <= (warmth + ONE_ROUND) & WARM_BITS;
+        end
+        if (!power) begin
+            warmth <= NO_ROUND;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_pulser_w4_s4_d1_h1 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         has_sign,
+    input  wire         sign_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire   [5:0] counts,
+    output wire         overruns
+);
+    localparam [16:0] PULSE_OVER = 17'd3;
+    localparam [16:0] GAP_OVER = 17'd6;
+    localparam [16:0] HOLD_OVER = 17'd0;
+    localparam [16:0] SINCE_BITS = 17'd7;
+    localparam [15:0] SETUP_OVER = 16'd0;
+    localparam [15:0] AFTER_BITS = 16'd0;
+    localparam HOLDS = 1'b0;
+    localparam INSTANT = 1'b1;
+    localparam [16:0] SINCE_RISE = 17'd0;
+    localparam [16:0] SINCE_ONE = 17'd1;
+    localparam [15:0] AFTER_TURN = 16'd0;
+    localparam [15:0] AFTER_ONE = 16'd1;
+    localparam [3:0] AT_3 = 4'd3;
+    localparam [2:0] ONE = 3'd1;
+    localparam [2:0] MINUS_ONE = 3'd7;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] since = 17'd0;
+    reg [15:0] after = 16'd0;
+    reg busy = 1'b0;
+    reg held = 1'b0;
+    reg settled = 1'b0;
+    reg [2:0] count = 3'd0;
+    reg [2:0] lost = 3'd0;
+    reg first_back;
+    reg aim;
+    reg [2:0] change;
+
+    wire pending = due | request;
+    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
+    wire turn = !frozen & !held & (dir_pin != aim);
+    wire second = due & request;
+    wire late_now = second & !rise & !frozen;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
+    assign overruns = late_now;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(*) begin
+        change = ONE;
+        if (dir_pin) begin
+            change = MINUS_ONE;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (has_sign) begin
+            want <= sign_back;
+        end
+        step_pin <= rise | (step_pin & (since != PULSE_OVER));
+        dir_pin <= dir_pin ^ turn;
+        since <= (since + SINCE_ONE) & SINCE_BITS;
+        busy <= busy & (since != GAP_OVER);
+        held <= held & (since != HOLD_OVER);
+        if (rise) begin
+            since <= SINCE_RISE;
+            busy <= 1'b1;
+            held <= HOLDS != 1'b0;
+        end
+        after <= (after + AFTER_ONE) & AFTER_BITS;
+        settled <= settled | (after == SETUP_OVER);
+        if (turn) begin
+            after <= AFTER_TURN;
+            settled <= 1'b0;
+        end
+        if (rise) begin
+            count <= count + change;
+        end
+        due <= (pending & !rise & !frozen) | second;
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if ((frozen & pending) | late_now) begin
+            lost <= lost + ONE;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_pulser_w38_s38_d8_h8 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         has_sign,
+    input  wire         sign_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire   [5:0] counts,
+    output wire         overruns
+);
+    localparam [16:0] PULSE_OVER = 17'd37;
+    localparam [16:0] GAP_OVER = 17'd74;
+    localparam [16:0] HOLD_OVER = 17'd6;
+    localparam [16:0] SINCE_BITS = 17'd127;
+    localparam [15:0] SETUP_OVER = 16'd6;
+    localparam [15:0] AFTER_BITS = 16'd7;
+    localparam HOLDS = 1'b1;
+    localparam INSTANT = 1'b0;
+    localparam [16:0] SINCE_RISE = 17'd0;
+    localparam [16:0] SINCE_ONE = 17'd1;
+    localparam [15:0] AFTER_TURN = 16'd0;
+    localparam [15:0] AFTER_ONE = 16'd1;
+    localparam [3:0] AT_3 = 4'd3;
+    localparam [2:0] ONE = 3'd1;
+    localparam [2:0] MINUS_ONE = 3'd7;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] since = 17'd0;
+    reg [15:0] after = 16'd0;
+    reg busy = 1'b0;
+    reg held = 1'b0;
+    reg settled = 1'b0;
+    reg [2:0] count = 3'd0;
+    reg [2:0] lost = 3'd0;
+    reg first_back;
+    reg aim;
+    reg [2:0] change;
+
+    wire pending = due | request;
+    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
+    wire turn = !frozen & !held & (dir_pin != aim);
+    wire second = due & request;
+    wire late_now = second & !rise & !frozen;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
+    assign overruns = late_now;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(*) begin
+        change = ONE;
+        if (dir_pin) begin
+            change = MINUS_ONE;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (has_sign) begin
+            want <= sign_back;
+        end
+        step_pin <= rise | (step_pin & (since != PULSE_OVER));
+        dir_pin <= dir_pin ^ turn;
+        since <= (since + SINCE_ONE) & SINCE_BITS;
+        busy <= busy & (since != GAP_OVER);
+        held <= held & (since != HOLD_OVER);
+        if (rise) begin
+            since <= SINCE_RISE;
+            busy <= 1'b1;
+            held <= HOLDS != 1'b0;
+        end
+        after <= (after + AFTER_ONE) & AFTER_BITS;
+        settled <= settled | (after == SETUP_OVER);
+        if (turn) begin
+            after <= AFTER_TURN;
+            settled <= 1'b0;
+        end
+        if (rise) begin
+            count <= count + change;
+        end
+        due <= (pending & !rise & !frozen) | second;
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if ((frozen & pending) | late_now) begin
+            lost <= lost + ONE;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_pulser_w72_s72_d25_h25 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         has_sign,
+    input  wire         sign_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire   [5:0] counts,
+    output wire         overruns
+);
+    localparam [16:0] PULSE_OVER = 17'd71;
+    localparam [16:0] GAP_OVER = 17'd142;
+    localparam [16:0] HOLD_OVER = 17'd23;
+    localparam [16:0] SINCE_BITS = 17'd255;
+    localparam [15:0] SETUP_OVER = 16'd23;
+    localparam [15:0] AFTER_BITS = 16'd31;
+    localparam HOLDS = 1'b1;
+    localparam INSTANT = 1'b0;
+    localparam [16:0] SINCE_RISE = 17'd0;
+    localparam [16:0] SINCE_ONE = 17'd1;
+    localparam [15:0] AFTER_TURN = 16'd0;
+    localparam [15:0] AFTER_ONE = 16'd1;
+    localparam [3:0] AT_3 = 4'd3;
+    localparam [2:0] ONE = 3'd1;
+    localparam [2:0] MINUS_ONE = 3'd7;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] since = 17'd0;
+    reg [15:0] after = 16'd0;
+    reg busy = 1'b0;
+    reg held = 1'b0;
+    reg settled = 1'b0;
+    reg [2:0] count = 3'd0;
+    reg [2:0] lost = 3'd0;
+    reg first_back;
+    reg aim;
+    reg [2:0] change;
+
+    wire pending = due | request;
+    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
+    wire turn = !frozen & !held & (dir_pin != aim);
+    wire second = due & request;
+    wire late_now = second & !rise & !frozen;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
+    assign overruns = late_now;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(*) begin
+        change = ONE;
+        if (dir_pin) begin
+            change = MINUS_ONE;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (has_sign) begin
+            want <= sign_back;
+        end
+        step_pin <= rise | (step_pin & (since != PULSE_OVER));
+        dir_pin <= dir_pin ^ turn;
+        since <= (since + SINCE_ONE) & SINCE_BITS;
+        busy <= busy & (since != GAP_OVER);
+        held <= held & (since != HOLD_OVER);
+        if (rise) begin
+            since <= SINCE_RISE;
+            busy <= 1'b1;
+            held <= HOLDS != 1'b0;
+        end
+        after <= (after + AFTER_ONE) & AFTER_BITS;
+        settled <= settled | (after == SETUP_OVER);
+        if (turn) begin
+            after <= AFTER_TURN;
+            settled <= 1'b0;
+        end
+        if (rise) begin
+            count <= count + change;
+        end
+        due <= (pending & !rise & !frozen) | second;
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if ((frozen & pending) | late_now) begin
+            lost <= lost + ONE;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_pulser_w94_s94_d188_h188 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         has_sign,
+    input  wire         sign_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire   [5:0] counts,
+    output wire         overruns
+);
+    localparam [16:0] PULSE_OVER = 17'd93;
+    localparam [16:0] GAP_OVER = 17'd186;
+    localparam [16:0] HOLD_OVER = 17'd186;
+    localparam [16:0] SINCE_BITS = 17'd255;
+    localparam [15:0] SETUP_OVER = 16'd186;
+    localparam [15:0] AFTER_BITS = 16'd255;
+    localparam HOLDS = 1'b1;
+    localparam INSTANT = 1'b0;
+    localparam [16:0] SINCE_RISE = 17'd0;
+    localparam [16:0] SINCE_ONE = 17'd1;
+    localparam [15:0] AFTER_TURN = 16'd0;
+    localparam [15:0] AFTER_ONE = 16'd1;
+    localparam [3:0] AT_3 = 4'd3;
+    localparam [2:0] ONE = 3'd1;
+    localparam [2:0] MINUS_ONE = 3'd7;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] since = 17'd0;
+    reg [15:0] after = 16'd0;
+    reg busy = 1'b0;
+    reg held = 1'b0;
+    reg settled = 1'b0;
+    reg [2:0] count = 3'd0;
+    reg [2:0] lost = 3'd0;
+    reg first_back;
+    reg aim;
+    reg [2:0] change;
+
+    wire pending = due | request;
+    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
+    wire turn = !frozen & !held & (dir_pin != aim);
+    wire second = due & request;
+    wire late_now = second & !rise & !frozen;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
+    assign overruns = late_now;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(*) begin
+        change = ONE;
+        if (dir_pin) begin
+            change = MINUS_ONE;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (has_sign) begin
+            want <= sign_back;
+        end
+        step_pin <= rise | (step_pin & (since != PULSE_OVER));
+        dir_pin <= dir_pin ^ turn;
+        since <= (since + SINCE_ONE) & SINCE_BITS;
+        busy <= busy & (since != GAP_OVER);
+        held <= held & (since != HOLD_OVER);
+        if (rise) begin
+            since <= SINCE_RISE;
+            busy <= 1'b1;
+            held <= HOLDS != 1'b0;
+        end
+        after <= (after + AFTER_ONE) & AFTER_BITS;
+        settled <= settled | (after == SETUP_OVER);
+        if (turn) begin
+            after <= AFTER_TURN;
+            settled <= 1'b0;
+        end
+        if (rise) begin
+            count <= count + change;
+        end
+        due <= (pending & !rise & !frozen) | second;
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if ((frozen & pending) | late_now) begin
+            lost <= lost + ONE;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_pulser_w113_s113_d57_h57 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         has_sign,
+    input  wire         sign_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire   [5:0] counts,
+    output wire         overruns
+);
+    localparam [16:0] PULSE_OVER = 17'd112;
+    localparam [16:0] GAP_OVER = 17'd224;
+    localparam [16:0] HOLD_OVER = 17'd55;
+    localparam [16:0] SINCE_BITS = 17'd255;
+    localparam [15:0] SETUP_OVER = 16'd55;
+    localparam [15:0] AFTER_BITS = 16'd63;
+    localparam HOLDS = 1'b1;
+    localparam INSTANT = 1'b0;
+    localparam [16:0] SINCE_RISE = 17'd0;
+    localparam [16:0] SINCE_ONE = 17'd1;
+    localparam [15:0] AFTER_TURN = 16'd0;
+    localparam [15:0] AFTER_ONE = 16'd1;
+    localparam [3:0] AT_3 = 4'd3;
+    localparam [2:0] ONE = 3'd1;
+    localparam [2:0] MINUS_ONE = 3'd7;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] since = 17'd0;
+    reg [15:0] after = 16'd0;
+    reg busy = 1'b0;
+    reg held = 1'b0;
+    reg settled = 1'b0;
+    reg [2:0] count = 3'd0;
+    reg [2:0] lost = 3'd0;
+    reg first_back;
+    reg aim;
+    reg [2:0] change;
+
+    wire pending = due | request;
+    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
+    wire turn = !frozen & !held & (dir_pin != aim);
+    wire second = due & request;
+    wire late_now = second & !rise & !frozen;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
+    assign overruns = late_now;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(*) begin
+        change = ONE;
+        if (dir_pin) begin
+            change = MINUS_ONE;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (has_sign) begin
+            want <= sign_back;
+        end
+        step_pin <= rise | (step_pin & (since != PULSE_OVER));
+        dir_pin <= dir_pin ^ turn;
+        since <= (since + SINCE_ONE) & SINCE_BITS;
+        busy <= busy & (since != GAP_OVER);
+        held <= held & (since != HOLD_OVER);
+        if (rise) begin
+            since <= SINCE_RISE;
+            busy <= 1'b1;
+            held <= HOLDS != 1'b0;
+        end
+        after <= (after + AFTER_ONE) & AFTER_BITS;
+        settled <= settled | (after == SETUP_OVER);
+        if (turn) begin
+            after <= AFTER_TURN;
+            settled <= 1'b0;
+        end
+        if (rise) begin
+            count <= count + change;
+        end
+        due <= (pending & !rise & !frozen) | second;
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if ((frozen & pending) | late_now) begin
+            lost <= lost + ONE;
+        end
+    end
+endmodule
+
+// Axes on one adder, their queues, starts, and the guard.
+module carrystep_engine (
+    input  wire         clock,
+    input  wire         put_valid,
+    input  wire   [2:0] put_axis,
+    input  wire   [2:0] put_word,
+    input  wire  [31:0] put_data,
+    output wire         put_ready,
+    input  wire         start_valid,
+    input  wire   [5:0] start_mask,
+    output wire         start_ready,
+    input  wire         clear,
+    input  wire         stop,
+    input  wire         broken,
+    input  wire         home_valid,
+    input  wire   [5:0] home_mask,
+    input  wire         kick,
+    input  wire         enable,
+    input  wire         estop,
+    input  wire   [5:0] limit_min,
+    input  wire   [5:0] limit_max,
+    input  wire   [2:0] get_axis,
+    input  wire   [1:0] get_item,
+    output wire  [31:0] get_data,
+    output wire         get_valid,
+    output wire         latch,
+    output wire   [2:0] latch_axis,
+    output wire   [2:0] room,
+    output wire         room_valid,
+    output wire   [5:0] step,
+    output wire   [5:0] dir,
+    output wire         enabled,
+    output wire         idle,
+    output wire         fault,
+    output wire         halted,
+    output wire   [2:0] cause,
+    output wire   [5:0] culprits,
+    output wire         armed,
+    output wire         ready,
+    output wire   [5:0] homing,
+    output wire         started
+);
+    localparam [5:0] NONE = 6'd0;
+    localparam [5:0] NO_AXES = 6'd0;
+    localparam [5:0] ONE_AXIS_0 = 6'd1;
+    localparam [5:0] ONE_AXIS_1 = 6'd2;
+    localparam [5:0] ONE_AXIS_2 = 6'd4;
+    localparam [5:0] ONE_AXIS_3 = 6'd8;
+    localparam [5:0] ONE_AXIS_4 = 6'd16;
+    localparam [5:0] ONE_AXIS_5 = 6'd32;
+    localparam [2:0] COMMIT = 3'd7;
+    localparam BY_ONE = 1'b1;
+    localparam [2:0] TO_TOP = 3'd5;
+    localparam [3:0] AXES = 4'd6;
+
+    reg waits = 1'b0;
+    reg [5:0] mask = 6'd0;
+    reg going = 1'b0;
+    reg taken = 1'b0;
+    reg [2:0] taken_word = 3'd0;
+    reg unfed = 1'b0;
+    reg held = 1'b0;
+    reg active = 1'b0;
+    reg rest_1 = 1'b1;
+    reg rest_2 = 1'b1;
+    reg [5:0] counts;
+    reg pins_busy;
+    reg [5:0] late;
+    reg [5:0] counted_0;
+    reg [5:0] late_bit_0;
+    reg [5:0] counted_1;
+    reg [5:0] late_bit_1;
+    reg [5:0] counted_2;
+    reg [5:0] late_bit_2;
+    reg [5:0] counted_3;
+    reg [5:0] late_bit_3;
+    reg [5:0] counted_4;
+    reg [5:0] late_bit_4;
+    reg [5:0] counted_5;
+    reg [5:0] late_bit_5;
+
+    wire [16:0] turn_beat;
+    wire [2:0] turn_axis;
+    wire [2:0] turn_axis_next;
+    wire [5:0] turn_lane;
+    wire [31:0] adder_sum;
+    wire adder_ended;
+    wire adder_overflow;
+    wire adder_turned;
+    wire adder_crosses;
+    wire adder_back;
+    wire adder_still;
+    wire adder_least;
+    wire [3:0] adder_q;
+    wire [2:0] queue_live;
+    wire [2:0] queue_fresh;
+    wire queue_full;
+    wire [2:0] queue_room;
+    wire queue_empty;
+    wire queue_running;
+    wire queue_sound;
+    wire queue_slows;
+    wire queue_upward;
+    wire queue_steady;
+    wire queue_moves;
+    wire queue_goes_on;
+    wire queue_too_fast;
+    wire queue_dry;
+    wire queue_up;
+    wire queue_down;
+    wire queue_lost;
+    wire [31:0] store_word;
+    wire wheel_strobe;
+    wire wheel_phase_start;
+    wire [5:0] wheel_events;
+    wire [5:0] wheel_backward;
+    wire limits_hit;
+    wire [5:0] homes_axes;
+    wire homes_waits;
+    wire homes_slows;
+    wire stops_fault;
+    wire stops_finds;
+    wire stops_frozen;
+    wire stops_ramp;
+    wire stops_halted;
+    wire stops_clearing;
+    wire [2:0] stops_cause;
+    wire [5:0] stops_culprits;
+    wire watch_pressed;
+    wire watch_missed;
+    wire watch_enabled;
+    wire watch_warm;
+    wire watch_tick_0;
+    wire watch_tick_1;
+    wire pulser_0_step;
+    wire pulser_0_dir;
+    wire pulser_0_owed;
+    wire [5:0] pulser_0_counts;
+    wire pulser_0_overruns;
+    wire pulser_1_step;
+    wire pulser_1_dir;
+    wire pulser_1_owed;
+    wire [5:0] pulser_1_counts;
+    wire pulser_1_overruns;
+    wire pulser_2_step;
+    wire pulser_2_dir;
+    wire pulser_2_owed;
+    wire [5:0] pulser_2_counts;
+    wire pulser_2_overruns;
+    wire pulser_3_step;
+    wire pulser_3_dir;
+    wire pulser_3_owed;
+    wire [5:0] pulser_3_counts;
+    wire pulser_3_overruns;
+    wire pulser_4_step;
+    wire pulser_4_dir;
+    wire pulser_4_owed;
+    wire [5:0] pulser_4_counts;
+    wire pulser_4_overruns;
+    wire pulser_5_step;
+    wire pulser_5_dir;
+    wire pulser_5_owed;
+    wire [5:0] pulser_5_counts;
+    wire pulser_5_overruns;
+
+    wire strobe = wheel_strobe;
+    wire masked = mask[0];
+    wire nobody = {1'b0, put_axis} >= AXES;
+    wire listens = turn_beat[7] & (turn_axis == put_axis);
+    wire take = put_valid & put_ready & !nobody;
+    wire may_start = enable & watch_warm;
+    wire free = !stops_fault & !stops_finds;
+    wire decides = strobe & waits & free;
+    wire go = decides & !unfed & !held;
+    wire rests = rest_2 & !waits & !pins_busy;
+
+    assign put_ready = !stops_fault & (nobody | (listens & !queue_full));
+    assign start_ready = strobe & !waits & !stops_fault & may_start;
+    assign get_data = store_word;
+    assign get_valid = turn_beat[11];
+    assign latch = turn_beat[6] & homes_waits;
+    assign latch_axis = turn_axis;
+    assign room = queue_room;
+    assign room_valid = listens;
+    assign step[0] = pulser_0_step;
+    assign step[1] = pulser_1_step;
+    assign step[2] = pulser_2_step;
+    assign step[3] = pulser_3_step;
+    assign step[4] = pulser_4_step;
+    assign step[5] = pulser_5_step;
+    assign dir[0] = pulser_0_dir;
+    assign dir[1] = pulser_1_dir;
+    assign dir[2] = pulser_2_dir;
+    assign dir[3] = pulser_3_dir;
+    assign dir[4] = pulser_4_dir;
+    assign dir[5] = pulser_5_dir;
+    assign enabled = watch_enabled;
+    assign idle = rests;
+    assign fault = stops_fault;
+    assign halted = stops_halted;
+    assign cause = stops_cause;
+    assign culprits = stops_culprits;
+    assign armed = waits;
+    assign ready = may_start;
+    assign homing = homes_axes;
+    assign started = go;
+
+    always @(*) begin
+        counts = NONE;
+        counts = counts | counted_0;
+        counts = counts | counted_1;
+        counts = counts | counted_2;
+        counts = counts | counted_3;
+        counts = counts | counted_4;
+        counts = counts | counted_5;
+    end
+
+    always @(*) begin
+        pins_busy = 1'b0;
+        pins_busy = pins_busy | pulser_0_owed | pulser_0_step;
+        pins_busy = pins_busy | pulser_1_owed | pulser_1_step;
+        pins_busy = pins_busy | pulser_2_owed | pulser_2_step;
+        pins_busy = pins_busy | pulser_3_owed | pulser_3_step;
+        pins_busy = pins_busy | pulser_4_owed | pulser_4_step;
+        pins_busy = pins_busy | pulser_5_owed | pulser_5_step;
+    end
+
+    always @(*) begin
+        late = NO_AXES;
+        late = late | late_bit_0;
+        late = late | late_bit_1;
+        late = late | late_bit_2;
+        late = late | late_bit_3;
+        late = late | late_bit_4;
+        late = late | late_bit_5;
+    end
+
+    always @(*) begin
+        counted_0 = NONE;
+        if (turn_lane[0]) begin
+            counted_0 = pulser_0_counts;
+        end
+    end
+
+    always @(*) begin
+        late_bit_0 = NO_AXES;
+        if (pulser_0_overruns) begin
+            late_bit_0 = ONE_AXIS_0;
+        end
+    end
+
+    always @(*) begin
+        counted_1 = NONE;
+        if (turn_lane[1]) begin
+            counted_1 = pulser_1_counts;
+        end
+    end
+
+    always @(*) begin
+        late_bit_1 = NO_AXES;
+        if (pulser_1_overruns) begin
+            late_bit_1 = ONE_AXIS_1;
+        end
+    end
+
+    always @(*) begin
+        counted_2 = NONE;
+        if (turn_lane[2]) begin
+            counted_2 = pulser_2_counts;
+        end
+    end
+
+    always @(*) begin
+        late_bit_2 = NO_AXES;
+        if (pulser_2_overruns) begin
+            late_bit_2 = ONE_AXIS_2;
+        end
+    end
+
+    always @(*) begin
+        counted_3 = NONE;
+        if (turn_lane[3]) begin
+            counted_3 = pulser_3_counts;
+        end
+    end
+
+    always @(*) begin
+        late_bit_3 = NO_AXES;
+        if (pulser_3_overruns) begin
+            late_bit_3 = ONE_AXIS_3;
+        end
+    end
+
+    always @(*) begin
+        counted_4 = NONE;
+        if (turn_lane[4]) begin
+            counted_4 = pulser_4_counts;
+        end
+    end
+
+    always @(*) begin
+        late_bit_4 = NO_AXES;
+        if (pulser_4_overruns) begin
+            late_bit_4 = ONE_AXIS_4;
+        end
+    end
+
+    always @(*) begin
+        counted_5 = NONE;
+        if (turn_lane[5]) begin
+            counted_5 = pulser_5_counts;
+        end
+    end
+
+    always @(*) begin
+        late_bit_5 = NO_AXES;
+        if (pulser_5_overruns) begin
+            late_bit_5 = ONE_AXIS_5;
+        end
+    end
+
+    carrystep_turn turn (
+        .clock(clock),
+        .strobe(strobe),
+        .beat(turn_beat),
+        .axis(turn_axis),
+        .axis_next(turn_axis_next),
+        .lane(turn_lane)
+    );
+
+    carrystep_adder adder (
+        .clock(clock),
+        .beat(turn_beat),
+        .word(store_word),
+        .put(put_data),
+        .counts(queue_running),
+        .lost(queue_lost),
+        .up(queue_up),
+        .down(queue_down),
+        .wipe(stops_clearing),
+        .sum(adder_sum),
+        .ended(adder_ended),
+        .overflow(adder_overflow),
+        .turned(adder_turned),
+        .crosses(adder_crosses),
+        .back(adder_back),
+        .still(adder_still),
+        .least(adder_least),
+        .q(adder_q)
+    );
+
+    carrystep_queue queue (
+        .clock(clock),
+        .beat(turn_beat),
+        .axis(turn_axis),
+        .axis_next(turn_axis_next),
+        .starts(going & masked),
+        .halted(stops_halted),
+        .ramp(stops_ramp | homes_slows),
+        .clear(stops_clearing),
+        .empties(homes_slows & !queue_goes_on),
+        .take(take),
+        .commit(put_word == COMMIT),
+        .last(put_data[0]),
+        .ended(adder_ended),
+        .overflow(adder_overflow),
+        .least(adder_least),
+        .turned(adder_turned),
+        .back(adder_back),
+        .pulses(counts[2:0]),
+        .losses(counts[5:3]),
+        .live(queue_live),
+        .fresh(queue_fresh),
+        .full(queue_full),
+        .room(queue_room),
+        .empty(queue_empty),
+        .running(queue_running),
+        .sound(queue_sound),
+        .slows(queue_slows),
+        .upward(queue_upward),
+        .steady(queue_steady),
+        .moves(queue_moves),
+        .goes_on(queue_goes_on),
+        .too_fast(queue_too_fast),
+        .dry(queue_dry),
+        .up(queue_up),
+        .down(queue_down),
+        .lost(queue_lost)
+    );
+
+    carrystep_store store (
+        .clock(clock),
+        .beat(turn_beat),
+        .axis(turn_axis),
+        .live(queue_live),
+        .fresh(queue_fresh),
+        .running(queue_running),
+        .sound(queue_sound),
+        .moves(queue_moves),
+        .slows(queue_slows),
+        .upward(queue_upward),
+        .steady(queue_steady),
+        .wipe(stops_clearing),
+        .put(taken),
+        .put_word(taken_word),
+        .get_axis(get_axis),
+        .get_item(get_item),
+        .sum(adder_sum),
+        .word(store_word)
+    );
+
+    carrystep_wheel wheel (
+        .clock(clock),
+        .turn_ends(turn_beat[12]),
+        .lane(turn_lane),
+        .crosses(queue_moves & adder_crosses),
+        .has_sign(queue_moves & !adder_still),
+        .back(adder_back),
+        .phase_known(turn_beat[16]),
+        .q(adder_q),
+        .strobe(wheel_strobe),
+        .phase_start(wheel_phase_start),
+        .events(wheel_events),
+        .backward(wheel_backward)
+    );
+
+    carrystep_limits limits (
+        .clock(clock),
+        .turn_ends(turn_beat[12]),
+        .axis(turn_axis),
+        .axis_next(turn_axis_next),
+        .lane(turn_lane),
+        .tick_0(watch_tick_0),
+        .tick_1(watch_tick_1),
+        .limit_min(limit_min),
+        .limit_max(limit_max),
+        .goes(queue_moves & !adder_still),
+        .back(adder_back),
+        .hit(limits_hit)
+    );
+
+    carrystep_homes homes (
+        .clock(clock),
+        .set(home_valid),
+        .mask(home_mask),
+        .turn_ends(turn_beat[12]),
+        .lane(turn_lane),
+        .hit(limits_hit),
+        .goes_on(queue_goes_on),
+        .axes(homes_axes),
+        .waits(homes_waits),
+        .slows(homes_slows)
+    );
+
+    carrystep_stops stops (
+        .clock(clock),
+        .strobe(strobe),
+        .turn_ends(turn_beat[12]),
+        .lane(turn_lane),
+        .runs(queue_running),
+        .too_fast(queue_too_fast),
+        .limit(limits_hit & !homes_waits & !homes_slows),
+        .dry(queue_dry),
+        .late(late),
+        .pressed(watch_pressed),
+        .breaks((((put_valid & nobody) | broken) & !stops_fault) | (decides & unfed)),
+        .missed(watch_missed & !rest_2),
+        .asked(stop),
+        .clear(clear),
+        .pins_busy(pins_busy),
+        .fault(stops_fault),
+        .finds(stops_finds),
+        .frozen(stops_frozen),
+        .ramp(stops_ramp),
+        .halted(stops_halted),
+        .clearing(stops_clearing),
+        .cause(stops_cause),
+        .culprits(stops_culprits)
+    );
+
+    carrystep_watch watch (
+        .clock(clock),
+        .strobe(strobe),
+        .estop(estop),
+        .kick(kick),
+        .enable(enable),
+        .idle(rests),
+        .pressed(watch_pressed),
+        .missed(watch_missed),
+        .enabled(watch_enabled),
+        .warm(watch_warm),
+        .tick_0(watch_tick_0),
+        .tick_1(watch_tick_1)
+    );
+
+    carrystep_pulser_w4_s4_d1_h1 pulser_0 (
+        .clock(clock),
+        .frozen(stops_frozen),
+        .request(wheel_events[0] & wheel_phase_start),
+        .request_back(wheel_backward[0]),
+        .has_sign(wheel_events[0] & strobe),
+        .sign_back(wheel_backward[0]),
+        .step(pulser_0_step),
+        .dir(pulser_0_dir),
+        .owed(pulser_0_owed),
+        .counts(pulser_0_counts),
+        .overruns(pulser_0_overruns)
+    );
+
+    carrystep_pulser_w38_s38_d8_h8 pulser_1 (
+        .clock(clock),
+        .frozen(stops_frozen),
+        .request(wheel_events[1] & wheel_phase_start),
+        .request_back(wheel_backward[1]),
+        .has_sign(wheel_events[1] & strobe),
+        .sign_back(wheel_backward[1]),
+        .step(pulser_1_step),
+        .dir(pulser_1_dir),
+        .owed(pulser_1_owed),
+        .counts(pulser_1_counts),
+        .overruns(pulser_1_overruns)
+    );
+
+    carrystep_pulser_w72_s72_d25_h25 pulser_2 (
+        .clock(clock),
+        .frozen(stops_frozen),
+        .request(wheel_events[2] & wheel_phase_start),
+        .request_back(wheel_backward[2]),
+        .has_sign(wheel_events[2] & strobe),
+        .sign_back(wheel_backward[2]),
+        .step(pulser_2_step),
+        .dir(pulser_2_dir),
+        .owed(pulser_2_owed),
+        .counts(pulser_2_counts),
+        .overruns(pulser_2_overruns)
+    );
+
+    carrystep_pulser_w94_s94_d188_h188 pulser_3 (
+        .clock(clock),
+        .frozen(stops_frozen),
+        .request(wheel_events[3] & wheel_phase_start),
+        .request_back(wheel_backward[3]),
+        .has_sign(wheel_events[3] & strobe),
+        .sign_back(wheel_backward[3]),
+        .step(pulser_3_step),
+        .dir(pulser_3_dir),
+        .owed(pulser_3_owed),
+        .counts(pulser_3_counts),
+        .overruns(pulser_3_overruns)
+    );
+
+    carrystep_pulser_w4_s4_d1_h1 pulser_4 (
+        .clock(clock),
+        .frozen(stops_frozen),
+        .request(wheel_events[4] & wheel_phase_start),
+        .request_back(wheel_backward[4]),
+        .has_sign(wheel_events[4] & strobe),
+        .sign_back(wheel_backward[4]),
+        .step(pulser_4_step),
+        .dir(pulser_4_dir),
+        .owed(pulser_4_owed),
+        .counts(pulser_4_counts),
+        .overruns(pulser_4_overruns)
+    );
+
+    carrystep_pulser_w113_s113_d57_h57 pulser_5 (
+        .clock(clock),
+        .frozen(stops_frozen),
+        .request(wheel_events[5] & wheel_phase_start),
+        .request_back(wheel_backward[5]),
+        .has_sign(wheel_events[5] & strobe),
+        .sign_back(wheel_backward[5]),
+        .step(pulser_5_step),
+        .dir(pulser_5_dir),
+        .owed(pulser_5_owed),
+        .counts(pulser_5_counts),
+        .overruns(pulser_5_overruns)
+    );
+
+    always @(posedge clock) begin
+        taken <= taken & !turn_beat[9];
+        if (take) begin
+            taken <= put_word != COMMIT;
+        end
+        if (turn_beat[7]) begin
+            taken_word <= put_word;
+        end
+        if (strobe) begin
+            going <= go;
+        end
+        if (turn_beat[12]) begin
+            mask <= (mask >> BY_ONE) | (mask << TO_TOP);
+        end
+        if (start_ready & start_valid) begin
+            waits <= 1'b1;
+            mask <= start_mask;
+        end
+        if (go | stops_fault) begin
+            waits <= 1'b0;
+        end
+        if (turn_beat[12]) begin
+            unfed <= unfed | (masked & queue_empty);
+            held <= held | (masked & (queue_goes_on | homes_slows));
+            active <= active | queue_running | !queue_empty;
+        end
+        if (strobe) begin
+            unfed <= 1'b0;
+            held <= 1'b0;
+            active <= 1'b0;
+            rest_1 <= !active;
+            rest_2 <= !active & rest_1;
+        end
+        if (take) begin
+            rest_1 <= 1'b0;
+            rest_2 <= 1'b0;
+        end
+    end
+endmodule
+
+`default_nettype wire

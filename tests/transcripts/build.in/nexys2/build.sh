@@ -1,0 +1,20 @@
+#!/bin/sh
+# Digilent Nexys2: Verilog to bitstream with ISE 14.7, whose settings64.sh has been read. Generated: change the generator,
+# not this file. This script was never run: ISE was not at hand. SYNTHESIS=yosys ./build.sh leaves synthesis to yosys, which calls this family experimental.
+set -eu
+cd "$(dirname "$0")"
+
+if [ "${SYNTHESIS:-xst}" = yosys ]; then
+    # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing.
+    yosys -q -l yosys.log -p 'read_verilog carrystep_nexys2_top.v carrystep_clock.v carrystep_link.v carrystep_engine.v; synth_xilinx -family xc3se -ise -nowidelut -flatten -top carrystep_nexys2_top; write_edif -pvector bra carrystep_nexys2_top.edif'
+    ngdbuild -p xc3s500e-fg320-4 -uc carrystep_nexys2_top.ucf carrystep_nexys2_top.edif carrystep_nexys2_top.ngd
+else
+    xst -ifn carrystep_nexys2_top.xst -ofn carrystep_nexys2_top.syr
+    ngdbuild -p xc3s500e-fg320-4 -uc carrystep_nexys2_top.ucf carrystep_nexys2_top.ngc carrystep_nexys2_top.ngd
+fi
+map -ol high -w -o carrystep_nexys2_top_map.ncd carrystep_nexys2_top.ngd carrystep_nexys2_top_map.pcf
+par -ol high -w carrystep_nexys2_top_map.ncd carrystep_nexys2_top.ncd carrystep_nexys2_top_map.pcf
+trce -v 3 carrystep_nexys2_top.ncd carrystep_nexys2_top_map.pcf -o carrystep_nexys2_top.twr
+grep "All constraints were met" carrystep_nexys2_top.par || { echo "40 MHz is not reached: see carrystep_nexys2_top.twr"; exit 1; }
+bitgen -g Binary:Yes -g StartupClk:JtagClk -w carrystep_nexys2_top.ncd carrystep_nexys2_top.bit carrystep_nexys2_top_map.pcf
+echo "carrystep_nexys2_top.bit is made; load it with: djtgcfg prog -d Nexys2 -i 0 -f carrystep_nexys2_top.bit"
