@@ -100,13 +100,20 @@ fn passed(ran: &Ran) {
     assert_eq!(ran.status, 0, "{}{}", ran.stdout, ran.stderr);
 }
 
-/// A run that is under way: the axis has left its place.
+/// A run that is under way: the capture of the board, which it writes, has begun.
 fn begin(folder: &Folder, board: &Board, file: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(["run", file, "--port", &board.port, "--json"]).current_dir(folder.path(""));
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    // Nobody else can ask while it has the port.
-    std::thread::sleep(Duration::from_millis(700));
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let has_begun = |name: &String| {
+        let known = ["home.toml", "long.toml", "machine.toml", "move.toml"].contains(&name.as_str());
+        !known && folder.path(name).metadata().is_ok_and(|file| file.len() > 0)
+    };
+    // Nobody else can ask the board while that one has the port.
+    while !folder.files().iter().any(has_begun) {
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended");
+        std::thread::sleep(Duration::from_millis(10));
+    }
     child
 }
 
@@ -154,7 +161,7 @@ fn a_jog_is_a_move_and_comes_after_moves() {
 #[test]
 fn an_interrupted_run_comes_to_rest_and_the_next_one_runs() {
     let folder = folder();
-    let board = Board::new(&folder, "--fast");
+    let board = Board::new(&folder, "--fast --vcd a.vcd");
     let child = begin(&folder, &board, "long.toml");
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let told = document(child);
@@ -168,7 +175,7 @@ fn an_interrupted_run_comes_to_rest_and_the_next_one_runs() {
 #[test]
 fn an_emergency_stop_is_told_and_stays_until_it_is_released_and_cleared() {
     let folder = folder();
-    let mut board = Board::new(&folder, "--fast");
+    let mut board = Board::new(&folder, "--fast --vcd a.vcd");
     let child = begin(&folder, &board, "long.toml");
     board.press("estop 1");
     let told = document(child);

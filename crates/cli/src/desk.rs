@@ -57,7 +57,9 @@ impl Desk {
             }
             bytes.into_iter().for_each(|byte| self.board.say(byte));
         }
-        let target = self.pace.target(self.board.cycle(), self.board.engine().core().is_hungry());
+        let core = self.board.engine().core();
+        let to_go = core.ticks_to_go().map(|ticks| ticks * u64::from(core.build().timebase.clocks_per_tick()));
+        let target = self.pace.target(self.board.cycle(), to_go);
         self.board.run(target.min(self.board.cycle() + self.clock_hz / LOOKS_PER_SECOND), to);
         let heard: Vec<u8> = std::iter::from_fn(|| self.board.next_byte()).collect();
         if !heard.is_empty() {

@@ -36,13 +36,22 @@ impl Engine {
         before(now) - before(now - clocks)
     }
 
-    /// An axis whose move goes on has no more than one segment left to go on with.
-    pub fn is_hungry(&self) -> bool {
-        let goes_on = |lane: &Lane| {
-            let last = lane.queue.back().or(lane.running.as_ref());
-            last.is_some_and(|segment| !segment.last) && lane.queue.len() < 2
+    /// Ticks of motion that some axis has left before it needs its host: to the end of its move, or, where a start is
+    /// armed, of all that waits. `None` where nothing moves, or all of it stops.
+    pub fn ticks_to_go(&self) -> Option<u64> {
+        let armed = self.armed.is_some();
+        let of_lane = |lane: &Lane| {
+            let running = lane.running.as_ref()?;
+            let mut ticks = 0;
+            for segment in std::iter::once(running).chain(&lane.queue) {
+                ticks += u64::from(segment.left) + 1;
+                if segment.last && !armed {
+                    break;
+                }
+            }
+            Some(ticks)
         };
-        self.lanes.iter().any(|lane| lane.running.is_some() && goes_on(lane))
+        self.lanes.iter().filter_map(of_lane).min().filter(|_| self.stop.fault.is_none())
     }
 
     /// Segments that wait for an axis, beside the one that runs.
