@@ -55,7 +55,8 @@ const ICE40: &str = "boards[].pll boards[].parts[].logic_cells boards[].usb boar
 
 const TIES: &str = "boards[].ties[].port boards[].ties[].pin boards[].ties[].level boards[].ties[].why";
 
-const SPARTANS: &str = "boards[].vccaux boards[].parts[].speed boards[].bitgen boards[].clocks[].made_by.dcm
+const SPARTANS: &str =
+    "boards[].vccaux boards[].max_baud boards[].parts[].speed boards[].bitgen boards[].clocks[].made_by.dcm
     boards[].clocks[].made_by.dcm.multiply boards[].clocks[].made_by.dcm.divide boards[].clocks[].made_by.mmcm
     boards[].clocks[].made_by.mmcm.multiply boards[].clocks[].made_by.mmcm.divide
     boards[].clocks[].made_by.mmcm.out_divide";
