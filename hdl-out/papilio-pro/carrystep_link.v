@@ -1,106 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// carrystep_link: the host link of an engine, over a UART. Generated: change the generator, not this file.
+// carrystep_link: the host link of an engine. Generated: change the generator, not this file.
 //
 // Made from    machine.toml for Gadget Factory Papilio Pro
 // Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
 // Clock        80000000 Hz
-// UART         3000000 baud, 27 clocks a bit
+// Line         uart, 27 clocks a bit
 // Build id     5e21d66f82ac1c23
 
 `default_nettype none
-
-// Bytes from the line.
-module carrystep_uart_in (
-    input  wire         clock,
-    input  wire         line,
-    output wire   [7:0] data,
-    output wire         valid
-);
-    localparam [15:0] TO_FIRST = 16'd39;
-    localparam [15:0] TO_NEXT = 16'd26;
-    localparam [15:0] TIMER_BITS = 16'd63;
-    localparam [15:0] ONE = 16'd1;
-    localparam [8:0] MARK = 9'd256;
-    localparam [8:0] TOP = 9'd256;
-    localparam BY_ONE = 1'b1;
-
-    reg sync = 1'b1;
-    reg now = 1'b1;
-    reg busy = 1'b0;
-    reg [8:0] bits = 9'd0;
-    reg [15:0] timer = 16'd0;
-
-    wire due = timer == 16'd0;
-    wire done = busy & due & bits[0];
-
-    assign data = bits[8:1];
-    assign valid = done & now;
-
-    always @(posedge clock) begin
-        sync <= line;
-        now <= sync;
-        timer <= (timer - ONE) & TIMER_BITS;
-        if (due) begin
-            timer <= TO_NEXT;
-        end
-        if (busy & due & !bits[0]) begin
-            bits <= bits >> BY_ONE;
-            if (now) begin
-                bits <= (bits >> BY_ONE) | TOP;
-            end
-        end
-        if (done) begin
-            busy <= 1'b0;
-        end
-        if (!busy & !now) begin
-            busy <= 1'b1;
-            bits <= MARK;
-            timer <= TO_FIRST;
-        end
-    end
-endmodule
-
-// Bytes to the line.
-module carrystep_uart_out (
-    input  wire         clock,
-    input  wire   [7:0] data,
-    input  wire         valid,
-    output wire         take,
-    output wire         line
-);
-    localparam [15:0] BIT_CLOCKS = 16'd26;
-    localparam [15:0] TIMER_BITS = 16'd31;
-    localparam [15:0] ONE = 16'd1;
-    localparam [8:0] STOP = 9'd256;
-    localparam BY_ONE = 1'b1;
-
-    reg pin = 1'b1;
-    reg [8:0] bits = 9'd0;
-    reg [15:0] timer = 16'd0;
-
-    wire due = timer == 16'd0;
-    wire taken = due & (bits == 9'd0) & valid;
-
-    assign take = taken;
-    assign line = pin;
-
-    always @(posedge clock) begin
-        if (!due) begin
-            timer <= (timer - ONE) & TIMER_BITS;
-        end
-        if (due & (bits != 9'd0)) begin
-            timer <= BIT_CLOCKS;
-            bits <= bits >> BY_ONE;
-            pin <= bits[0];
-        end
-        if (taken) begin
-            timer <= BIT_CLOCKS;
-            bits <= {1'b0, data} | STOP;
-            pin <= 1'b0;
-        end
-    end
-endmodule
 
 // What it does.
 module carrystep_program (
@@ -340,7 +248,7 @@ module carrystep_program (
     end
 endmodule
 
-// 
+// A request and the answer to it, constants, and what is remembered.
 module carrystep_data (
     input  wire         clock,
     input  wire   [7:0] read_address,
@@ -390,7 +298,7 @@ module carrystep_data (
     end
 endmodule
 
-// 
+// The words of a segment, as the engine takes them.
 module carrystep_words (
     input  wire         clock,
     input  wire   [2:0] read_address,
@@ -417,7 +325,7 @@ module carrystep_words (
     end
 endmodule
 
-// 
+// Received bytes that wait.
 module carrystep_ring (
     input  wire         clock,
     input  wire   [7:0] read_address,
@@ -822,7 +730,7 @@ module carrystep_machine (
     end
 endmodule
 
-// 
+// Facts of the build, and what the engine has last said of its axes.
 module carrystep_known (
     input  wire         clock,
     input  wire   [6:0] read_address,
@@ -921,8 +829,11 @@ endmodule
 // The host link: bytes in, words of segments out.
 module carrystep_link (
     input  wire         clock,
-    input  wire         rx,
-    output wire         tx,
+    input  wire         received_valid,
+    input  wire   [7:0] received,
+    output wire         answer_valid,
+    output wire   [7:0] answer,
+    input  wire         answer_take,
     output wire         put_valid,
     output wire   [2:0] put_axis,
     output wire   [2:0] put_word,
@@ -956,10 +867,6 @@ module carrystep_link (
     input  wire   [5:0] homing
 );
 
-    wire [7:0] uart_in_data;
-    wire uart_in_valid;
-    wire uart_out_take;
-    wire uart_out_line;
     wire machine_answer_valid;
     wire [7:0] machine_x;
     wire [7:0] machine_a;
@@ -977,7 +884,8 @@ module carrystep_link (
     wire [1:0] facts_get_item;
     wire facts_scanned;
 
-    assign tx = uart_out_line;
+    assign answer_valid = machine_answer_valid;
+    assign answer = machine_a;
     assign put_valid = machine_put_valid;
     assign put_axis = machine_x[5:3];
     assign put_word = machine_x[2:0];
@@ -994,27 +902,12 @@ module carrystep_link (
     assign get_axis = facts_get_axis;
     assign get_item = facts_get_item;
 
-    carrystep_uart_in uart_in (
-        .clock(clock),
-        .line(rx),
-        .data(uart_in_data),
-        .valid(uart_in_valid)
-    );
-
-    carrystep_uart_out uart_out (
-        .clock(clock),
-        .data(machine_a),
-        .valid(machine_answer_valid),
-        .take(uart_out_take),
-        .line(uart_out_line)
-    );
-
     carrystep_machine machine (
         .clock(clock),
-        .received(uart_in_valid),
-        .received_data(uart_in_data),
+        .received(received_valid),
+        .received_data(received),
         .answer_valid(machine_answer_valid),
-        .answer_take(uart_out_take),
+        .answer_take(answer_take),
         .x(machine_x),
         .a(machine_a),
         .facts(facts_data),
