@@ -19,6 +19,11 @@ module carrystep_icestick_top (
     wire clock;
     carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
 
+    wire received_valid;
+    wire [7:0] received;
+    wire answer_valid;
+    wire [7:0] answer;
+    wire answer_take;
     wire put_valid;
     wire [2:0] put_axis;
     wire [2:0] put_word;
@@ -51,7 +56,23 @@ module carrystep_icestick_top (
     wire [5:0] culprits;
     wire [5:0] homing;
 
+    carrystep_uart line (
+        .received_valid(received_valid),
+        .received(received),
+        .answer_valid(answer_valid),
+        .answer(answer),
+        .answer_take(answer_take),
+        .clock(clock),
+        .rx(uart_rx),
+        .tx(uart_tx)
+    );
+
     carrystep_link link (
+        .received_valid(received_valid),
+        .received(received),
+        .answer_valid(answer_valid),
+        .answer(answer),
+        .answer_take(answer_take),
         .put_valid(put_valid),
         .put_axis(put_axis),
         .put_word(put_word),
@@ -83,9 +104,7 @@ module carrystep_icestick_top (
         .cause(cause),
         .culprits(culprits),
         .homing(homing),
-        .clock(clock),
-        .rx(uart_rx),
-        .tx(uart_tx)
+        .clock(clock)
     );
 
     wire enabled;

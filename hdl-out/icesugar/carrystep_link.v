@@ -1,106 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// carrystep_link: the host link of an engine, over a UART. Generated: change the generator, not this file.
+// carrystep_link: the host link of an engine. Generated: change the generator, not this file.
 //
 // Made from    machine.toml for Muselab iCESugar v1.5
 // Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
 // Clock        37500000 Hz
-// UART         2000000 baud, 19 clocks a bit
+// Line         uart, 19 clocks a bit
 // Build id     1086d52cd6b55a1b
 
 `default_nettype none
-
-// Bytes from the line.
-module carrystep_uart_in (
-    input  wire         clock,
-    input  wire         line,
-    output wire   [7:0] data,
-    output wire         valid
-);
-    localparam [15:0] TO_FIRST = 16'd27;
-    localparam [15:0] TO_NEXT = 16'd18;
-    localparam [15:0] TIMER_BITS = 16'd31;
-    localparam [15:0] ONE = 16'd1;
-    localparam [8:0] MARK = 9'd256;
-    localparam [8:0] TOP = 9'd256;
-    localparam BY_ONE = 1'b1;
-
-    reg sync = 1'b1;
-    reg now = 1'b1;
-    reg busy = 1'b0;
-    reg [8:0] bits = 9'd0;
-    reg [15:0] timer = 16'd0;
-
-    wire due = timer == 16'd0;
-    wire done = busy & due & bits[0];
-
-    assign data = bits[8:1];
-    assign valid = done & now;
-
-    always @(posedge clock) begin
-        sync <= line;
-        now <= sync;
-        timer <= (timer - ONE) & TIMER_BITS;
-        if (due) begin
-            timer <= TO_NEXT;
-        end
-        if (busy & due & !bits[0]) begin
-            bits <= bits >> BY_ONE;
-            if (now) begin
-                bits <= (bits >> BY_ONE) | TOP;
-            end
-        end
-        if (done) begin
-            busy <= 1'b0;
-        end
-        if (!busy & !now) begin
-            busy <= 1'b1;
-            bits <= MARK;
-            timer <= TO_FIRST;
-        end
-    end
-endmodule
-
-// Bytes to the line.
-module carrystep_uart_out (
-    input  wire         clock,
-    input  wire   [7:0] data,
-    input  wire         valid,
-    output wire         take,
-    output wire         line
-);
-    localparam [15:0] BIT_CLOCKS = 16'd18;
-    localparam [15:0] TIMER_BITS = 16'd31;
-    localparam [15:0] ONE = 16'd1;
-    localparam [8:0] STOP = 9'd256;
-    localparam BY_ONE = 1'b1;
-
-    reg pin = 1'b1;
-    reg [8:0] bits = 9'd0;
-    reg [15:0] timer = 16'd0;
-
-    wire due = timer == 16'd0;
-    wire taken = due & (bits == 9'd0) & valid;
-
-    assign take = taken;
-    assign line = pin;
-
-    always @(posedge clock) begin
-        if (!due) begin
-            timer <= (timer - ONE) & TIMER_BITS;
-        end
-        if (due & (bits != 9'd0)) begin
-            timer <= BIT_CLOCKS;
-            bits <= bits >> BY_ONE;
-            pin <= bits[0];
-        end
-        if (taken) begin
-            timer <= BIT_CLOCKS;
-            bits <= {1'b0, data} | STOP;
-            pin <= 1'b0;
-        end
-    end
-endmodule
 
 // What it does.
 module carrystep_program (
@@ -177,7 +85,7 @@ module carrystep_program (
         words[55] = 16'h4083;
         words[56] = 16'h801f;
         words[57] = 16'h1001;
-        words[58] = 16'h2a8a;
+        words[58] = 16'h2a8b;
         words[59] = 16'h801e;
         words[60] = 16'h1001;
         words[61] = 16'h8882;
@@ -190,10 +98,10 @@ module carrystep_program (
         words[68] = 16'h8300;
         words[69] = 16'h8882;
         words[70] = 16'h293f;
-        words[71] = 16'h208a;
+        words[71] = 16'h208b;
         words[72] = 16'h80f0;
         words[73] = 16'h4083;
-        words[74] = 16'h208a;
+        words[74] = 16'h208b;
         words[75] = 16'h801f;
         words[76] = 16'h1001;
         words[77] = 16'h236d;
@@ -209,42 +117,42 @@ module carrystep_program (
         words[87] = 16'h801f;
         words[88] = 16'h88ec;
         words[89] = 16'h215f;
-        words[90] = 16'h2085;
+        words[90] = 16'h2086;
         words[91] = 16'h8020;
         words[92] = 16'h4084;
         words[93] = 16'h1040;
-        words[94] = 16'h2085;
+        words[94] = 16'h2086;
         words[95] = 16'h8020;
         words[96] = 16'h10c0;
-        words[97] = 16'h2085;
+        words[97] = 16'h2086;
         words[98] = 16'h8084;
         words[99] = 16'h1240;
         words[100] = 16'h1020;
         words[101] = 16'h1020;
         words[102] = 16'h1040;
-        words[103] = 16'h2085;
-        words[104] = 16'h2585;
+        words[103] = 16'h2086;
+        words[104] = 16'h2586;
         words[105] = 16'h2e48;
         words[106] = 16'h8020;
         words[107] = 16'h1420;
-        words[108] = 16'h2085;
-        words[109] = 16'h2585;
+        words[108] = 16'h2086;
+        words[109] = 16'h2586;
         words[110] = 16'h1028;
-        words[111] = 16'h8501;
-        words[112] = 16'h2179;
-        words[113] = 16'h80eb;
-        words[114] = 16'h1001;
-        words[115] = 16'h9102;
-        words[116] = 16'h88ea;
-        words[117] = 16'h297b;
-        words[118] = 16'h8300;
-        words[119] = 16'h88f5;
-        words[120] = 16'h2973;
-        words[121] = 16'h1100;
-        words[122] = 16'h2085;
-        words[123] = 16'h801f;
-        words[124] = 16'h1001;
-        words[125] = 16'h1822;
+        words[111] = 16'h1028;
+        words[112] = 16'h8501;
+        words[113] = 16'h217a;
+        words[114] = 16'h80eb;
+        words[115] = 16'h1001;
+        words[116] = 16'h9102;
+        words[117] = 16'h88ea;
+        words[118] = 16'h297c;
+        words[119] = 16'h8300;
+        words[120] = 16'h88f5;
+        words[121] = 16'h2974;
+        words[122] = 16'h1100;
+        words[123] = 16'h2086;
+        words[124] = 16'h801f;
+        words[125] = 16'h1001;
         words[126] = 16'h1822;
         words[127] = 16'h1822;
         words[128] = 16'h1822;
@@ -252,86 +160,87 @@ module carrystep_program (
         words[130] = 16'h1822;
         words[131] = 16'h1822;
         words[132] = 16'h1822;
-        words[133] = 16'h8082;
-        words[134] = 16'h1001;
-        words[135] = 16'h1002;
-        words[136] = 16'h8300;
-        words[137] = 16'h4082;
-        words[138] = 16'h801f;
-        words[139] = 16'h1001;
-        words[140] = 16'h2a91;
-        words[141] = 16'h88e9;
-        words[142] = 16'h2390;
-        words[143] = 16'h80e8;
-        words[144] = 16'h1001;
-        words[145] = 16'h8500;
-        words[146] = 16'h4074;
-        words[147] = 16'h1020;
+        words[133] = 16'h1822;
+        words[134] = 16'h8082;
+        words[135] = 16'h1001;
+        words[136] = 16'h1002;
+        words[137] = 16'h8300;
+        words[138] = 16'h4082;
+        words[139] = 16'h801f;
+        words[140] = 16'h1001;
+        words[141] = 16'h2a92;
+        words[142] = 16'h88e9;
+        words[143] = 16'h2391;
+        words[144] = 16'h80e8;
+        words[145] = 16'h1001;
+        words[146] = 16'h8500;
+        words[147] = 16'h4074;
         words[148] = 16'h1020;
-        words[149] = 16'h8501;
-        words[150] = 16'h8883;
-        words[151] = 16'h4075;
-        words[152] = 16'h8502;
-        words[153] = 16'h4076;
-        words[154] = 16'h8503;
-        words[155] = 16'h4077;
-        words[156] = 16'h1018;
-        words[157] = 16'h8400;
-        words[158] = 16'h4078;
-        words[159] = 16'h1004;
-        words[160] = 16'h8400;
-        words[161] = 16'h4079;
-        words[162] = 16'h1004;
-        words[163] = 16'h8400;
-        words[164] = 16'h407a;
-        words[165] = 16'h1004;
-        words[166] = 16'h8400;
-        words[167] = 16'h407b;
-        words[168] = 16'h1004;
-        words[169] = 16'h801e;
-        words[170] = 16'h4071;
-        words[171] = 16'h801f;
-        words[172] = 16'h4072;
-        words[173] = 16'h8082;
-        words[174] = 16'h4073;
-        words[175] = 16'h80e7;
-        words[176] = 16'h1011;
-        words[177] = 16'h9102;
-        words[178] = 16'h100c;
-        words[179] = 16'h8300;
-        words[180] = 16'h88e6;
-        words[181] = 16'h29b1;
-        words[182] = 16'h8400;
-        words[183] = 16'h88ea;
-        words[184] = 16'h5102;
-        words[185] = 16'h1004;
-        words[186] = 16'h2ab6;
-        words[187] = 16'h80e7;
-        words[188] = 16'h1001;
-        words[189] = 16'h80fa;
-        words[190] = 16'h1220;
-        words[191] = 16'h22d2;
-        words[192] = 16'h9102;
-        words[193] = 16'h2fbe;
-        words[194] = 16'h4080;
-        words[195] = 16'h88fa;
-        words[196] = 16'h21ca;
-        words[197] = 16'h8080;
-        words[198] = 16'h88f9;
-        words[199] = 16'h21ce;
-        words[200] = 16'h8080;
-        words[201] = 16'h20be;
-        words[202] = 16'h80f9;
-        words[203] = 16'h1220;
-        words[204] = 16'h80f8;
-        words[205] = 16'h20be;
-        words[206] = 16'h80f9;
-        words[207] = 16'h1220;
-        words[208] = 16'h80f7;
-        words[209] = 16'h20be;
-        words[210] = 16'h80fa;
-        words[211] = 16'h1220;
-        words[212] = 16'h2000;
+        words[149] = 16'h1020;
+        words[150] = 16'h8501;
+        words[151] = 16'h8883;
+        words[152] = 16'h4075;
+        words[153] = 16'h8502;
+        words[154] = 16'h4076;
+        words[155] = 16'h8503;
+        words[156] = 16'h4077;
+        words[157] = 16'h1018;
+        words[158] = 16'h8400;
+        words[159] = 16'h4078;
+        words[160] = 16'h1004;
+        words[161] = 16'h8400;
+        words[162] = 16'h4079;
+        words[163] = 16'h1004;
+        words[164] = 16'h8400;
+        words[165] = 16'h407a;
+        words[166] = 16'h1004;
+        words[167] = 16'h8400;
+        words[168] = 16'h407b;
+        words[169] = 16'h1004;
+        words[170] = 16'h801e;
+        words[171] = 16'h4071;
+        words[172] = 16'h801f;
+        words[173] = 16'h4072;
+        words[174] = 16'h8082;
+        words[175] = 16'h4073;
+        words[176] = 16'h80e7;
+        words[177] = 16'h1011;
+        words[178] = 16'h9102;
+        words[179] = 16'h100c;
+        words[180] = 16'h8300;
+        words[181] = 16'h88e6;
+        words[182] = 16'h29b2;
+        words[183] = 16'h8400;
+        words[184] = 16'h88ea;
+        words[185] = 16'h5102;
+        words[186] = 16'h1004;
+        words[187] = 16'h2ab7;
+        words[188] = 16'h80e7;
+        words[189] = 16'h1001;
+        words[190] = 16'h80fa;
+        words[191] = 16'h1220;
+        words[192] = 16'h22d3;
+        words[193] = 16'h9102;
+        words[194] = 16'h2fbf;
+        words[195] = 16'h4080;
+        words[196] = 16'h88fa;
+        words[197] = 16'h21cb;
+        words[198] = 16'h8080;
+        words[199] = 16'h88f9;
+        words[200] = 16'h21cf;
+        words[201] = 16'h8080;
+        words[202] = 16'h20bf;
+        words[203] = 16'h80f9;
+        words[204] = 16'h1220;
+        words[205] = 16'h80f8;
+        words[206] = 16'h20bf;
+        words[207] = 16'h80f9;
+        words[208] = 16'h1220;
+        words[209] = 16'h80f7;
+        words[210] = 16'h20bf;
+        words[211] = 16'h80fa;
+        words[212] = 16'h1220;
+        words[213] = 16'h2000;
     end
 
     always @(posedge clock) begin
@@ -340,7 +249,7 @@ module carrystep_program (
     end
 endmodule
 
-// 
+// A request and the answer to it, constants, and what is remembered.
 module carrystep_data (
     input  wire         clock,
     input  wire   [7:0] read_address,
@@ -390,7 +299,7 @@ module carrystep_data (
     end
 endmodule
 
-// 
+// The words of a segment, as the engine takes them.
 module carrystep_words (
     input  wire         clock,
     input  wire   [2:0] read_address,
@@ -417,7 +326,7 @@ module carrystep_words (
     end
 endmodule
 
-// 
+// Received bytes that wait.
 module carrystep_ring (
     input  wire         clock,
     input  wire   [7:0] read_address,
@@ -822,7 +731,7 @@ module carrystep_machine (
     end
 endmodule
 
-// 
+// Facts of the build, and what the engine has last said of its axes.
 module carrystep_known (
     input  wire         clock,
     input  wire   [6:0] read_address,
@@ -921,8 +830,11 @@ endmodule
 // The host link: bytes in, words of segments out.
 module carrystep_link (
     input  wire         clock,
-    input  wire         rx,
-    output wire         tx,
+    input  wire         received_valid,
+    input  wire   [7:0] received,
+    output wire         answer_valid,
+    output wire   [7:0] answer,
+    input  wire         answer_take,
     output wire         put_valid,
     output wire   [2:0] put_axis,
     output wire   [2:0] put_word,
@@ -956,10 +868,6 @@ module carrystep_link (
     input  wire   [5:0] homing
 );
 
-    wire [7:0] uart_in_data;
-    wire uart_in_valid;
-    wire uart_out_take;
-    wire uart_out_line;
     wire machine_answer_valid;
     wire [7:0] machine_x;
     wire [7:0] machine_a;
@@ -977,7 +885,8 @@ module carrystep_link (
     wire [1:0] facts_get_item;
     wire facts_scanned;
 
-    assign tx = uart_out_line;
+    assign answer_valid = machine_answer_valid;
+    assign answer = machine_a;
     assign put_valid = machine_put_valid;
     assign put_axis = machine_x[5:3];
     assign put_word = machine_x[2:0];
@@ -994,27 +903,12 @@ module carrystep_link (
     assign get_axis = facts_get_axis;
     assign get_item = facts_get_item;
 
-    carrystep_uart_in uart_in (
-        .clock(clock),
-        .line(rx),
-        .data(uart_in_data),
-        .valid(uart_in_valid)
-    );
-
-    carrystep_uart_out uart_out (
-        .clock(clock),
-        .data(machine_a),
-        .valid(machine_answer_valid),
-        .take(uart_out_take),
-        .line(uart_out_line)
-    );
-
     carrystep_machine machine (
         .clock(clock),
-        .received(uart_in_valid),
-        .received_data(uart_in_data),
+        .received(received_valid),
+        .received_data(received),
         .answer_valid(machine_answer_valid),
-        .answer_take(uart_out_take),
+        .answer_take(answer_take),
         .x(machine_x),
         .a(machine_a),
         .facts(facts_data),

@@ -6,7 +6,7 @@ cd "$(dirname "$0")"
 
 if [ "${SYNTHESIS:-xst}" = yosys ]; then
     # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing.
-    yosys -q -l yosys.log -p 'read_verilog carrystep_s3board_top.v carrystep_clock.v carrystep_link.v carrystep_engine.v; synth_xilinx -family xc3s -ise -nowidelut -flatten -top carrystep_s3board_top; write_edif -pvector bra carrystep_s3board_top.edif'
+    yosys -q -l yosys.log -p 'read_verilog carrystep_s3board_top.v carrystep_clock.v carrystep_uart.v carrystep_link.v carrystep_engine.v; synth_xilinx -family xc3s -ise -nowidelut -flatten -top carrystep_s3board_top; write_edif -pvector bra carrystep_s3board_top.edif'
     ngdbuild -p xc3s400-ft256-4 -uc carrystep_s3board_top.ucf carrystep_s3board_top.edif carrystep_s3board_top.ngd
 else
     xst -ifn carrystep_s3board_top.xst -ofn carrystep_s3board_top.syr

@@ -49,7 +49,7 @@ impl Built {
 /// [`SynthesisError`]: a tool is missing or refuses the design; for want of room, it is nextpnr.
 pub fn build(job: &Job<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
     stage("yosys");
-    let netlist = ice40::synthesise(job.verilog, job.top)?;
+    let netlist = ice40::synthesise_tight(job.verilog, job.top)?;
     let mut best: Option<(u32, Placed)> = None;
     let mut failed = None;
     for seed in SEEDS {

@@ -60,11 +60,24 @@ pub struct Placed {
 /// # Errors
 /// [`SynthesisError`]: yosys is missing, refuses the text, or a file cannot be used.
 pub fn synthesise(verilog: &str, top: &str) -> Result<Netlist, SynthesisError> {
+    synthesise_with(verilog, top, "")
+}
+
+/// The same for a part that is nearly full: eight logic cells of a tile share one enable, so enables of fewer than four
+/// flip-flops are made of logic. On an HX1K the placer finds places within seconds, and mostly none without it.
+///
+/// # Errors
+/// As [`synthesise`].
+pub fn synthesise_tight(verilog: &str, top: &str) -> Result<Netlist, SynthesisError> {
+    synthesise_with(verilog, top, "-dffe_min_ce_use 4")
+}
+
+fn synthesise_with(verilog: &str, top: &str, option: &str) -> Result<Netlist, SynthesisError> {
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", verilog)?;
     let script = format!(
-        "read_verilog core.v; synth_ice40 -top {top} -run begin:map_luts; autoname; \
-         synth_ice40 -top {top} -run map_luts: -json core.json; write_verilog -noattr netlist.v"
+        "read_verilog core.v; synth_ice40 {option} -top {top} -run begin:map_luts; autoname; \
+         synth_ice40 {option} -top {top} -run map_luts: -json core.json; write_verilog -noattr netlist.v"
     );
     tool::yosys(folder.path(), &script)?;
     let read = |name| tool::read(folder.path(), name);

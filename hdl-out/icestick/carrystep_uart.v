@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// carrystep_uart: the line to the host. Generated: change the generator, not this file.
+//
+// Made from    machine.toml for Lattice iCEstick
+// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Line         uart, 16 clocks a bit
+
+`default_nettype none
+
+// Bytes from the line.
+module carrystep_uart_in (
+    input  wire         clock,
+    input  wire         line,
+    output wire   [7:0] data,
+    output wire         valid
+);
+    localparam [15:0] TO_FIRST = 16'd23;
+    localparam [15:0] TO_NEXT = 16'd15;
+    localparam [15:0] TIMER_BITS = 16'd31;
+    localparam [15:0] ONE = 16'd1;
+    localparam [8:0] MARK = 9'd256;
+    localparam [8:0] TOP = 9'd256;
+    localparam BY_ONE = 1'b1;
+
+    reg sync = 1'b1;
+    reg now = 1'b1;
+    reg busy = 1'b0;
+    reg [8:0] bits = 9'd0;
+    reg [15:0] timer = 16'd0;
+
+    wire due = timer == 16'd0;
+    wire done = busy & due & bits[0];
+
+    assign data = bits[8:1];
+    assign valid = done & now;
+
+    always @(posedge clock) begin
+        sync <= line;
+        now <= sync;
+        timer <= (timer - ONE) & TIMER_BITS;
+        if (due) begin
+            timer <= TO_NEXT;
+        end
+        if (busy & due & !bits[0]) begin
+            bits <= bits >> BY_ONE;
+            if (now) begin
+                bits <= (bits >> BY_ONE) | TOP;
+            end
+        end
+        if (done) begin
+            busy <= 1'b0;
+        end
+        if (!busy & !now) begin
+            busy <= 1'b1;
+            bits <= MARK;
+            timer <= TO_FIRST;
+        end
+    end
+endmodule
+
+// Bytes to the line.
+module carrystep_uart_out (
+    input  wire         clock,
+    input  wire   [7:0] data,
+    input  wire         valid,
+    output wire         take,
+    output wire         line
+);
+    localparam [15:0] BIT_CLOCKS = 16'd15;
+    localparam [15:0] TIMER_BITS = 16'd15;
+    localparam [15:0] ONE = 16'd1;
+    localparam [8:0] STOP = 9'd256;
+    localparam BY_ONE = 1'b1;
+
+    reg pin = 1'b1;
+    reg [8:0] bits = 9'd0;
+    reg [15:0] timer = 16'd0;
+
+    wire due = timer == 16'd0;
+    wire taken = due & (bits == 9'd0) & valid;
+
+    assign take = taken;
+    assign line = pin;
+
+    always @(posedge clock) begin
+        if (!due) begin
+            timer <= (timer - ONE) & TIMER_BITS;
+        end
+        if (due & (bits != 9'd0)) begin
+            timer <= BIT_CLOCKS;
+            bits <= bits >> BY_ONE;
+            pin <= bits[0];
+        end
+        if (taken) begin
+            timer <= BIT_CLOCKS;
+            bits <= {1'b0, data} | STOP;
+            pin <= 1'b0;
+        end
+    end
+endmodule
+
+// A UART, both directions.
+module carrystep_uart (
+    input  wire         clock,
+    input  wire         rx,
+    output wire         tx,
+    output wire   [7:0] received,
+    output wire         received_valid,
+    input  wire   [7:0] answer,
+    input  wire         answer_valid,
+    output wire         answer_take
+);
+
+    wire [7:0] uart_in_data;
+    wire uart_in_valid;
+    wire uart_out_take;
+    wire uart_out_line;
+
+    assign tx = uart_out_line;
+    assign received = uart_in_data;
+    assign received_valid = uart_in_valid;
+    assign answer_take = uart_out_take;
+
+    carrystep_uart_in uart_in (
+        .clock(clock),
+        .line(rx),
+        .data(uart_in_data),
+        .valid(uart_in_valid)
+    );
+
+    carrystep_uart_out uart_out (
+        .clock(clock),
+        .data(answer),
+        .valid(answer_valid),
+        .take(uart_out_take),
+        .line(uart_out_line)
+    );
+endmodule
+
+`default_nettype wire
