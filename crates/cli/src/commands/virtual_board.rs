@@ -1,6 +1,7 @@
 //! `carrystep virtual-board`: the gateware of a machine behind a pseudo-terminal.
 
 use crate::arguments::VirtualBoard;
+use crate::connection;
 use crate::desk::Desk;
 use crate::failure::Failure;
 use crate::gateware;
@@ -44,14 +45,12 @@ struct AxisServed {
 /// Serves until Ctrl-C, or `end` on standard input.
 pub fn run(arguments: &VirtualBoard) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
-    let refused = |error: String| Failure::input(format!("{}: {error}", arguments.machine.display()));
     let build = machine.engine();
-    build.check().map_err(|error| refused(error.to_string()))?;
-    let uart = machine.uart().map_err(|error| refused(error.to_string()))?;
+    let (uart, id) = connection::wanted(&machine, &arguments.machine)?;
     let panel = Panel::new(&machine, &arguments.min, &arguments.max)?;
     let mut vcd = arguments.vcd.as_deref().map(OutputFile::create).transpose()?;
     let terminal = Terminal::new().map_err(|error| Failure::Run(format!("no pseudo-terminal: {error}")))?;
-    let told = format!("{}: {} baud, build {}\n", terminal.name(), uart.baud(), uart.build_id(&build));
+    let told = format!("{}: {} baud, build {}\n", terminal.name(), uart.baud(), id);
     if arguments.json {
         // Nobody is left to tell if this fails.
         let _ = std::io::stderr().write_all(told.as_bytes());
