@@ -48,7 +48,7 @@ pub struct Both {
 #[expect(clippy::large_enum_variant, reason = "there is one of them")]
 enum Wire {
     Uart { link: LinkSim, model: Link, sender: Sender, receiver: Receiver },
-    Spi { link: Box<dyn AnyLink>, line: SpiSim, host: SpiHost },
+    Spi { link: Box<dyn AnyLink>, line: SpiSim, model: Link, host: SpiHost },
 }
 
 impl LinkBench {
@@ -64,7 +64,8 @@ impl LinkBench {
     pub fn spi(build: &EngineBuild, tenths: u32) -> Self {
         let mut link = link(build, Line::Spi.build_id(build)).expect("a link");
         link.connect_all();
-        Self::new(build, Wire::Spi { link, line: SpiSim::new().expect("a line"), host: SpiHost::new(tenths) })
+        let model = Link::new(build, Line::Spi);
+        Self::new(build, Wire::Spi { link, line: SpiSim::new().expect("a line"), model, host: SpiHost::new(tenths) })
     }
 
     fn new(build: &EngineBuild, wire: Wire) -> Self {
@@ -99,7 +100,11 @@ impl LinkBench {
         let mut seen = LinkInputs::default();
         match &mut self.wire {
             Wire::Uart { sender, .. } => seen.rx = sender.clock(&mut self.bytes),
-            Wire::Spi { host, .. } => host.clock(&mut self.bytes),
+            Wire::Spi { host, .. } => {
+                host.clock(&mut self.bytes);
+                let [sck, select_n, mosi] = host.pins();
+                (seen.spi, seen.rx) = ([sck, select_n], mosi);
+            }
         }
         let asked = self.wire.settle(&seen).0;
         let EngineInputs { estop, limit_min, limit_max, .. } = self.pins;
@@ -153,9 +158,9 @@ impl Wire {
                 let shown = link.settle(seen);
                 (shown, shown.tx)
             }
-            Self::Spi { link, line, host } => {
+            Self::Spi { link, line, host, .. } => {
                 let (line, miso) = line.settle(host.pins(), link.offered());
-                (link.settle(seen, line), miso)
+                (LinkOutputs { tx: miso, ..link.settle(seen, line) }, miso)
             }
         }
     }
@@ -188,7 +193,9 @@ impl Wire {
                 link.clock();
                 receiver.clock(level)
             }
-            Self::Spi { link, line, host } => {
+            Self::Spi { link, line, model, host } => {
+                assert_eq!(model.outputs(), *shown, "cycle {clocks}: model and Rust-HDL");
+                model.clock(seen);
                 link.clock();
                 line.clock();
                 host.look(level)

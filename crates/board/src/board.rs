@@ -1,11 +1,12 @@
 //! Engine and link on one clock, and the line to the host.
 
 use crate::line::{Ear, Speaker};
+use crate::spi::Master;
 use carrystep_model::fast::Edges;
 use carrystep_model::{FastEngine, Link};
 use carrystep_spec::EngineBuild;
 use carrystep_spec::engine::{Cause, EngineInputs, EngineOutputs, MAX_AXES};
-use carrystep_spec::link::{LinkInputs, LinkOutputs, Uart};
+use carrystep_spec::link::{Line, LinkInputs, LinkOutputs, Uart};
 
 /// Switches at the board's inputs; `true` and a bit that is set are active, whatever the level of the pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -23,23 +24,38 @@ pub struct Switches {
 pub struct Board {
     engine: FastEngine,
     link: Link,
-    speaker: Speaker,
-    ear: Ear,
+    wire: Wire,
     /// What the switches drive, with the polarity of their pins.
     pins: EngineInputs,
     loads: Vec<u64>,
     stops: Vec<(u64, Cause)>,
 }
 
+/// The host's end of the line.
+#[derive(Debug, Clone)]
+enum Wire {
+    Uart(Speaker, Ear),
+    /// And MISO as it is.
+    Spi(Master, bool),
+}
+
 impl Board {
     /// A board as it is configured, in cycle 0, with no switch pressed.
     pub fn new(build: &EngineBuild, uart: Uart) -> Self {
         let clock_hz = build.timebase.clock_hz();
+        Self::with(build, uart.into(), Wire::Uart(Speaker::new(clock_hz, uart), Ear::new(clock_hz, uart)))
+    }
+
+    /// The same on an SPI of this rate, Hz.
+    pub fn on_spi(build: &EngineBuild, sck_hz: u64) -> Self {
+        Self::with(build, Line::Spi, Wire::Spi(Master::new(build.timebase.clock_hz(), sck_hz), true))
+    }
+
+    fn with(build: &EngineBuild, line: Line, wire: Wire) -> Self {
         let mut board = Self {
             engine: FastEngine::new(build),
-            link: Link::new(build, uart),
-            speaker: Speaker::new(clock_hz, uart),
-            ear: Ear::new(clock_hz, uart),
+            link: Link::new(build, line),
+            wire,
             pins: EngineInputs::default(),
             loads: Vec::new(),
             stops: Vec::new(),
@@ -75,17 +91,26 @@ impl Board {
 
     /// Says a byte to it, at the line's pace.
     pub fn say(&mut self, byte: u8) {
-        self.speaker.say(byte);
+        match &mut self.wire {
+            Wire::Uart(speaker, _) => speaker.say(byte),
+            Wire::Spi(master, _) => master.say(byte),
+        }
     }
 
     /// Bytes that have not yet gone to it.
     pub fn unsaid(&self) -> usize {
-        self.speaker.unsaid()
+        match &self.wire {
+            Wire::Uart(speaker, _) => speaker.unsaid(),
+            Wire::Spi(master, _) => master.unsaid(),
+        }
     }
 
     /// The next byte from it.
     pub fn next_byte(&mut self) -> Option<u8> {
-        self.ear.next_byte()
+        match &mut self.wire {
+            Wire::Uart(_, ear) => ear.next_byte(),
+            Wire::Spi(master, _) => master.next_byte(),
+        }
     }
 
     /// Sets the switches from this cycle on.
@@ -119,15 +144,15 @@ impl Board {
     fn run_link(&mut self, end: u64) -> u64 {
         let mut cycle = self.cycle();
         while cycle < end && self.link.is_alone() {
-            let rx = self.speaker.level(cycle);
-            let quiet = self.link.quiet(rx).min(self.speaker.stays(cycle)).min(end - cycle);
+            let (rx, spi, stays) = self.wire.pins(cycle);
+            let quiet = self.link.quiet(rx).min(stays).min(end - cycle);
             if quiet == 0 {
-                self.link.clock_alone(rx);
+                self.link.clock_alone(rx, spi);
             } else {
                 self.link.pass(quiet, rx);
             }
             cycle += quiet.max(1);
-            self.ear.hear(cycle, self.link.tx());
+            self.wire.hear(cycle, self.link.tx());
         }
         cycle
     }
@@ -157,10 +182,10 @@ impl Board {
     fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
         let asks = self.link.outputs();
         let says = self.engine.outputs(inputs);
-        let rx = self.speaker.level(self.cycle());
-        self.link.clock(&self.told(rx, &asks, &says));
+        let (rx, spi, _) = self.wire.pins(self.cycle());
+        self.link.clock(&LinkInputs { rx, spi, ..self.told(&asks, &says) });
         self.clock_engine(inputs, &says, to);
-        self.ear.hear(self.cycle(), self.link.tx());
+        self.wire.hear(self.cycle(), self.link.tx());
     }
 
     fn clock_engine(&mut self, inputs: &EngineInputs, says: &EngineOutputs, to: &mut impl Edges) {
@@ -180,10 +205,37 @@ impl Board {
         EngineInputs { estop, limit_min, limit_max, ..asks.engine }
     }
 
-    fn told(&self, rx: bool, asks: &LinkOutputs, says: &EngineOutputs) -> LinkInputs {
+    fn told(&self, asks: &LinkOutputs, says: &EngineOutputs) -> LinkInputs {
         let core = self.engine.core();
         let (axis, item) = says.latch.map_or((asks.get_axis, asks.get_item), |axis| (axis, POSITION));
-        LinkInputs { rx, engine: *says, get_data: core.item(axis, item), get_valid: core.answers() }
+        LinkInputs {
+            engine: *says,
+            get_data: core.item(axis, item),
+            get_valid: core.answers(),
+            ..LinkInputs::default()
+        }
+    }
+}
+
+impl Wire {
+    /// The line to the gateware in a clock, SCK and select (low), and for how many clocks they stay.
+    fn pins(&mut self, cycle: u64) -> (bool, [bool; 2], u64) {
+        match self {
+            Self::Uart(speaker, _) => (speaker.level(cycle), [false, true], speaker.stays(cycle)),
+            Self::Spi(master, _) if master.rests() => (false, [false, true], u64::MAX),
+            Self::Spi(master, miso) => {
+                let [sck, select_n, mosi] = master.clock(*miso);
+                (mosi, [sck, select_n], 0)
+            }
+        }
+    }
+
+    /// The line from the gateware has had its level up to this clock, and has this one from here on.
+    fn hear(&mut self, cycle: u64, level: bool) {
+        match self {
+            Self::Uart(_, ear) => ear.hear(cycle, level),
+            Self::Spi(_, miso) => *miso = level,
+        }
     }
 }
 

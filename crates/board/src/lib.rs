@@ -10,6 +10,7 @@
 mod board;
 mod line;
 mod pace;
+mod spi;
 #[cfg(unix)]
 mod terminal;
 

@@ -3,11 +3,13 @@
 
 mod support;
 
-use carrystep_link::{Ended, Program, Wish};
-use carrystep_spec::link::Uart;
+use carrystep_link::line::spi::SpiLine;
+use carrystep_link::{Ended, Host, Patience, Program, Wish};
+use carrystep_spec::link::{Line, Uart};
+use support::bus::Bus;
 use support::random::Random;
 use support::wire::Faults;
-use support::{CLOCK_HZ, End, TICK_NS, waves};
+use support::{CLOCK_HZ, End, TICK_NS, build, waves};
 
 /// Six axes with so many segments a second each, for a second and a half.
 #[track_caller]
@@ -30,6 +32,32 @@ fn carries(baud: u32, per_second: u32) {
         commands.len() - 1,
         world.least_waiting,
         ended
+    );
+    assert_eq!(ended, Ok(Ended::Done));
+    assert!(world.least_waiting > 0, "a queue was dry");
+}
+
+/// The same over SPI: the driver for embedded-hal, six segments on their way at the most (docs/protocol.md).
+#[test]
+fn six_axes_at_500_segments_over_spi_at_10_mhz() {
+    let bus = Bus::new(10_000_000);
+    let id = Line::Spi.build_id(&build());
+    let mut host =
+        Host::<_, _, 6>::connect(SpiLine::new(bus.clone()), bus.clone(), Some(id.0), Patience::default()).unwrap();
+    host.enable().unwrap();
+    let per_second = 500;
+    let commands = waves(&mut Random(7), per_second * 3 / 2, (1_000_000_000 / TICK_NS) as u32 / per_second);
+    let begun = bus.0.borrow().board.cycle();
+    let ended = host.stream(Program::new(&commands, 6).unwrap(), |progress| {
+        bus.0.borrow_mut().handed_over = progress.handed_over;
+        Wish::GoOn
+    });
+    let world = bus.0.borrow();
+    let took = (world.board.cycle() - begun) as f64 / CLOCK_HZ as f64;
+    eprintln!(
+        "FIGURES SPI at 10 MHz: 6 x {per_second} segments/s, {} segments in {took:.3} s, at least {} waiting; {ended:?}",
+        commands.len() - 1,
+        world.least_waiting,
     );
     assert_eq!(ended, Ok(Ended::Done));
     assert!(world.least_waiting > 0, "a queue was dry");

@@ -14,36 +14,37 @@
 
 mod check;
 mod facts;
+mod line;
 mod machine;
+mod spi;
 mod uart;
 
 use carrystep_spec::EngineBuild;
 use carrystep_spec::engine::{EngineInputs, Put};
-use carrystep_spec::link::{LinkInputs, LinkOutputs, Uart, image};
+use carrystep_spec::link::{Line, LinkInputs, LinkOutputs, image};
 use facts::Facts;
+use line::End;
 use machine::{Inputs, Machine, Waits};
-use uart::{Receiver, Transmitter};
 
 /// The link's state; [`Link::outputs`] and [`Link::clock`] are its one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Link {
     /// The axes that there are, a bit each.
     axes: u8,
-    receiver: Receiver,
-    transmitter: Transmitter,
+    line: End,
     machine: Machine,
     facts: Facts,
 }
 
 impl Link {
-    /// The link of this build over this UART, as it is configured.
-    pub fn new(build: &EngineBuild, uart: Uart) -> Self {
+    /// The link of this build over this line, as it is configured.
+    pub fn new(build: &EngineBuild, line: impl Into<Line>) -> Self {
+        let line = line.into();
         Self {
             axes: ((1_u16 << build.axes()) - 1) as u8,
-            receiver: Receiver::new(uart.bit_clocks()),
-            transmitter: Transmitter::new(uart.bit_clocks()),
+            line: End::new(line),
             machine: Machine::new(&image()),
-            facts: Facts::new(build, uart.build_id(build)),
+            facts: Facts::new(build, line.build_id(build)),
         }
     }
 
@@ -65,28 +66,27 @@ impl Link {
             enable: machine.enable,
             ..EngineInputs::default()
         };
-        LinkOutputs { tx: self.transmitter.line(), engine, get_axis, get_item }
+        LinkOutputs { tx: self.line.level(), engine, get_axis, get_item }
     }
 
     /// The line to the host in this clock.
     pub const fn tx(&self) -> bool {
-        self.transmitter.line()
+        self.line.level()
     }
 
     /// Goes to the next clock.
     pub fn clock(&mut self, inputs: &LinkInputs) {
         let machine = self.machine.outputs();
-        let taken = self.transmitter.takes(machine.goes);
+        let taken = self.line.takes(machine.goes);
         self.machine.clock(&Inputs {
-            received: self.receiver.byte(),
+            received: self.line.byte(),
             taken,
             fact: self.facts.data(),
             scanned: self.facts.scanned(inputs),
             engine: &inputs.engine,
         });
         self.facts.clock(machine.x, inputs);
-        self.transmitter.clock(taken.then_some(machine.a));
-        self.receiver.clock(inputs.rx);
+        self.line.clock(inputs, taken.then_some(machine.a));
     }
 
     /// For so many clocks nothing happens in here, whatever the engine says, while the line from the host stays at
@@ -96,7 +96,7 @@ impl Link {
         if waits == Waits::No {
             return 0;
         }
-        self.receiver.quiet(rx).min(self.transmitter.quiet(waits == Waits::ToSend))
+        self.line.quiet(rx, waits == Waits::ToSend)
     }
 
     /// Nothing that the engine says matters to this clock, and nothing is told to it but what it is told already.
@@ -105,15 +105,14 @@ impl Link {
     }
 
     /// Goes to the next clock, alone.
-    pub fn clock_alone(&mut self, rx: bool) {
-        self.clock(&LinkInputs { rx, ..LinkInputs::default() });
+    pub fn clock_alone(&mut self, rx: bool, spi: [bool; 2]) {
+        self.clock(&LinkInputs { rx, spi, ..LinkInputs::default() });
     }
 
     /// So many clocks of [`Link::quiet`] have passed.
     pub fn pass(&mut self, clocks: u64, rx: bool) {
         self.machine.pass(clocks);
-        self.receiver.pass(clocks, rx);
-        self.transmitter.pass(clocks);
+        self.line.pass(clocks, rx);
     }
 
     /// Meanwhile the engine has had so many turns of axes; `said` is what it says of an axis and an item. Before anything

@@ -1,6 +1,7 @@
 //! A host and a board with a line between them that may be bad; time is the board's.
 #![allow(dead_code, reason = "each test uses a part")]
 
+pub mod bus;
 #[path = "../../../link/tests/support/random.rs"]
 pub mod random;
 #[path = "../../../link/tests/support/wire.rs"]

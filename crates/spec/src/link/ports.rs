@@ -5,8 +5,10 @@ use crate::engine::{EngineInputs, EngineOutputs};
 /// What the link sees.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LinkInputs {
-    /// The line from the host; high at rest.
+    /// The line from the host: a UART's, high at rest, or MOSI.
     pub rx: bool,
+    /// SCK and select (low) of an SPI.
+    pub spi: [bool; 2],
     /// What the engine shows.
     pub engine: EngineOutputs,
     /// What the engine's `get` port shows.
@@ -18,7 +20,7 @@ pub struct LinkInputs {
 /// What the link shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LinkOutputs {
-    /// The line to the host.
+    /// The line to the host: a UART's, or MISO.
     pub tx: bool,
     /// What it tells the engine; the pins are not the link's.
     pub engine: EngineInputs,

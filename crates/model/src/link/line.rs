@@ -1,0 +1,76 @@
+//! The gateware's end of the line, of either kind.
+
+use super::spi::Spi;
+use super::uart::{Receiver, Transmitter};
+use carrystep_spec::link::{Line, LinkInputs};
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum End {
+    Uart { receiver: Receiver, transmitter: Transmitter },
+    Spi(Spi),
+}
+
+impl End {
+    pub(super) const fn new(line: Line) -> Self {
+        match line {
+            Line::Uart(uart) => Self::Uart {
+                receiver: Receiver::new(uart.bit_clocks()),
+                transmitter: Transmitter::new(uart.bit_clocks()),
+            },
+            Line::Spi => Self::Spi(Spi::new()),
+        }
+    }
+
+    /// The line to the host.
+    pub(super) const fn level(&self) -> bool {
+        match self {
+            Self::Uart { transmitter, .. } => transmitter.line(),
+            Self::Spi(spi) => spi.line(),
+        }
+    }
+
+    /// The byte that has come.
+    pub(super) fn byte(&self) -> Option<u8> {
+        match self {
+            Self::Uart { receiver, .. } => receiver.byte(),
+            Self::Spi(spi) => spi.byte(),
+        }
+    }
+
+    /// Whether a byte that is offered is taken in this clock.
+    pub(super) const fn takes(&self, offered: bool) -> bool {
+        match self {
+            Self::Uart { transmitter, .. } => transmitter.takes(offered),
+            Self::Spi(spi) => spi.takes(offered),
+        }
+    }
+
+    pub(super) fn clock(&mut self, inputs: &LinkInputs, taken: Option<u8>) {
+        match self {
+            Self::Uart { receiver, transmitter } => {
+                transmitter.clock(taken);
+                receiver.clock(inputs.rx);
+            }
+            Self::Spi(spi) => {
+                let [sck, select_n] = inputs.spi;
+                spi.clock([sck, select_n, inputs.rx], taken);
+            }
+        }
+    }
+
+    /// For so many clocks it only counts, while the line stays at `rx` and an SPI's other pins at rest, and a byte is
+    /// offered or none is.
+    pub(super) fn quiet(&self, rx: bool, offered: bool) -> u64 {
+        match self {
+            Self::Uart { receiver, transmitter } => receiver.quiet(rx).min(transmitter.quiet(offered)),
+            Self::Spi(spi) => spi.quiet(),
+        }
+    }
+
+    pub(super) fn pass(&mut self, clocks: u64, rx: bool) {
+        if let Self::Uart { receiver, transmitter } = self {
+            receiver.pass(clocks, rx);
+            transmitter.pass(clocks);
+        }
+    }
+}

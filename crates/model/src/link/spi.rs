@@ -1,0 +1,78 @@
+//! SPI mode 0, the gateware being the peripheral: a byte is whole where SCK rises for the eighth time, seen two clocks late.
+
+use carrystep_spec::link::END;
+
+/// The pins from the host.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Pins {
+    sck: bool,
+    select_n: bool,
+    mosi: bool,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Spi {
+    /// The pins one clock and two clocks ago, and SCK three.
+    sync: Pins,
+    now: Pins,
+    before: bool,
+    comes: u8,
+    goes: u8,
+    count: u8,
+    /// The last byte was an END.
+    ended: bool,
+}
+
+impl Spi {
+    pub(super) const fn new() -> Self {
+        let rest = Pins { sck: false, select_n: true, mosi: false };
+        Self { sync: rest, now: rest, before: false, comes: 0, goes: END, count: 0, ended: true }
+    }
+
+    /// The byte that is whole in this clock.
+    const fn whole(&self) -> Option<u8> {
+        let rises = self.now.sck && !self.before && !self.now.select_n;
+        if rises && self.count == 7 { Some(self.shifted()) } else { None }
+    }
+
+    const fn shifted(&self) -> u8 {
+        self.comes << 1 | self.now.mosi as u8
+    }
+
+    /// The byte that is received in this clock: of ENDs in a row only the first.
+    pub(super) fn byte(&self) -> Option<u8> {
+        self.whole().filter(|&byte| byte != END || !self.ended)
+    }
+
+    /// Whether a byte that is offered is taken in this clock.
+    pub(super) const fn takes(&self, offered: bool) -> bool {
+        offered && self.whole().is_some()
+    }
+
+    /// MISO.
+    pub(super) const fn line(&self) -> bool {
+        self.goes & 0x80 != 0
+    }
+
+    /// Nothing is on its way from the pins.
+    pub(super) const fn quiet(&self) -> u64 {
+        let rests = self.sync.select_n && self.now.select_n && self.count == 0;
+        let low = !self.sync.sck && !self.now.sck && !self.before;
+        if rests && low { u64::MAX } else { 0 }
+    }
+
+    pub(super) fn clock(&mut self, [sck, select_n, mosi]: [bool; 3], taken: Option<u8>) {
+        let whole = self.whole();
+        if self.now.select_n {
+            self.count = 0;
+        } else if self.now.sck && !self.before {
+            (self.comes, self.goes, self.count) = (self.shifted(), self.goes << 1, (self.count + 1) & 7);
+        }
+        if let Some(byte) = whole {
+            (self.ended, self.goes) = (byte == END, taken.unwrap_or(END));
+        }
+        self.before = self.now.sck;
+        self.now = self.sync;
+        self.sync = Pins { sck, select_n, mosi };
+    }
+}
