@@ -1,5 +1,6 @@
 //! What can go wrong with tools and their files.
 
+use carrystep_export::ExportError;
 use thiserror::Error;
 
 /// Why a netlist, a bitstream or a measurement could not be made.
@@ -37,7 +38,13 @@ pub enum SynthesisError {
         /// The system's answer.
         source: std::io::Error,
     },
-    /// The gateware for a row of the table cannot be made.
+    /// Gateware that is to be built cannot be made.
     #[error("{0}")]
     Gateware(String),
+}
+
+impl From<ExportError> for SynthesisError {
+    fn from(error: ExportError) -> Self {
+        Self::Gateware(error.to_string())
+    }
 }

@@ -30,7 +30,7 @@ struct Run {
 }
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its `FIGURES`.
-const RUNS: [Run; 5] = [
+const RUNS: [Run; 6] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
@@ -60,6 +60,12 @@ const RUNS: [Run; 5] = [
         what: "size and speed on every part, against the budgets",
         asks: &[],
         cargo: &["-p", "carrystep-synthesis"],
+    },
+    Run {
+        name: "boards",
+        what: "the gateware of all [boards](../hdl-out/boards.md): iCE40 to bitstreams on their pins, Spartans to yosys' cells",
+        asks: &[],
+        cargo: &["-p", "carrystep-synthesis", "--", "boards"],
     },
 ];
 
