@@ -1,6 +1,5 @@
 //! What can go wrong with tools and their files.
 
-use carrystep_export::ExportError;
 use thiserror::Error;
 
 /// Why a netlist, a bitstream or a measurement could not be made.
@@ -41,10 +40,4 @@ pub enum SynthesisError {
     /// Gateware that is to be built cannot be made.
     #[error("{0}")]
     Gateware(String),
-}
-
-impl From<ExportError> for SynthesisError {
-    fn from(error: ExportError) -> Self {
-        Self::Gateware(error.to_string())
-    }
 }

@@ -1,6 +1,7 @@
 //! `hdl-out/boards.md`: what the gateware of each board takes, and the clock that it reaches.
 
 use super::{Built, Job, build};
+use crate::resources::failed;
 use crate::xilinx::{self, Cells};
 use crate::{SynthesisError, ice40};
 use carrystep_export::Gateware;
@@ -16,7 +17,7 @@ pub const PAGE: &str = "hdl-out/boards.md";
 /// [`SynthesisError`]: there is no such gateware, or a tool is missing or refuses it.
 pub fn built(board: &Board) -> Result<Built, SynthesisError> {
     let gateware = gateware(board)?;
-    let files = gateware.files()?;
+    let files = gateware.files().map_err(failed)?;
     let texts = |extension: &str| -> String {
         files.iter().filter(|file| file.name.ends_with(extension)).map(|file| file.text.as_str()).collect()
     };
@@ -87,12 +88,12 @@ that is written bit by bit (there is one in the link) takes a block RAM for each
 }
 
 fn gateware(board: &Board) -> Result<Gateware<'_>, SynthesisError> {
-    Ok(Gateware::shipped(board, &board.parts[0])?)
+    Gateware::shipped(board, &board.parts[0]).map_err(failed)
 }
 
 fn cells(board: &Board, family: &str) -> Result<Cells, SynthesisError> {
     let gateware = gateware(board)?;
-    let verilog: String = gateware.verilog()?.into_iter().map(|file| file.text).collect();
+    let verilog: String = gateware.verilog().map_err(failed)?.into_iter().map(|file| file.text).collect();
     xilinx::cells(&verilog, &gateware.top(), family)
 }
 
