@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// Lattice iCE40-HX8K-B-EVN: 84 MHz of the oscillator's 12 MHz. Generated: change the generator, not this file.
+// Lattice iCE40-HX8K-B-EVN: 75 MHz of the oscillator's 12 MHz. Generated: change the generator, not this file.
 //
 // The clock starts late: engine and link have no reset, but come up as the bitstream says. So no edge may reach them that
 // is too fast (while a PLL locks, its clock is anything), and none while block RAMs are not ready (an iCE40's are not for some
@@ -17,7 +17,7 @@ module carrystep_clock (
     SB_PLL40_CORE #(
         .FEEDBACK_PATH("SIMPLE"),
         .DIVR(4'd0),
-        .DIVF(7'd55),
+        .DIVF(7'd49),
         .DIVQ(3'd3),
         .FILTER_RANGE(3'd1)
     ) pll (

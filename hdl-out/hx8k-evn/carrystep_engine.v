@@ -4,22 +4,22 @@
 //
 // Made from    machine.toml for Lattice iCE40-HX8K-B-EVN
 // Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
-// Clock        84000000 Hz
-// Tick         1000 ns, 84 clocks in 4 phases
-// Latency      169 clocks from the load of a move to the edge of its tick 1, phase 0
+// Clock        75000000 Hz
+// Tick         1280 ns, 96 clocks in 16 phases
+// Latency      193 clocks from the load of a move to the edge of its tick 1, phase 0
 // P starts at  half a step
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
-//   axis 0     W 9, S 9, D 2, H 2
-//   axis 1     W 84, S 84, D 17, H 17
-//   axis 2     W 160, S 160, D 55, H 55
-//   axis 3     W 210, S 210, D 420, H 420
-//   axis 4     W 9, S 9, D 2, H 2
-//   axis 5     W 252, S 252, D 126, H 126
-// Guard        counts in rounds of 32 ticks, 32 us
-//   watchdog   100 to 100.033 ms without a sign of the host: ramp
-//   enable     1.024 to 1.057 ms from ENABLE to the first start
+//   axis 0     W 8, S 8, D 2, H 2
+//   axis 1     W 75, S 75, D 15, H 15
+//   axis 2     W 143, S 143, D 49, H 49
+//   axis 3     W 188, S 188, D 375, H 375
+//   axis 4     W 8, S 8, D 2, H 2
+//   axis 5     W 225, S 225, D 113, H 113
+// Guard        counts in rounds of 32 ticks, 40.96 us
+//   watchdog   100.02432 to 100.06656 ms without a sign of the host: ramp
+//   enable     1.024 to 1.06624 ms from ENABLE to the first start
 //   e-stop     active high: freeze
-//   limits     one an axis, active high, believed after 512 to 545 us: ramp
+//   limits     one an axis, active high, believed after 532.48 to 574.72 us: ramp
 //   axis 0     ramps by 800000 steps/s^2
 //   axis 1     ramps by 640000 steps/s^2
 //   axis 2     ramps by 600000 steps/s^2
@@ -561,35 +561,35 @@ module carrystep_segments (
     initial begin
         for (i = 0; i < 512; i = i + 1) words[i] = 0;
         words[15] = 32'h80000000;
-        words[39] = 32'h6b2a1a9;
-        words[47] = 32'hfffff294;
-        words[55] = 32'hf94d5e57;
-        words[63] = 32'hd6b;
+        words[39] = 32'h801e869c;
+        words[47] = 32'hffffea02;
+        words[55] = 32'h7fe17964;
+        words[63] = 32'h15fd;
         words[79] = 32'h80000000;
-        words[103] = 32'h388ee7ba;
-        words[111] = 32'hfffff543;
-        words[119] = 32'hc7711846;
-        words[127] = 32'habc;
+        words[103] = 32'h667ed216;
+        words[111] = 32'hffffee68;
+        words[119] = 32'h99812dea;
+        words[127] = 32'h1197;
         words[143] = 32'h80000000;
-        words[167] = 32'h505f93f;
-        words[175] = 32'hfffff5ef;
-        words[183] = 32'hfafa06c1;
-        words[191] = 32'ha10;
+        words[167] = 32'he016e4f5;
+        words[175] = 32'hffffef81;
+        words[183] = 32'h1fe91b0b;
+        words[191] = 32'h107e;
         words[207] = 32'h80000000;
-        words[231] = 32'he68847da;
-        words[239] = 32'hfffffa08;
-        words[247] = 32'h1977b826;
-        words[255] = 32'h5f7;
+        words[231] = 32'hd9129;
+        words[239] = 32'hfffff63a;
+        words[247] = 32'hfff26ed7;
+        words[255] = 32'h9c5;
         words[271] = 32'h80000000;
-        words[295] = 32'h4054b39f;
-        words[303] = 32'hfffff116;
-        words[311] = 32'hbfab4c61;
-        words[319] = 32'hee9;
+        words[295] = 32'h21eae6;
+        words[303] = 32'hffffe791;
+        words[311] = 32'hffde151a;
+        words[319] = 32'h186e;
         words[335] = 32'h80000000;
-        words[359] = 32'hc1417e50;
-        words[367] = 32'hfffffd7b;
-        words[375] = 32'h3ebe81b0;
-        words[383] = 32'h284;
+        words[359] = 32'h7805b93e;
+        words[367] = 32'hfffffbe0;
+        words[375] = 32'h87fa46c2;
+        words[383] = 32'h41f;
     end
 
     always @(posedge clock) begin
@@ -792,11 +792,11 @@ module carrystep_tick (
 );
     localparam [15:0] ZERO = 16'd0;
     localparam [15:0] ONE = 16'd1;
-    localparam [15:0] LAST_SUB = 16'd20;
-    localparam [15:0] SUB_BITS = 16'd31;
+    localparam [15:0] LAST_SUB = 16'd5;
+    localparam [15:0] SUB_BITS = 16'd7;
     localparam [3:0] FIRST_PHASE = 4'd0;
     localparam [3:0] ONE_PHASE = 4'd1;
-    localparam [3:0] LAST_PHASE = 4'd3;
+    localparam [3:0] LAST_PHASE = 4'd15;
 
     reg [15:0] sub = 16'd1;
     reg [3:0] phases = 4'd0;
@@ -871,8 +871,8 @@ module carrystep_wheel (
     localparam [2:0] TO_TOP = 3'd5;
     localparam [3:0] AT_5 = 4'd5;
     localparam [3:0] AT_8 = 4'd8;
-    localparam [6:0] LAST_PHASE = 7'd3;
-    localparam [3:0] Q_SHIFT = 4'd2;
+    localparam [6:0] LAST_PHASE = 7'd15;
+    localparam [3:0] Q_SHIFT = 4'd0;
 
     reg turned = 1'b0;
     reg started = 1'b0;
@@ -1030,7 +1030,7 @@ module carrystep_limits (
     localparam PAIR = 1'b0;
     localparam ONE_FOR_ALL = 1'b0;
     localparam LOW = 1'b0;
-    localparam [6:0] LAST_LOOK = 7'd16;
+    localparam [6:0] LAST_LOOK = 7'd13;
     localparam [5:0] FIRST_LANE = 6'd1;
     localparam [6:0] ONE = 7'd1;
     localparam [6:0] NONE = 7'd0;
@@ -1329,10 +1329,10 @@ module carrystep_watch (
 );
     localparam ESTOP_LOW = 1'b0;
     localparam [9:0] ROUND_BITS = 10'd31;
-    localparam [11:0] WATCHDOG = 12'd3126;
+    localparam [11:0] WATCHDOG = 12'd2443;
     localparam [11:0] SILENCE_BITS = 12'd4095;
-    localparam [11:0] WARM_AT = 12'd33;
-    localparam [11:0] WARM_BITS = 12'd63;
+    localparam [11:0] WARM_AT = 12'd26;
+    localparam [11:0] WARM_BITS = 12'd31;
     localparam [9:0] FIRST_TICK = 10'd0;
     localparam [9:0] ONE_TICK = 10'd1;
     localparam [11:0] NO_ROUND = 12'd0;
@@ -1381,7 +1381,7 @@ module carrystep_watch (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w9_s9_d2_h2 (
+module carrystep_pulser_w8_s8_d2_h2 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1394,10 +1394,10 @@ module carrystep_pulser_w9_s9_d2_h2 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd8;
-    localparam [16:0] GAP_OVER = 17'd16;
+    localparam [16:0] PULSE_OVER = 17'd7;
+    localparam [16:0] GAP_OVER = 17'd14;
     localparam [16:0] HOLD_OVER = 17'd0;
-    localparam [16:0] SINCE_BITS = 17'd31;
+    localparam [16:0] SINCE_BITS = 17'd15;
     localparam [15:0] SETUP_OVER = 16'd0;
     localparam [15:0] AFTER_BITS = 16'd0;
     localparam HOLDS = 1'b1;
@@ -1493,7 +1493,7 @@ module carrystep_pulser_w9_s9_d2_h2 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w84_s84_d17_h17 (
+module carrystep_pulser_w75_s75_d15_h15 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1506,11 +1506,11 @@ module carrystep_pulser_w84_s84_d17_h17 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd83;
-    localparam [16:0] GAP_OVER = 17'd166;
-    localparam [16:0] HOLD_OVER = 17'd15;
+    localparam [16:0] PULSE_OVER = 17'd74;
+    localparam [16:0] GAP_OVER = 17'd148;
+    localparam [16:0] HOLD_OVER = 17'd13;
     localparam [16:0] SINCE_BITS = 17'd255;
-    localparam [15:0] SETUP_OVER = 16'd15;
+    localparam [15:0] SETUP_OVER = 16'd13;
     localparam [15:0] AFTER_BITS = 16'd15;
     localparam HOLDS = 1'b1;
     localparam INSTANT = 1'b0;
@@ -1605,7 +1605,7 @@ module carrystep_pulser_w84_s84_d17_h17 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w160_s160_d55_h55 (
+module carrystep_pulser_w143_s143_d49_h49 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1618,11 +1618,11 @@ module carrystep_pulser_w160_s160_d55_h55 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd159;
-    localparam [16:0] GAP_OVER = 17'd318;
-    localparam [16:0] HOLD_OVER = 17'd53;
+    localparam [16:0] PULSE_OVER = 17'd142;
+    localparam [16:0] GAP_OVER = 17'd284;
+    localparam [16:0] HOLD_OVER = 17'd47;
     localparam [16:0] SINCE_BITS = 17'd511;
-    localparam [15:0] SETUP_OVER = 16'd53;
+    localparam [15:0] SETUP_OVER = 16'd47;
     localparam [15:0] AFTER_BITS = 16'd63;
     localparam HOLDS = 1'b1;
     localparam INSTANT = 1'b0;
@@ -1717,7 +1717,7 @@ module carrystep_pulser_w160_s160_d55_h55 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w210_s210_d420_h420 (
+module carrystep_pulser_w188_s188_d375_h375 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1730,11 +1730,11 @@ module carrystep_pulser_w210_s210_d420_h420 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd209;
-    localparam [16:0] GAP_OVER = 17'd418;
-    localparam [16:0] HOLD_OVER = 17'd418;
+    localparam [16:0] PULSE_OVER = 17'd187;
+    localparam [16:0] GAP_OVER = 17'd374;
+    localparam [16:0] HOLD_OVER = 17'd373;
     localparam [16:0] SINCE_BITS = 17'd511;
-    localparam [15:0] SETUP_OVER = 16'd418;
+    localparam [15:0] SETUP_OVER = 16'd373;
     localparam [15:0] AFTER_BITS = 16'd511;
     localparam HOLDS = 1'b1;
     localparam INSTANT = 1'b0;
@@ -1829,7 +1829,7 @@ module carrystep_pulser_w210_s210_d420_h420 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w252_s252_d126_h126 (
+module carrystep_pulser_w225_s225_d113_h113 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1842,11 +1842,11 @@ module carrystep_pulser_w252_s252_d126_h126 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd251;
-    localparam [16:0] GAP_OVER = 17'd502;
-    localparam [16:0] HOLD_OVER = 17'd124;
+    localparam [16:0] PULSE_OVER = 17'd224;
+    localparam [16:0] GAP_OVER = 17'd448;
+    localparam [16:0] HOLD_OVER = 17'd111;
     localparam [16:0] SINCE_BITS = 17'd511;
-    localparam [15:0] SETUP_OVER = 16'd124;
+    localparam [15:0] SETUP_OVER = 16'd111;
     localparam [15:0] AFTER_BITS = 16'd127;
     localparam HOLDS = 1'b1;
     localparam INSTANT = 1'b0;
@@ -2435,7 +2435,7 @@ module carrystep_engine (
         .tick_1(watch_tick_1)
     );
 
-    carrystep_pulser_w9_s9_d2_h2 pulser_0 (
+    carrystep_pulser_w8_s8_d2_h2 pulser_0 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[0] & wheel_phase_start),
@@ -2449,7 +2449,7 @@ module carrystep_engine (
         .overruns(pulser_0_overruns)
     );
 
-    carrystep_pulser_w84_s84_d17_h17 pulser_1 (
+    carrystep_pulser_w75_s75_d15_h15 pulser_1 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[1] & wheel_phase_start),
@@ -2463,7 +2463,7 @@ module carrystep_engine (
         .overruns(pulser_1_overruns)
     );
 
-    carrystep_pulser_w160_s160_d55_h55 pulser_2 (
+    carrystep_pulser_w143_s143_d49_h49 pulser_2 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[2] & wheel_phase_start),
@@ -2477,7 +2477,7 @@ module carrystep_engine (
         .overruns(pulser_2_overruns)
     );
 
-    carrystep_pulser_w210_s210_d420_h420 pulser_3 (
+    carrystep_pulser_w188_s188_d375_h375 pulser_3 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[3] & wheel_phase_start),
@@ -2491,7 +2491,7 @@ module carrystep_engine (
         .overruns(pulser_3_overruns)
     );
 
-    carrystep_pulser_w9_s9_d2_h2 pulser_4 (
+    carrystep_pulser_w8_s8_d2_h2 pulser_4 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[4] & wheel_phase_start),
@@ -2505,7 +2505,7 @@ module carrystep_engine (
         .overruns(pulser_4_overruns)
     );
 
-    carrystep_pulser_w252_s252_d126_h126 pulser_5 (
+    carrystep_pulser_w225_s225_d113_h113 pulser_5 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[5] & wheel_phase_start),

@@ -4,9 +4,9 @@
 //
 // Made from    machine.toml for Lattice iCE40-HX8K-B-EVN
 // Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
-// Clock        84000000 Hz
-// Line         uart, 28 clocks a bit
-// Build id     a5fa38a249b6b90b
+// Clock        75000000 Hz
+// Line         uart, 25 clocks a bit
+// Build id     af6c64cb6e82ac99
 
 `default_nettype none
 
@@ -750,13 +750,13 @@ module carrystep_known (
         for (i = 0; i < 128; i = i + 1) words[i] = 0;
         words[0] = 32'h50545343;
         words[1] = 32'h1;
-        words[2] = 32'h49b6b90b;
-        words[3] = 32'ha5fa38a2;
+        words[2] = 32'h6e82ac99;
+        words[3] = 32'haf6c64cb;
         words[4] = 32'h6;
-        words[5] = 32'h501bd00;
-        words[6] = 32'h3e8;
-        words[7] = 32'h4;
-        words[8] = 32'h186c0;
+        words[5] = 32'h47868c0;
+        words[6] = 32'h500;
+        words[7] = 32'h10;
+        words[8] = 32'h13160;
     end
 
     always @(posedge clock) begin

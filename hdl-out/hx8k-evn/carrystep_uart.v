@@ -4,7 +4,7 @@
 //
 // Made from    machine.toml for Lattice iCE40-HX8K-B-EVN
 // Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
-// Line         uart, 28 clocks a bit
+// Line         uart, 25 clocks a bit
 
 `default_nettype none
 
@@ -15,8 +15,8 @@ module carrystep_uart_in (
     output wire   [7:0] data,
     output wire         valid
 );
-    localparam [15:0] TO_FIRST = 16'd41;
-    localparam [15:0] TO_NEXT = 16'd27;
+    localparam [15:0] TO_FIRST = 16'd36;
+    localparam [15:0] TO_NEXT = 16'd24;
     localparam [15:0] TIMER_BITS = 16'd63;
     localparam [15:0] ONE = 16'd1;
     localparam [8:0] MARK = 9'd256;
@@ -67,7 +67,7 @@ module carrystep_uart_out (
     output wire         take,
     output wire         line
 );
-    localparam [15:0] BIT_CLOCKS = 16'd27;
+    localparam [15:0] BIT_CLOCKS = 16'd24;
     localparam [15:0] TIMER_BITS = 16'd31;
     localparam [15:0] ONE = 16'd1;
     localparam [8:0] STOP = 9'd256;

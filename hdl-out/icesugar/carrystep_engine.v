@@ -4,22 +4,22 @@
 //
 // Made from    machine.toml for Muselab iCESugar v1.5
 // Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
-// Clock        37500000 Hz
-// Tick         2560 ns, 96 clocks in 16 phases
+// Clock        30000000 Hz
+// Tick         3200 ns, 96 clocks in 16 phases
 // Latency      193 clocks from the load of a move to the edge of its tick 1, phase 0
 // P starts at  half a step
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
-//   axis 0     W 4, S 4, D 1, H 1
-//   axis 1     W 38, S 38, D 8, H 8
-//   axis 2     W 72, S 72, D 25, H 25
-//   axis 3     W 94, S 94, D 188, H 188
-//   axis 4     W 4, S 4, D 1, H 1
-//   axis 5     W 113, S 113, D 57, H 57
-// Guard        counts in rounds of 16 ticks, 40.96 us
-//   watchdog   100.02432 to 100.06784 ms without a sign of the host: ramp
-//   enable     1.024 to 1.06752 ms from ENABLE to the first start
+//   axis 0     W 3, S 3, D 1, H 1
+//   axis 1     W 30, S 30, D 6, H 6
+//   axis 2     W 57, S 57, D 20, H 20
+//   axis 3     W 75, S 75, D 150, H 150
+//   axis 4     W 3, S 3, D 1, H 1
+//   axis 5     W 90, S 90, D 45, H 45
+// Guard        counts in rounds of 8 ticks, 25.6 us
+//   watchdog   100.0192 to 100.048 ms without a sign of the host: ramp
+//   enable     1.024 to 1.0528 ms from ENABLE to the first start
 //   e-stop     active high: freeze
-//   limits     one an axis, active high, believed after 532.48 to 576 us: ramp
+//   limits     one an axis, active high, believed after 512 to 540.8 us: ramp
 //   axis 0     ramps by 800000 steps/s^2
 //   axis 1     ramps by 640000 steps/s^2
 //   axis 2     ramps by 600000 steps/s^2
@@ -561,35 +561,35 @@ module carrystep_segments (
     initial begin
         for (i = 0; i < 512; i = i + 1) words[i] = 0;
         words[15] = 32'h80000000;
-        words[39] = 32'h7a1a6e;
-        words[47] = 32'hffffa80a;
-        words[55] = 32'hff85e592;
-        words[63] = 32'h57f5;
+        words[39] = 32'ha0bec94c;
+        words[47] = 32'hffff768f;
+        words[55] = 32'h5f4136b4;
+        words[63] = 32'h8970;
         words[79] = 32'h80000000;
-        words[103] = 32'h99fb4858;
-        words[111] = 32'hffffb9a1;
-        words[119] = 32'h6604b7a8;
-        words[127] = 32'h465e;
+        words[103] = 32'h8098a10a;
+        words[111] = 32'hffff920c;
+        words[119] = 32'h7f675ef6;
+        words[127] = 32'h6df3;
         words[143] = 32'h80000000;
-        words[167] = 32'h805b93d3;
-        words[175] = 32'hffffbe07;
-        words[183] = 32'h7fa46c2d;
-        words[191] = 32'h41f8;
+        words[167] = 32'hb88f16f9;
+        words[175] = 32'hffff98eb;
+        words[183] = 32'h4770e907;
+        words[191] = 32'h6714;
         words[207] = 32'h80000000;
-        words[231] = 32'h3644a3;
-        words[239] = 32'hffffd8e8;
-        words[247] = 32'hffc9bb5d;
-        words[255] = 32'h2717;
+        words[231] = 32'h8054cb3e;
+        words[239] = 32'hffffc2ea;
+        words[247] = 32'h7fab34c2;
+        words[255] = 32'h3d15;
         words[271] = 32'h80000000;
-        words[295] = 32'h87ab97;
-        words[303] = 32'hffff9e44;
-        words[311] = 32'hff785469;
-        words[319] = 32'h61bb;
+        words[295] = 32'h40d3fc1b;
+        words[303] = 32'hffff674a;
+        words[311] = 32'hbf2c03e5;
+        words[319] = 32'h98b5;
         words[335] = 32'h80000000;
-        words[359] = 32'he016e4f5;
-        words[367] = 32'hffffef81;
-        words[375] = 32'h1fe91b0b;
-        words[383] = 32'h107e;
+        words[359] = 32'hee23c5bf;
+        words[367] = 32'hffffe63a;
+        words[375] = 32'h11dc3a41;
+        words[383] = 32'h19c5;
     end
 
     always @(posedge clock) begin
@@ -1030,7 +1030,7 @@ module carrystep_limits (
     localparam PAIR = 1'b0;
     localparam ONE_FOR_ALL = 1'b0;
     localparam LOW = 1'b0;
-    localparam [6:0] LAST_LOOK = 7'd13;
+    localparam [6:0] LAST_LOOK = 7'd20;
     localparam [5:0] FIRST_LANE = 6'd1;
     localparam [6:0] ONE = 7'd1;
     localparam [6:0] NONE = 7'd0;
@@ -1328,11 +1328,11 @@ module carrystep_watch (
     output wire         tick_1
 );
     localparam ESTOP_LOW = 1'b0;
-    localparam [9:0] ROUND_BITS = 10'd15;
-    localparam [11:0] WATCHDOG = 12'd2443;
+    localparam [9:0] ROUND_BITS = 10'd7;
+    localparam [11:0] WATCHDOG = 12'd3908;
     localparam [11:0] SILENCE_BITS = 12'd4095;
-    localparam [11:0] WARM_AT = 12'd26;
-    localparam [11:0] WARM_BITS = 12'd31;
+    localparam [11:0] WARM_AT = 12'd41;
+    localparam [11:0] WARM_BITS = 12'd63;
     localparam [9:0] FIRST_TICK = 10'd0;
     localparam [9:0] ONE_TICK = 10'd1;
     localparam [11:0] NO_ROUND = 12'd0;
@@ -1381,7 +1381,7 @@ module carrystep_watch (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w4_s4_d1_h1 (
+module carrystep_pulser_w3_s3_d1_h1 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1394,8 +1394,8 @@ module carrystep_pulser_w4_s4_d1_h1 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd3;
-    localparam [16:0] GAP_OVER = 17'd6;
+    localparam [16:0] PULSE_OVER = 17'd2;
+    localparam [16:0] GAP_OVER = 17'd4;
     localparam [16:0] HOLD_OVER = 17'd0;
     localparam [16:0] SINCE_BITS = 17'd7;
     localparam [15:0] SETUP_OVER = 16'd0;
@@ -1493,7 +1493,7 @@ module carrystep_pulser_w4_s4_d1_h1 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w38_s38_d8_h8 (
+module carrystep_pulser_w30_s30_d6_h6 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1506,11 +1506,11 @@ module carrystep_pulser_w38_s38_d8_h8 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd37;
-    localparam [16:0] GAP_OVER = 17'd74;
-    localparam [16:0] HOLD_OVER = 17'd6;
-    localparam [16:0] SINCE_BITS = 17'd127;
-    localparam [15:0] SETUP_OVER = 16'd6;
+    localparam [16:0] PULSE_OVER = 17'd29;
+    localparam [16:0] GAP_OVER = 17'd58;
+    localparam [16:0] HOLD_OVER = 17'd4;
+    localparam [16:0] SINCE_BITS = 17'd63;
+    localparam [15:0] SETUP_OVER = 16'd4;
     localparam [15:0] AFTER_BITS = 16'd7;
     localparam HOLDS = 1'b1;
     localparam INSTANT = 1'b0;
@@ -1605,7 +1605,7 @@ module carrystep_pulser_w38_s38_d8_h8 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w72_s72_d25_h25 (
+module carrystep_pulser_w57_s57_d20_h20 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1618,11 +1618,11 @@ module carrystep_pulser_w72_s72_d25_h25 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd71;
-    localparam [16:0] GAP_OVER = 17'd142;
-    localparam [16:0] HOLD_OVER = 17'd23;
-    localparam [16:0] SINCE_BITS = 17'd255;
-    localparam [15:0] SETUP_OVER = 16'd23;
+    localparam [16:0] PULSE_OVER = 17'd56;
+    localparam [16:0] GAP_OVER = 17'd112;
+    localparam [16:0] HOLD_OVER = 17'd18;
+    localparam [16:0] SINCE_BITS = 17'd127;
+    localparam [15:0] SETUP_OVER = 16'd18;
     localparam [15:0] AFTER_BITS = 16'd31;
     localparam HOLDS = 1'b1;
     localparam INSTANT = 1'b0;
@@ -1717,7 +1717,7 @@ module carrystep_pulser_w72_s72_d25_h25 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w94_s94_d188_h188 (
+module carrystep_pulser_w75_s75_d150_h150 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1730,11 +1730,11 @@ module carrystep_pulser_w94_s94_d188_h188 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd93;
-    localparam [16:0] GAP_OVER = 17'd186;
-    localparam [16:0] HOLD_OVER = 17'd186;
+    localparam [16:0] PULSE_OVER = 17'd74;
+    localparam [16:0] GAP_OVER = 17'd148;
+    localparam [16:0] HOLD_OVER = 17'd148;
     localparam [16:0] SINCE_BITS = 17'd255;
-    localparam [15:0] SETUP_OVER = 16'd186;
+    localparam [15:0] SETUP_OVER = 16'd148;
     localparam [15:0] AFTER_BITS = 16'd255;
     localparam HOLDS = 1'b1;
     localparam INSTANT = 1'b0;
@@ -1829,7 +1829,7 @@ module carrystep_pulser_w94_s94_d188_h188 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w113_s113_d57_h57 (
+module carrystep_pulser_w90_s90_d45_h45 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1842,11 +1842,11 @@ module carrystep_pulser_w113_s113_d57_h57 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd112;
-    localparam [16:0] GAP_OVER = 17'd224;
-    localparam [16:0] HOLD_OVER = 17'd55;
+    localparam [16:0] PULSE_OVER = 17'd89;
+    localparam [16:0] GAP_OVER = 17'd178;
+    localparam [16:0] HOLD_OVER = 17'd43;
     localparam [16:0] SINCE_BITS = 17'd255;
-    localparam [15:0] SETUP_OVER = 16'd55;
+    localparam [15:0] SETUP_OVER = 16'd43;
     localparam [15:0] AFTER_BITS = 16'd63;
     localparam HOLDS = 1'b1;
     localparam INSTANT = 1'b0;
@@ -2435,7 +2435,7 @@ module carrystep_engine (
         .tick_1(watch_tick_1)
     );
 
-    carrystep_pulser_w4_s4_d1_h1 pulser_0 (
+    carrystep_pulser_w3_s3_d1_h1 pulser_0 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[0] & wheel_phase_start),
@@ -2449,7 +2449,7 @@ module carrystep_engine (
         .overruns(pulser_0_overruns)
     );
 
-    carrystep_pulser_w38_s38_d8_h8 pulser_1 (
+    carrystep_pulser_w30_s30_d6_h6 pulser_1 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[1] & wheel_phase_start),
@@ -2463,7 +2463,7 @@ module carrystep_engine (
         .overruns(pulser_1_overruns)
     );
 
-    carrystep_pulser_w72_s72_d25_h25 pulser_2 (
+    carrystep_pulser_w57_s57_d20_h20 pulser_2 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[2] & wheel_phase_start),
@@ -2477,7 +2477,7 @@ module carrystep_engine (
         .overruns(pulser_2_overruns)
     );
 
-    carrystep_pulser_w94_s94_d188_h188 pulser_3 (
+    carrystep_pulser_w75_s75_d150_h150 pulser_3 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[3] & wheel_phase_start),
@@ -2491,7 +2491,7 @@ module carrystep_engine (
         .overruns(pulser_3_overruns)
     );
 
-    carrystep_pulser_w4_s4_d1_h1 pulser_4 (
+    carrystep_pulser_w3_s3_d1_h1 pulser_4 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[4] & wheel_phase_start),
@@ -2505,7 +2505,7 @@ module carrystep_engine (
         .overruns(pulser_4_overruns)
     );
 
-    carrystep_pulser_w113_s113_d57_h57 pulser_5 (
+    carrystep_pulser_w90_s90_d45_h45 pulser_5 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[5] & wheel_phase_start),

@@ -4,9 +4,9 @@
 //
 // Made from    machine.toml for Muselab iCESugar v1.5
 // Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
-// Clock        37500000 Hz
-// Line         uart, 19 clocks a bit
-// Build id     1086d52cd6b55a1b
+// Clock        30000000 Hz
+// Line         uart, 10 clocks a bit
+// Build id     425c404767c938c1
 
 `default_nettype none
 
@@ -750,13 +750,13 @@ module carrystep_known (
         for (i = 0; i < 128; i = i + 1) words[i] = 0;
         words[0] = 32'h50545343;
         words[1] = 32'h1;
-        words[2] = 32'hd6b55a1b;
-        words[3] = 32'h1086d52c;
+        words[2] = 32'h67c938c1;
+        words[3] = 32'h425c4047;
         words[4] = 32'h6;
-        words[5] = 32'h23c3460;
-        words[6] = 32'ha00;
+        words[5] = 32'h1c9c380;
+        words[6] = 32'hc80;
         words[7] = 32'h10;
-        words[8] = 32'h98b0;
+        words[8] = 32'h7a20;
     end
 
     always @(posedge clock) begin

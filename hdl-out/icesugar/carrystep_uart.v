@@ -4,7 +4,7 @@
 //
 // Made from    machine.toml for Muselab iCESugar v1.5
 // Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
-// Line         uart, 19 clocks a bit
+// Line         uart, 10 clocks a bit
 
 `default_nettype none
 
@@ -15,9 +15,9 @@ module carrystep_uart_in (
     output wire   [7:0] data,
     output wire         valid
 );
-    localparam [15:0] TO_FIRST = 16'd27;
-    localparam [15:0] TO_NEXT = 16'd18;
-    localparam [15:0] TIMER_BITS = 16'd31;
+    localparam [15:0] TO_FIRST = 16'd14;
+    localparam [15:0] TO_NEXT = 16'd9;
+    localparam [15:0] TIMER_BITS = 16'd15;
     localparam [15:0] ONE = 16'd1;
     localparam [8:0] MARK = 9'd256;
     localparam [8:0] TOP = 9'd256;
@@ -67,8 +67,8 @@ module carrystep_uart_out (
     output wire         take,
     output wire         line
 );
-    localparam [15:0] BIT_CLOCKS = 16'd18;
-    localparam [15:0] TIMER_BITS = 16'd31;
+    localparam [15:0] BIT_CLOCKS = 16'd9;
+    localparam [15:0] TIMER_BITS = 16'd15;
     localparam [15:0] ONE = 16'd1;
     localparam [8:0] STOP = 9'd256;
     localparam BY_ONE = 1'b1;

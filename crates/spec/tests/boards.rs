@@ -141,7 +141,7 @@ fn what_a_board_cannot_do_is_said_with_what_would_do() {
     assert_eq!(
         said(&icestick.clock(40_000_000).unwrap_err()),
         "icestick: the PLL makes no clock of 40 MHz from 12 MHz; the nearest that it makes is 39.75 MHz; it is proposed \
-         to run at 48 MHz (ticks of 2000 ns in 16 phases) or 84 MHz (ticks of 1000 ns in 4 phases)"
+         to run at 48 MHz (ticks of 2000 ns in 16 phases) or 75 MHz (ticks of 1280 ns in 16 phases)"
     );
 }
 

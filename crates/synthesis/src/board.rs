@@ -1,5 +1,7 @@
 //! A board's gateware to a bitstream, on its pins, and what the tools say of it.
 
+pub mod page;
+
 use crate::SynthesisError;
 use crate::ice40::{self, Part, Placed, Size};
 use crate::tool::{self, ICEPACK, ICETIME};

@@ -37,7 +37,7 @@ pub enum SynthesisError {
         /// The system's answer.
         source: std::io::Error,
     },
-    /// The gateware for a row of the table cannot be made.
+    /// Gateware that is to be built cannot be made.
     #[error("{0}")]
     Gateware(String),
 }

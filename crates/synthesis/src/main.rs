@@ -1,5 +1,7 @@
-//! `cargo xtask resources`: measures every row and writes `hdl-out/resources.md`.
+//! `cargo xtask resources`: measures every row and writes `hdl-out/resources.md`; with the argument `boards`, which `cargo xtask
+//! long boards` gives, builds all boards and writes `hdl-out/boards.md`.
 
+use carrystep_synthesis::board::page;
 use carrystep_synthesis::resources::{self, FAMILIES, Measured, PAGE, ROWS};
 use carrystep_synthesis::xilinx;
 use std::io::Write as _;
@@ -12,17 +14,39 @@ fn say(line: &str) {
 }
 
 fn main() -> ExitCode {
-    match write() {
+    let written = match std::env::args().nth(1).as_deref() {
+        Some("boards") => boards(),
+        _ => resources(),
+    };
+    match written {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
-            say(&format!("resources: {message}"));
+            say(&message);
             ExitCode::FAILURE
         }
     }
 }
 
+/// All boards; one that does not reach its clock stands in the table, and is a failure.
+fn boards() -> Result<(), String> {
+    let text = page::page(&mut say).map_err(|error| error.to_string())?;
+    write(page::PAGE, &text)?;
+    if text.contains("**no**") {
+        return Err(format!("{}: a clock is not reached", page::PAGE));
+    }
+    say(&format!("FIGURES {} boards, each iCE40 on its pins and in time", text.matches("\n| `").count()));
+    Ok(())
+}
+
+/// Whole or not at all.
+fn write(page: &str, text: &str) -> Result<(), String> {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(page);
+    let next = path.with_extension("md.new");
+    std::fs::write(&next, text).and_then(|()| std::fs::rename(&next, &path)).map_err(|error| error.to_string())
+}
+
 /// The page is written as it was measured, then held against its budgets.
-fn write() -> Result<(), String> {
+fn resources() -> Result<(), String> {
     let (mut rows, mut families) = (Vec::new(), Vec::new());
     for row in &ROWS {
         let found = Measured::of(row).map_err(|error| error.to_string())?;
@@ -39,12 +63,7 @@ fn write() -> Result<(), String> {
     let links = resources::links().map_err(|error| error.to_string())?;
     say(&format!("the link: {links:?}"));
     let text = resources::page(&rows, &links, &families);
-    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
-    // Whole or not at all.
-    let next = root.join(format!("{PAGE}.new"));
-    std::fs::write(&next, &text)
-        .and_then(|()| std::fs::rename(&next, root.join(PAGE)))
-        .map_err(|error| error.to_string())?;
+    write(PAGE, &text)?;
     resources::check(&text)?;
     // For the row of `cargo xtask long`.
     say(&format!("FIGURES {} rows of iCE40, {} of Xilinx, each within its budget", rows.len(), families.len()));

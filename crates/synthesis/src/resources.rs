@@ -10,6 +10,7 @@ mod peers;
 mod rows;
 
 pub use link::{LINES, LINK_BUDGET, links};
+pub(crate) use measure::failed;
 pub use measure::{Measured, placed, verilog};
 pub use page::{PAGE, check, page};
 pub use rows::{EIGHT_TO_SIX, FAMILIES, Family, ROWS, Row, SEEDS};

@@ -30,7 +30,7 @@ struct Run {
 }
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its `FIGURES`.
-const RUNS: [Run; 7] = [
+const RUNS: [Run; 8] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
@@ -72,6 +72,12 @@ const RUNS: [Run; 7] = [
         what: "size and speed on every part, against the budgets",
         asks: &[],
         cargo: &["-p", "carrystep-synthesis"],
+    },
+    Run {
+        name: "boards",
+        what: "the gateware of all [boards](../hdl-out/boards.md): iCE40 to bitstreams on their pins, Spartans to yosys' cells",
+        asks: &[],
+        cargo: &["-p", "carrystep-synthesis", "--", "boards"],
     },
 ];
 

@@ -3,7 +3,7 @@
 use crate::shell::{self, Done};
 
 /// Program, and the Debian package that brings it.
-const NEEDED: [(&str, &str); 13] = [
+const NEEDED: [(&str, &str); 14] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
     ("verilator", "verilator"),
@@ -17,6 +17,7 @@ const NEEDED: [(&str, &str); 13] = [
     ("nextpnr-ice40", "nextpnr-ice40"),
     ("icepack", "fpga-icestorm"),
     ("icebox_vlog", "fpga-icestorm"),
+    ("icetime", "fpga-icestorm-chipdb"),
 ];
 
 /// Installs what is missing, or says exactly what to install.

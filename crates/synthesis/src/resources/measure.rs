@@ -67,9 +67,9 @@ pub(super) fn machine(row: &Row) -> Result<EngineBuild, SynthesisError> {
     Ok(build)
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
-pub(super) fn failed(error: impl ToString) -> SynthesisError {
-    SynthesisError::Gateware(error.to_string())
+/// Gateware that cannot be made.
+pub(crate) fn failed(error: impl Into<Box<dyn std::error::Error>>) -> SynthesisError {
+    SynthesisError::Gateware(error.into().to_string())
 }
 
 /// The clock in MHz that each seed reaches, one after the other as they are asked for.
