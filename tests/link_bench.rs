@@ -45,7 +45,6 @@ pub struct Both {
 }
 
 /// The link with its line, and the host's end of that.
-#[expect(clippy::large_enum_variant, reason = "there is one of them")]
 enum Wire {
     Uart { link: LinkSim, model: Link, sender: Sender, receiver: Receiver },
     Spi { link: Box<dyn AnyLink>, line: SpiSim, model: Link, host: SpiHost },
