@@ -62,9 +62,9 @@ module carrystep_icestick_top (
         .answer_valid(answer_valid),
         .answer(answer),
         .answer_take(answer_take),
-        .clock(clock),
         .rx(uart_rx),
-        .tx(uart_tx)
+        .tx(uart_tx),
+        .clock(clock)
     );
 
     carrystep_link link (

@@ -20,7 +20,7 @@ fn machine() -> String {
 fn build_id() -> [u32; 2] {
     let source = Source { path: "machine.toml".into(), text: machine().into() };
     let machine = Machine::from_source(&source).unwrap();
-    machine.uart().unwrap().build_id(&machine.engine()).halves()
+    machine.line().unwrap().build_id(&machine.engine()).halves()
 }
 
 /// What is behind a port.

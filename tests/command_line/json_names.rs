@@ -3,6 +3,8 @@
 use crate::boards::{Peer, Port, folder};
 use crate::command::{Folder, GOOD};
 use serde_json::Value;
+use std::io::Write as _;
+use std::process::{Command, Stdio};
 
 const LIMITS: &str = "limits limits.total_ticks limits.total_s limits.axes
     limits.axes[].axis limits.axes[].segments limits.axes[].steps limits.axes[].residue
@@ -34,6 +36,8 @@ const RUN: &str = "passed core level clocks run_s faults positions files";
 const STATUS: &str = "passed port build clock_hz tick_ns phases watchdog_ticks ready idle armed fault halted cause
     axes axes[].axis axes[].position axes[].discarded axes[].homing axes[].culprit";
 
+const SERVED: &str = "passed seconds clocks fault files axes axes[].axis axes[].position axes[].discarded";
+
 const DRIVEN: &str = "passed port build ended cause planned_s run_s
     axes axes[].axis axes[].before axes[].position axes[].steps_planned";
 
@@ -51,7 +55,8 @@ const ICE40: &str = "boards[].pll boards[].parts[].logic_cells boards[].usb boar
 
 const TIES: &str = "boards[].ties[].port boards[].ties[].pin boards[].ties[].level boards[].ties[].why";
 
-const SPARTANS: &str = "boards[].vccaux boards[].parts[].speed boards[].bitgen boards[].clocks[].made_by.dcm
+const SPARTANS: &str =
+    "boards[].vccaux boards[].max_baud boards[].parts[].speed boards[].bitgen boards[].clocks[].made_by.dcm
     boards[].clocks[].made_by.dcm.multiply boards[].clocks[].made_by.dcm.divide boards[].clocks[].made_by.mmcm
     boards[].clocks[].made_by.mmcm.multiply boards[].clocks[].made_by.mmcm.divide
     boards[].clocks[].made_by.mmcm.out_divide";
@@ -76,7 +81,12 @@ fn names(value: &Value, path: &str, found: &mut Vec<String>) {
 fn document(folder: &Folder, arguments: &str, status: i32, expected: &[&str]) -> Value {
     let ran = folder.run(&format!("{arguments} --json"));
     assert_eq!((ran.status, ran.stderr.as_str()), (status, ""), "{arguments}");
-    let document: Value = serde_json::from_str(&ran.stdout).expect("one JSON document");
+    is_document(&ran.stdout, arguments, status, expected)
+}
+
+#[track_caller]
+fn is_document(text: &str, arguments: &str, status: i32, expected: &[&str]) -> Value {
+    let document: Value = serde_json::from_str(text).expect("one JSON document");
     assert_eq!(document["passed"], status == 0, "{arguments}");
     let mut found = Vec::new();
     names(&document, "", &mut found);
@@ -125,6 +135,13 @@ fn what_is_told_of_a_board_keeps_its_names() {
     let run = document(&folder, &format!("run move.toml --port {}", port.name), 1, &[DRIVEN]);
     assert_eq!((&run["ended"], &run["axes"][0]["steps_planned"]), (&"done".into(), &10.into()));
     port.end();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
+    command.args(["virtual-board", "--machine", "machine.toml", "--json"]).current_dir(folder.path(""));
+    let mut board = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    board.stdin.take().unwrap().write_all(b"nonsense\nend\n").unwrap();
+    let output = board.wait_with_output().unwrap();
+    assert!(output.status.success());
+    is_document(&String::from_utf8(output.stdout).unwrap(), "virtual-board", 0, &[SERVED]);
 }
 
 #[test]

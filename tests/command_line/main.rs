@@ -20,3 +20,5 @@ mod json_names;
 mod profile;
 mod sweeps;
 mod table;
+#[cfg(unix)]
+mod virtual_boards;

@@ -4,7 +4,7 @@ use crate::line::{Ear, Speaker};
 use carrystep_model::fast::Edges;
 use carrystep_model::{FastEngine, Link};
 use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{EngineInputs, EngineOutputs};
+use carrystep_spec::engine::{Cause, EngineInputs, EngineOutputs, MAX_AXES};
 use carrystep_spec::link::{LinkInputs, LinkOutputs, Uart};
 
 /// Switches at the board's inputs; `true` and a bit that is set are active, whatever the level of the pin.
@@ -27,7 +27,8 @@ pub struct Board {
     ear: Ear,
     /// What the switches drive, with the polarity of their pins.
     pins: EngineInputs,
-    started: Option<u64>,
+    loads: Vec<u64>,
+    stops: Vec<(u64, Cause)>,
 }
 
 impl Board {
@@ -40,7 +41,8 @@ impl Board {
             speaker: Speaker::new(clock_hz, uart),
             ear: Ear::new(clock_hz, uart),
             pins: EngineInputs::default(),
-            started: None,
+            loads: Vec::new(),
+            stops: Vec::new(),
         };
         board.press(Switches::default());
         board
@@ -61,9 +63,14 @@ impl Board {
         self.engine.outputs(&self.inputs(&self.link.outputs()))
     }
 
-    /// The cycle in which the first segments of the first start are loaded, once there was one.
-    pub fn started(&self) -> Option<u64> {
-        self.started
+    /// The cycles in which starts have loaded their first segments.
+    pub fn loads(&self) -> &[u64] {
+        &self.loads
+    }
+
+    /// The stops that were called: the first cycle with the fault, and why.
+    pub fn stops(&self) -> &[(u64, Cause)] {
+        &self.stops
     }
 
     /// Says a byte to it, at the line's pace.
@@ -90,41 +97,81 @@ impl Board {
         self.pins.limit_max = switches.limit_max ^ low(guard.limits_low);
     }
 
-    /// Goes on to this cycle; `to` hears of the pins.
+    /// Goes on to this cycle; `to` hears of the pins. It stops once on its way, where the first start has loaded: until
+    /// then nothing was to be heard, nor for a tick after that.
     pub fn run(&mut self, end: u64, to: &mut impl Edges) {
-        while self.cycle() < end {
-            let rx = self.speaker.level(self.cycle());
-            if self.leap(rx, end - self.cycle(), to) == 0 {
-                self.clock(rx, to);
+        let waits = self.loads.is_empty();
+        while self.cycle() < end && self.loads.is_empty() == waits {
+            let inputs = self.inputs(&self.link.outputs());
+            let per_tick = u64::from(self.engine.core().build().timebase.clocks_per_tick());
+            let starts = waits && self.engine.outputs(&inputs).armed;
+            let target = if starts { end.min(self.cycle() + per_tick) } else { end };
+            let alone = self.run_link(target);
+            if alone == self.cycle() {
+                self.clock(&inputs, to);
+            } else {
+                self.follow(&inputs, alone, to);
             }
-            self.ear.hear(self.cycle(), self.link.outputs().tx);
         }
     }
 
-    /// Passes clocks in which the link only waits; how many they were.
-    fn leap(&mut self, rx: bool, most: u64, to: &mut impl Edges) -> u64 {
-        let quiet = self.link.quiet(rx).min(self.speaker.stays(self.cycle())).min(most);
-        // An axis that waits for its limit says its position in each of its turns.
-        if quiet == 0 || self.engine.core().waits_for_limits() {
-            return 0;
+    /// The link alone, for as long as the engine means nothing to it, to this cycle at the most; where it is then.
+    fn run_link(&mut self, end: u64) -> u64 {
+        let mut cycle = self.cycle();
+        while cycle < end && self.link.is_alone() {
+            let rx = self.speaker.level(cycle);
+            let quiet = self.link.quiet(rx).min(self.speaker.stays(cycle)).min(end - cycle);
+            if quiet == 0 {
+                self.link.clock_alone(rx);
+            } else {
+                self.link.pass(quiet, rx);
+            }
+            cycle += quiet.max(1);
+            self.ear.hear(cycle, self.link.tx());
         }
-        let inputs = self.inputs(&self.link.outputs());
-        let clocks = self.engine.leap(&inputs, quiet, to);
+        cycle
+    }
+
+    /// The engine to where the link is.
+    fn follow(&mut self, inputs: &EngineInputs, end: u64, to: &mut impl Edges) {
+        let clocks = end - self.cycle();
+        let begun = self.engine.core().has_turns();
+        while self.cycle() < end {
+            let says = self.engine.outputs(inputs);
+            let latched = says.latch.map_or(0, |axis| 1 << axis);
+            let leapt = self.engine.leap(inputs, end - self.cycle(), to);
+            let latched = if leapt > 0 { says.homing } else { latched };
+            for axis in (0..MAX_AXES as u8).filter(|axis| latched >> axis & 1 == 1) {
+                self.link.latch(axis, self.engine.core().item(axis, POSITION));
+            }
+            if leapt == 0 {
+                self.clock_engine(inputs, &says, to);
+            }
+        }
         let core = self.engine.core();
-        self.link.pass(clocks, rx, core.answers_before(clocks), |axis, item| core.item(axis, item));
-        clocks
+        let turns = if begun { core.answers_before(clocks) } else { 0 };
+        self.link.catch_up(turns, |axis, item| core.item(axis, item));
     }
 
     /// One clock of everything.
-    fn clock(&mut self, rx: bool, to: &mut impl Edges) {
+    fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
         let asks = self.link.outputs();
-        let inputs = self.inputs(&asks);
-        let says = self.engine.outputs(&inputs);
-        let told = self.told(rx, &asks, &says);
-        self.link.clock(&told);
-        self.engine.clock(&inputs, to);
+        let says = self.engine.outputs(inputs);
+        let rx = self.speaker.level(self.cycle());
+        self.link.clock(&self.told(rx, &asks, &says));
+        self.clock_engine(inputs, &says, to);
+        self.ear.hear(self.cycle(), self.link.tx());
+    }
+
+    fn clock_engine(&mut self, inputs: &EngineInputs, says: &EngineOutputs, to: &mut impl Edges) {
+        self.engine.clock(inputs, to);
         if says.started {
-            self.started.get_or_insert(self.cycle());
+            self.loads.push(self.cycle());
+        }
+        if says.fault.is_none()
+            && let Some((cause, _)) = self.engine.core().fault()
+        {
+            self.stops.push((self.cycle(), cause));
         }
     }
 

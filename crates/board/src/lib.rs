@@ -9,6 +9,13 @@
 
 mod board;
 mod line;
+mod pace;
+#[cfg(unix)]
+mod terminal;
 
 pub use board::{Board, Switches};
+pub use carrystep_model::fast::Edges;
 pub use line::{Ear, Speaker};
+pub use pace::{Pace, Walk};
+#[cfg(unix)]
+pub use terminal::Terminal;

@@ -58,7 +58,8 @@ fn connected(baud: u32) -> (End, Host<End, End>) {
     let uart = Uart::new(CLOCK_HZ, baud).unwrap();
     let end = End::new(uart);
     let id = uart.build_id(&build());
-    let host = Host::connect(end.clone(), end.clone(), Some(id.0), Patience::default()).unwrap();
+    let host =
+        Host::connect(end.clone(), end.clone(), Some(id.0), Patience { change: 200, ..Patience::default() }).unwrap();
     (end, host)
 }
 
@@ -121,4 +122,39 @@ fn it_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
     assert!(matches!(host.clear(), Err(HostError::TooLong { .. })));
     end.0.borrow_mut().press(Switches::default());
     host.clear().unwrap();
+}
+
+/// What a board says to some requests in the middle of a move, and all of it in the end; it runs so many clocks at once.
+fn said(at_once: u64) -> (Vec<u8>, String) {
+    let (end, mut host) = connected(3_000_000);
+    host.enable().unwrap();
+    let commands = commands(41);
+    let mut looks = 0;
+    let stopped = host.stream(Program::new(&commands, 6).unwrap(), |_| {
+        looks += 1;
+        if looks == 50 { Wish::Stop } else { Wish::GoOn }
+    });
+    assert_eq!(stopped, Ok(Ended::Stopped));
+    let mut board = end.0.borrow().clone();
+    let mut said = Vec::new();
+    let identity = [0xc0, 0x00, 0x00, 0xff, 0x12, 0xd9, 0x41, 0xc0];
+    let position = [0xc0, 0x01, 0x4a, 0x30, 0x8b, 0xcb, 0xce, 0xc0];
+    for request in [identity, position] {
+        request.iter().for_each(|&byte| board.say(byte));
+        let until = board.cycle() + 10_000;
+        while board.cycle() < until {
+            board.run((board.cycle() + at_once).min(until), &mut ());
+        }
+        said.extend(std::iter::from_fn(|| board.next_byte()));
+    }
+    (said, format!("{board:?}"))
+}
+
+#[test]
+fn it_is_the_same_however_it_is_run() {
+    let slowly = said(1);
+    assert!(slowly.0.len() >= 34, "{slowly:?}");
+    for at_once in [7, 96, 1000, 10_000] {
+        assert!(said(at_once) == slowly, "{at_once} at once");
+    }
 }

@@ -7,6 +7,8 @@ mod table;
 use carrystep_levels::Level;
 use carrystep_sweep::Shard;
 use clap::{Args, Parser};
+#[cfg(unix)]
+pub use port::VirtualBoard;
 pub use port::{Home, Jog, Peer, Port, Run, Status, Stop};
 pub use profile::Profile;
 use std::path::PathBuf;
@@ -55,6 +57,10 @@ pub enum Subcommand {
     Status(Status),
     /// Stop what moves on a board; resume after a stop (--clear), take the power away (--off).
     Stop(Stop),
+    /// Be a board: the gateware of a machine behind a pseudo-terminal, for `run` and the others. On standard input
+    /// `estop 1`, `min x 1`, `max x 0` press and release switches; Ctrl-C or `end` ends it.
+    #[cfg(unix)]
+    VirtualBoard(VirtualBoard),
     /// Make a board's bitstream: synthesis, placement, timing, with the open tools.
     Build(Build),
     /// Show the boards, or one of them: part, clock, ticks, and which pin does what.

@@ -13,3 +13,5 @@ pub mod status;
 pub mod sweep;
 pub mod table;
 pub mod verilog;
+#[cfg(unix)]
+pub mod virtual_board;

@@ -7,7 +7,7 @@ use carrystep_link::host::SystemClock;
 use carrystep_link::line::serial::{OpenError, SerialLine};
 use carrystep_link::{Host, HostError, Patience};
 use carrystep_spec::Machine;
-use carrystep_spec::link::{BuildId, Uart};
+use carrystep_spec::link::{BuildId, Line, Uart};
 use std::io;
 use std::path::Path;
 
@@ -26,12 +26,14 @@ pub struct Connection {
 }
 
 /// The machine's UART and the id of its engine on it; `name` is the file that says so.
-fn wanted(machine: &Machine, name: &Path) -> Result<(Uart, BuildId), Failure> {
+pub fn wanted(machine: &Machine, name: &Path) -> Result<(Uart, BuildId), Failure> {
     let refused = |error: String| Failure::input(format!("{}: {error}", name.display()));
     let engine = machine.engine();
     engine.check().map_err(|error| refused(error.to_string()))?;
-    let uart = machine.uart().map_err(|error| refused(error.to_string()))?;
-    Ok((uart, uart.build_id(&engine)))
+    match machine.line().map_err(|error| refused(error.to_string()))? {
+        Line::Uart(uart) => Ok((uart, uart.build_id(&engine))),
+        Line::Spi => Err(refused("its host link is an SPI: no serial port leads there".to_owned())),
+    }
 }
 
 /// Connects to the board of a machine; any other is refused. Nothing is written.

@@ -47,7 +47,7 @@ impl Gateware<'_> {
 }
 
 /// A cause, and the axes that it came from.
-fn told((cause, culprits): (Cause, u8)) -> String {
+pub fn told((cause, culprits): (Cause, u8)) -> String {
     let axes: Vec<String> = (0..8).filter(|axis| culprits >> axis & 1 == 1).map(|axis| axis.to_string()).collect();
     if axes.is_empty() { cause.to_string() } else { format!("{cause} on axis {}", axes.join(", ")) }
 }

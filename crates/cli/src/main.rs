@@ -3,6 +3,8 @@
 mod arguments;
 mod commands;
 mod connection;
+#[cfg(unix)]
+mod desk;
 mod drive;
 mod failure;
 mod figures;
@@ -11,6 +13,8 @@ mod interrupt;
 mod job;
 mod output;
 mod progress;
+#[cfg(unix)]
+mod switches;
 mod table;
 mod wanted;
 
@@ -34,6 +38,8 @@ fn main() -> ExitCode {
         Subcommand::Home(home) => commands::run::home(home),
         Subcommand::Status(status) => commands::status::status(status),
         Subcommand::Stop(stop) => commands::status::stop(stop),
+        #[cfg(unix)]
+        Subcommand::VirtualBoard(board) => commands::virtual_board::run(board),
         Subcommand::Build(build) => commands::build::run(build),
         Subcommand::Boards(boards) => commands::boards::run(boards),
         Subcommand::Doctor(doctor) => commands::doctor::run(doctor),

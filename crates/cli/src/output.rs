@@ -92,6 +92,11 @@ impl OutputFile {
     /// Everything is written: let it appear, unless somebody has asked us to end.
     pub fn keep(self) -> Result<PathBuf, Failure> {
         interrupt::check()?;
+        self.appear()
+    }
+
+    /// Everything is written: let it appear, where to be asked to end is how a command ends.
+    pub fn appear(self) -> Result<PathBuf, Failure> {
         let wrong = |error: std::io::Error| cannot_write(&self.path, &error);
         let place = self.writer.into_inner().map_err(|error| wrong(error.into_error()))?;
         if let Place::Beside(file) = place {

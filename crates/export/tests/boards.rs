@@ -159,3 +159,30 @@ fn only_scripts_are_executable() {
         }
     }
 }
+
+/// Over SPI instead of the UART, where the board has the pins for it.
+#[test]
+fn a_machine_may_be_on_an_spi() {
+    let mut on_spi = 0;
+    for board in boards() {
+        let text = shipped_machine(board, &board.clocks[0]).unwrap();
+        let (head, tail) = text.split_once("[machine.link]\n").unwrap();
+        let (_, tail) = tail.split_once('\n').unwrap();
+        let text = format!("{head}[machine.link]\nspi = true\n{tail}");
+        let gateware = Gateware::new(board, &board.parts[0], Source { path: "spi.toml".into(), text: text.into() });
+        if board.bits("spi_sck") == 0 {
+            let refused = gateware.unwrap_err().to_string();
+            assert!(refused.contains("spi_"), "{}: {refused}", board.name);
+            continue;
+        }
+        on_spi += 1;
+        let files = gateware.unwrap().files().unwrap();
+        let all: String = files.iter().map(|file| file.text.as_str()).collect();
+        for port in ["spi_sck", "spi_cs_n", "spi_mosi", "spi_miso"] {
+            assert!(all.contains(port), "{}: {port}", board.name);
+        }
+        assert!(!all.contains("uart_rx"), "{}", board.name);
+        assert!(files.iter().any(|file| file.name == "carrystep_spi.v"), "{}", board.name);
+    }
+    assert!(on_spi >= 10, "{on_spi} boards have an SPI");
+}

@@ -10,8 +10,9 @@ pub mod fast;
 pub mod host;
 mod icarus;
 pub mod pins;
-mod replay;
+pub mod replay;
 mod tool;
+pub mod vectors;
 mod verilator;
 
 use carrystep_spec::ports::Outputs;

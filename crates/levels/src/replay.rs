@@ -10,7 +10,7 @@ use carrystep_spec::ports::Outputs;
 const NEVER: u64 = u64::MAX;
 
 /// Outputs that edges change.
-pub(crate) trait Shown: Copy + PartialEq + Default {
+pub trait Shown: Copy + PartialEq + Default {
     /// STEP and DIR pins.
     fn pins(&mut self) -> (&mut u8, &mut u8);
     /// A step more of an axis, or one less.
@@ -37,7 +37,7 @@ impl Shown for EngineOutputs {
 }
 
 /// Tells an observer what it would hear from the clock-by-clock model.
-pub(crate) struct Replay<'a, O> {
+pub struct Replay<'a, O> {
     observer: &'a mut (dyn FnMut(u64, &O) + 'a),
     width: [u64; MAX_AXES],
     /// When STEP falls.
@@ -51,14 +51,15 @@ pub(crate) struct Replay<'a, O> {
 }
 
 impl<'a, O: Shown> Replay<'a, O> {
-    pub(crate) fn new(pins: &[PinTiming], observer: &'a mut (dyn FnMut(u64, &O) + '_)) -> Self {
+    /// Pins that are all low, with these widths.
+    pub fn new(pins: &[PinTiming], observer: &'a mut (dyn FnMut(u64, &O) + '_)) -> Self {
         let mut width = [0; MAX_AXES];
         width.iter_mut().zip(pins).for_each(|(width, pins)| *width = pins.width.into());
         Self { observer, width, falls: [NEVER; MAX_AXES], first_fall: NEVER, at: 0, now: O::default(), told: None }
     }
 
     /// All that happens before this cycle is known: tell it.
-    pub(crate) fn reach(&mut self, cycle: u64) {
+    pub fn reach(&mut self, cycle: u64) {
         while self.first_fall <= cycle {
             self.settle(self.first_fall);
             for (axis, fall) in self.falls.iter_mut().enumerate().filter(|(_, fall)| **fall == self.at) {

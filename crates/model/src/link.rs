@@ -68,6 +68,11 @@ impl Link {
         LinkOutputs { tx: self.transmitter.line(), engine, get_axis, get_item }
     }
 
+    /// The line to the host in this clock.
+    pub const fn tx(&self) -> bool {
+        self.transmitter.line()
+    }
+
     /// Goes to the next clock.
     pub fn clock(&mut self, inputs: &LinkInputs) {
         let machine = self.machine.outputs();
@@ -94,12 +99,31 @@ impl Link {
         self.receiver.quiet(rx).min(self.transmitter.quiet(waits == Waits::ToSend))
     }
 
-    /// So many clocks of [`Link::quiet`] have passed, in which the engine had so many turns of axes; `said` is what it
-    /// says of an axis and an item.
-    pub fn pass(&mut self, clocks: u64, rx: bool, turns: u64, said: impl Fn(u8, u8) -> u32) {
+    /// Nothing that the engine says matters to this clock, and nothing is told to it but what it is told already.
+    pub fn is_alone(&self) -> bool {
+        !self.machine.minds_the_engine()
+    }
+
+    /// Goes to the next clock, alone.
+    pub fn clock_alone(&mut self, rx: bool) {
+        self.clock(&LinkInputs { rx, ..LinkInputs::default() });
+    }
+
+    /// So many clocks of [`Link::quiet`] have passed.
+    pub fn pass(&mut self, clocks: u64, rx: bool) {
         self.machine.pass(clocks);
         self.receiver.pass(clocks, rx);
         self.transmitter.pass(clocks);
+    }
+
+    /// Meanwhile the engine has had so many turns of axes; `said` is what it says of an axis and an item. Before anything
+    /// of it is read, the program waits until it has been asked for anew.
+    pub fn catch_up(&mut self, turns: u64, said: impl Fn(u8, u8) -> u32) {
         self.facts.pass(turns, said);
+    }
+
+    /// Meanwhile the engine has said where an axis is that waits for its limit.
+    pub fn latch(&mut self, axis: u8, position: u32) {
+        self.facts.latch(axis, position);
     }
 }

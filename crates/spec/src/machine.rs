@@ -6,7 +6,7 @@ use crate::build::{AXES, Build, PinTiming, Timebase, TimebaseError};
 use crate::engine::{Guard, MAX_AXES};
 use crate::error::{InputError, Source};
 use crate::fixed::StartPhase;
-use crate::link::{BaudError, Uart};
+use crate::link::{BaudError, Line, Uart};
 use axis::RawAxis;
 use bigdecimal::BigDecimal;
 use guard::RawGuard;
@@ -37,6 +37,8 @@ pub struct Machine {
     pub guard: Guard,
     /// Baud rate of the host link; checked against the clock where the file names it.
     pub baud: u32,
+    /// The host link is an SPI, and no UART.
+    pub spi: bool,
 }
 
 /// A machine that the parallel axes cannot drive.
@@ -100,12 +102,12 @@ impl Machine {
         Ok(Build { timebase: self.timebase, phase: self.phase, pins })
     }
 
-    /// The UART of the host link.
+    /// The line of the host link.
     ///
     /// # Errors
     /// [`BaudError`]: the file names no baud rate, and its clock does not make the default.
-    pub fn uart(&self) -> Result<Uart, BaudError> {
-        Uart::new(self.timebase.clock_hz(), self.baud)
+    pub fn line(&self) -> Result<Line, BaudError> {
+        if self.spi { Ok(Line::Spi) } else { Uart::new(self.timebase.clock_hz(), self.baud).map(Line::Uart) }
     }
 
     /// The number of the axis of this name.
@@ -173,8 +175,8 @@ impl RawMachine {
             axes.push(axis);
         }
         let guard = self.guard.check(source, &timebase, axes.iter().map(|axis| axis.stop).collect())?;
-        let baud = self.link.check(source, &timebase)?;
-        Ok(Machine { timebase, phase: self.phase, axes, guard, baud })
+        let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);
+        Ok(Machine { timebase, phase: self.phase, axes, guard, baud, spi })
     }
 
     fn timebase(&self, source: &Source) -> Result<Timebase, InputError> {

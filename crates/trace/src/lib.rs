@@ -23,6 +23,7 @@ mod thin;
 mod vcd_in;
 mod vcd_out;
 mod vcd_own;
+mod vcd_pins;
 mod waves;
 
 pub use axis_check::AxisSetup;
@@ -40,4 +41,5 @@ pub use signal_map::SignalMap;
 pub use vcd_in::{Played, VcdReader};
 pub use vcd_out::{VcdFormat, VcdWriter};
 pub use vcd_own::OwnCapture;
+pub use vcd_pins::PinsVcd;
 pub use waves::{AxisWaves, Format, WaveWriter, Waves};

@@ -30,7 +30,7 @@ struct Run {
 }
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its `FIGURES`.
-const RUNS: [Run; 6] = [
+const RUNS: [Run; 8] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
@@ -54,6 +54,18 @@ const RUNS: [Run; 6] = [
         what: "all [mutants](mutants.md), with the proofs that survivors are harmless",
         asks: &[("CARRYSTEP_MUTANTS", "all")],
         cargo: &["-p", "carrystep-tests", "--test", "rung_8_mutants_are_caught"],
+    },
+    Run {
+        name: "bad-line",
+        what: "moves over a line that flips, drops, doubles, cuts and delays bytes, to a board of models: pulses are those of a clean line, or a stop says why",
+        asks: &[("CARRYSTEP_FRAMES", "100000")],
+        cargo: &["-p", "carrystep-board", "--test", "bad_line", "pulses_on_a_bad_line"],
+    },
+    Run {
+        name: "dead-host",
+        what: "hosts that die in the middle of a move: the board stops in time, its positions are true, the next host goes on",
+        asks: &[("CARRYSTEP_DEATHS", "50")],
+        cargo: &["-p", "carrystep-board", "--test", "dead_host"],
     },
     Run {
         name: "resources",

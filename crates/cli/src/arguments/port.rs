@@ -100,3 +100,27 @@ pub struct Stop {
     #[arg(long)]
     pub json: bool,
 }
+
+/// `carrystep virtual-board`
+#[cfg(unix)]
+#[derive(Debug, Args)]
+pub struct VirtualBoard {
+    /// The machine whose gateware it has.
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub machine: PathBuf,
+    /// Do not wait for the clock on the wall, but for a host that is late.
+    #[arg(long)]
+    pub fast: bool,
+    /// Write the pins and positions, from the first start to the end: `carrystep check` reads it.
+    #[arg(long, value_name = "FILE")]
+    pub vcd: Option<PathBuf>,
+    /// A limit switch at the low end of an axis, at this position in steps: x=-200. Repeat for each axis.
+    #[arg(long = "min", value_name = "AXIS=STEPS")]
+    pub min: Vec<String>,
+    /// A limit switch at the high end of an axis, at this position in steps.
+    #[arg(long = "max", value_name = "AXIS=STEPS")]
+    pub max: Vec<String>,
+    /// One JSON document at the end; the port is told on standard error.
+    #[arg(long)]
+    pub json: bool,
+}

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::output;
 use carrystep_export::{CORE_NAME, ENGINE_NAME, ExportError};
 use carrystep_spec::engine::GuardFigures;
+use carrystep_spec::link::Uart;
 use carrystep_spec::{Machine, Source};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -52,7 +53,7 @@ struct WrittenForBoard<'a> {
     board: &'a str,
     part: String,
     build_id: String,
-    baud: u32,
+    baud: Option<u32>,
     guard: GuardFigures,
     files: Vec<PathBuf>,
 }
@@ -70,7 +71,7 @@ fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
             board: &board.name,
             part: gateware.part().ordered(),
             build_id: gateware.build_id().to_string(),
-            baud: gateware.uart().baud(),
+            baud: gateware.uart().map(Uart::baud),
             guard: gateware.build().guard_figures(),
             files,
         });

@@ -21,7 +21,7 @@ pub struct Gateware<'a> {
     board: &'a Board,
     part: &'a Part,
     build: EngineBuild,
-    uart: Uart,
+    line: Line,
     /// The machine file: it goes with the gateware, for moves are planned from it.
     machine: Source,
 }
@@ -33,12 +33,14 @@ impl<'a> Gateware<'a> {
     /// [`ExportError`]: the board lacks pins, makes no such clock or baud rate; the engine cannot be; or the file is no machine's.
     pub fn new(board: &'a Board, part: &'a Part, machine: Source) -> Result<Self, ExportError> {
         let read = Machine::from_source(&machine)?;
-        let (build, uart) = (read.engine(), read.uart()?);
+        let (build, line) = (read.engine(), read.line()?);
         board.clock(build.timebase.clock_hz())?;
         board.carries(build.axes(), build.guard.limits)?;
-        board.takes(uart.baud())?;
+        if let Line::Uart(uart) = line {
+            board.takes(uart.baud())?;
+        }
         build.check().map_err(carrystep_hdl::HdlError::from)?;
-        let gateware = Self { board, part, build, uart, machine };
+        let gateware = Self { board, part, build, line, machine };
         // A pin for each port, or the name of the one that has none.
         gateware.design(&gateware.ports(), &[]).constraints()?;
         Ok(gateware)
@@ -60,7 +62,7 @@ impl<'a> Gateware<'a> {
 
     /// What the host asks for before it talks to it.
     pub fn build_id(&self) -> BuildId {
-        self.uart.build_id(&self.build)
+        self.line.build_id(&self.build)
     }
 
     /// The engine's parameters.
@@ -68,9 +70,12 @@ impl<'a> Gateware<'a> {
         &self.build
     }
 
-    /// The link's.
-    pub fn uart(&self) -> Uart {
-        self.uart
+    /// The link's UART, if it is one.
+    pub fn uart(&self) -> Option<Uart> {
+        match self.line {
+            Line::Uart(uart) => Some(uart),
+            Line::Spi => None,
+        }
     }
 
     /// The part that it is for.
@@ -88,8 +93,8 @@ impl<'a> Gateware<'a> {
         Ok(vec![
             file(&self.top(), self.top_level()?),
             self.design(&[], &[]).clock()?,
-            file(line_name(self.line()), line_verilog(self.line(), &description)?),
-            file(LINK_NAME, link_verilog(&self.build, self.line(), &description)?),
+            file(line_name(self.line), line_verilog(self.line, &description)?),
+            file(LINK_NAME, link_verilog(&self.build, self.line, &description)?),
             file(ENGINE_NAME, engine_verilog(&self.build, &description)?),
         ])
     }
@@ -116,17 +121,30 @@ impl<'a> Gateware<'a> {
         let axes = self.build.axes();
         let bits = |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
         let (low, high) = limit_bits(&self.build);
-        let fixed = ["enable_n", "estop", "uart_rx", "uart_tx"].map(str::to_owned);
+        let fixed = ["enable_n", "estop"].map(str::to_owned);
+        let line = self.line_pins().map(|(_, pin)| pin.to_owned());
         let led = self.has_led().then(|| "led".to_owned());
-        [bits("step", axes), bits("dir", axes), fixed.to_vec(), bits("limit_min", low), bits("limit_max", high)]
-            .concat()
-            .into_iter()
-            .chain(led)
-            .collect()
+        [
+            bits("step", axes),
+            bits("dir", axes),
+            fixed.to_vec(),
+            line.collect(),
+            bits("limit_min", low),
+            bits("limit_max", high),
+        ]
+        .concat()
+        .into_iter()
+        .chain(led)
+        .collect()
     }
 
-    fn line(&self) -> Line {
-        self.uart.into()
+    /// The line's ports, and the pins that they are connected to.
+    fn line_pins(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        let pins: &[_] = match self.line {
+            Line::Uart(_) => &[("rx", "uart_rx"), ("tx", "uart_tx")],
+            Line::Spi => &[("sck", "spi_sck"), ("select_n", "spi_cs_n"), ("mosi", "spi_mosi"), ("miso", "spi_miso")],
+        };
+        pins.iter().copied()
     }
 
     fn has_led(&self) -> bool {
@@ -138,7 +156,7 @@ impl<'a> Gateware<'a> {
             board: self.board,
             part: self.part,
             clock_hz: self.build.timebase.clock_hz(),
-            uart: Some(self.uart),
+            uart: self.uart(),
             top: self.top(),
             sources,
             ports,
@@ -149,13 +167,13 @@ impl<'a> Gateware<'a> {
         let axes = self.build.axes();
         let (low, high) = limit_bits(&self.build);
         // An output of the link is an input of the engine of the same name, or the other way round.
-        let (bytes, between) = link_ports(&self.build, self.line())?;
+        let (bytes, between) = link_ports(&self.build, self.line)?;
         let row = |(name, width): &(String, usize)| context! { name, range => range(*width) };
         let values = context! {
             title => &self.board.title,
             top => self.top(),
             clock => CLOCK_NAME,
-            line => line_name(self.line()),
+            line => line_name(self.line),
             link => LINK_NAME,
             engine => ENGINE_NAME,
             axes => range(axes),
@@ -166,6 +184,7 @@ impl<'a> Gateware<'a> {
             count => axes,
             led => self.has_led(),
             led_low => self.board.led_low,
+            line_pins => self.line_pins().map(|(port, pin)| context! { port, pin, out => port == "tx" || port == "miso" }).collect::<Vec<Value>>(),
             bytes => bytes.iter().map(row).collect::<Vec<Value>>(),
             between => between.iter().map(row).collect::<Vec<Value>>(),
             ties => super::ties(self.board),

@@ -6,8 +6,9 @@
 
 module {{ top }} (
     input wire oscillator,
-    input wire uart_rx,
-    output wire uart_tx,
+{% for wire in line_pins %}
+    {{ "output" if wire.out else "input" }} wire {{ wire.pin }},
+{% endfor %}
     input wire estop,
 {% if low is not none %}
     input wire {{ low }}limit_min,
@@ -37,9 +38,10 @@ module {{ top }} (
 {% for wire in bytes %}
         .{{ wire.name }}({{ wire.name }}),
 {% endfor %}
-        .clock(clock),
-        .rx(uart_rx),
-        .tx(uart_tx)
+{% for wire in line_pins %}
+        .{{ wire.port }}({{ wire.pin }}),
+{% endfor %}
+        .clock(clock)
     );
 
     {{ link }} link (

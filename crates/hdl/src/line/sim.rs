@@ -58,6 +58,7 @@ impl UartSim {
 /// An SPI under simulation.
 pub struct SpiSim {
     line: Box<Spi>,
+    said: LineOutputs,
 }
 
 impl SpiSim {
@@ -66,15 +67,20 @@ impl SpiSim {
     /// # Errors
     /// [`HdlError`] where it cannot be made.
     pub fn new() -> Result<Self, HdlError> {
-        Ok(Self { line: connected(Spi::new())? })
+        Ok(Self { line: connected(Spi::new())?, said: LineOutputs::default() })
     }
 
     /// The outputs of the present cycle, and MISO, while this byte is offered; `pins` are SCK, select (low) and MOSI.
     pub fn settle(&mut self, pins: [bool; 3], offered: Option<u8>) -> (LineOutputs, bool) {
         self.line.clock.next = false.into();
         [self.line.sck.next, self.line.select_n.next, self.line.mosi.next] = pins;
-        let outputs = byte_ports!(self.line, offered);
-        (outputs, self.line.miso.val())
+        self.said = byte_ports!(self.line, offered);
+        (self.said, self.line.miso.val())
+    }
+
+    /// What it last told the link.
+    pub fn last(&self) -> LineOutputs {
+        self.said
     }
 
     /// Goes to the next cycle, with the inputs as last settled.

@@ -99,6 +99,7 @@ impl<const N: usize> AnyLink for Link<N> {
 pub struct LinkSim {
     link: Box<dyn AnyLink>,
     line: UartSim,
+    said: LineOutputs,
 }
 
 impl LinkSim {
@@ -110,14 +111,20 @@ impl LinkSim {
         let mut link = link(build, uart.build_id(build))?;
         link.connect_all();
         check_all(link.as_ref()).map_err(|error| HdlError::Check(format!("{error:?}")))?;
-        Ok(Self { link, line: UartSim::new(uart)? })
+        Ok(Self { link, line: UartSim::new(uart)?, said: LineOutputs::default() })
     }
 
     /// The outputs of the present cycle with these inputs.
     pub fn settle(&mut self, inputs: &LinkInputs) -> LinkOutputs {
         // What is offered comes from registers; whether it is taken does not.
         let (line, tx) = self.line.settle(inputs.rx, self.link.offered());
+        self.said = line;
         LinkOutputs { tx, ..self.link.settle(inputs, line) }
+    }
+
+    /// What goes between link and line in the present cycle: from the line, and the byte that is offered to it.
+    pub fn bytes(&self) -> (LineOutputs, Option<u8>) {
+        (self.said, self.link.offered())
     }
 
     /// Goes to the next cycle, with the inputs as last settled.

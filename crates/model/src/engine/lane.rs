@@ -15,7 +15,7 @@ pub(super) struct Segment {
     pub(super) v: i64,
     pub(super) a: i64,
     pub(super) j: i64,
-    last: bool,
+    pub(super) last: bool,
 }
 
 impl Segment {

@@ -1,12 +1,23 @@
 //! What the engine tells whoever carries its host's frames: registers, each at its time.
 
-use super::Engine;
-use carrystep_spec::engine::TURN;
+use super::lane::Lane;
+use super::{Engine, bits};
+use carrystep_spec::engine::{Cause, TURN};
 
 /// The beat of a turn in which `get` is answered.
 const GET_BEAT: u32 = 11;
 
 impl Engine {
+    /// The stop that was called: the cause, and the axes that it came from.
+    pub fn fault(&self) -> Option<(Cause, u8)> {
+        self.stop.fault
+    }
+
+    /// Turns have begun: all but the first tick has them.
+    pub fn has_turns(&self) -> bool {
+        self.turns
+    }
+
     /// Whether `get_data` is an answer in this cycle.
     pub fn answers(&self) -> bool {
         self.turn_at(GET_BEAT).is_some()
@@ -25,9 +36,37 @@ impl Engine {
         before(now) - before(now - clocks)
     }
 
-    /// An axis waits for its limit.
-    pub fn waits_for_limits(&self) -> bool {
-        self.lanes.iter().any(|lane| lane.homing.waits)
+    /// Ticks of motion that some axis has left before it needs its host: to the end of its move, or, where a start is
+    /// armed, of all that waits. `None` where nothing moves, or all of it stops.
+    pub fn ticks_to_go(&self) -> Option<u64> {
+        let armed = self.armed.is_some();
+        let of_lane = |lane: &Lane| {
+            let running = lane.running.as_ref()?;
+            let mut ticks = 0;
+            for segment in std::iter::once(running).chain(&lane.queue) {
+                ticks += u64::from(segment.left) + 1;
+                if segment.last && !armed {
+                    break;
+                }
+            }
+            Some(ticks)
+        };
+        self.lanes.iter().filter_map(of_lane).min().filter(|_| self.stop.fault.is_none())
+    }
+
+    /// Segments that wait for an axis, beside the one that runs.
+    pub fn waiting(&self, axis: usize) -> usize {
+        self.lanes[axis].queue.len()
+    }
+
+    /// The axes that are in the middle of a move: they run a segment that is not its last.
+    pub fn in_a_move(&self) -> u8 {
+        bits(&self.lanes, |lane| lane.running.is_some_and(|segment| !segment.last))
+    }
+
+    /// The axes that wait for their limit, a bit each.
+    pub fn homing(&self) -> u8 {
+        bits(&self.lanes, |lane| lane.homing.waits)
     }
 
     /// An item of an axis: 0 1 P, low and high, 2 position, 3 discarded steps; of an axis that there is not, 0.
@@ -38,6 +77,30 @@ impl Engine {
             1 => (lane.p >> 32) as u32,
             2 => lane.shaper.position.cast_unsigned(),
             _ => lane.shaper.discarded,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carrystep_spec::engine::EngineInputs;
+    use carrystep_spec::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
+
+    #[test]
+    fn answers_are_counted_as_they_come() {
+        let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
+        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+        let mut engine = Engine::new(&EngineBuild::minimal(&build, 1));
+        let mut answers = Vec::new();
+        for _ in 0..500 {
+            answers.push(u64::from(engine.answers()));
+            engine.clock(&EngineInputs::default());
+            // From the second tick on.
+            for clocks in 0..answers.len() as u64 - 96.min(answers.len() as u64) {
+                let counted: u64 = answers.iter().rev().take(clocks as usize).sum();
+                assert_eq!(engine.answers_before(clocks), counted, "{clocks} before {}", answers.len());
+            }
         }
     }
 }

@@ -45,7 +45,7 @@ impl Facts {
     pub(super) fn clock(&mut self, address: u8, inputs: &LinkInputs) {
         self.read = self.words[usize::from(address) % WORDS];
         if let Some(axis) = inputs.engine.latch {
-            self.words[usize::from(map::of_axis(map::LATCHED, axis & 7)) % WORDS] = inputs.get_data;
+            self.latch(axis, inputs.get_data);
         } else if inputs.get_valid {
             self.keep(inputs.get_data);
         }
@@ -57,6 +57,11 @@ impl Facts {
     fn keep(&mut self, word: u32) {
         let (axis, item) = self.asks();
         self.words[usize::from(map::of_axis(map::AXES_AT + item, axis)) % WORDS] = word;
+    }
+
+    /// The position of an axis that waits for its limit.
+    pub(super) fn latch(&mut self, axis: u8, position: u32) {
+        self.words[usize::from(map::of_axis(map::LATCHED, axis & 7)) % WORDS] = position;
     }
 
     /// So many turns have passed: what was asked for in them is what is said now.

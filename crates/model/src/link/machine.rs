@@ -264,6 +264,17 @@ impl Machine {
         }
     }
 
+    /// What it does in this clock depends on what the engine says, or tells it something.
+    pub(super) fn minds_the_engine(&self) -> bool {
+        const TELLS: Code = PUTS | STARTS | BROKEN | KICK | CONTROL;
+        let acts = self.does(0) && self.code & TELLS != 0;
+        let waits = self.does(WAIT) && !self.does(GOES);
+        let reads = self.executes(SETS) && self.code >> 8 & 7 == Source::Engine as Code;
+        let asks = self.executes(JUMPS)
+            && [Condition::Fault, Condition::Startable].iter().any(|&asked| self.code >> 8 & 7 == asked as Code);
+        acts || waits || reads || asks
+    }
+
     pub(super) fn waits(&self) -> Waits {
         let polls = JUMPS | (Condition::Nothing as Code) << 8 | Code::from(self.pc);
         if self.code == polls && self.read_from == self.written {

@@ -94,7 +94,7 @@ pub const CRC_BEGIN: Code = 1 << 4;
 /// Not over before what is offered is taken, or the engine has a fault; where nothing is offered: before the
 /// scan of all axes' items comes round ([`SCAN`] turns).
 pub const WAIT: Code = 1 << 5;
-/// With [`WAIT`]: over as soon as the axis of X has told its room.
+/// With [`WAIT`]: over as soon as the axis of X has told its room, or the scan comes round.
 pub const FOR_ROOM: Code = 1 << 3;
 /// A is the control register; with [`KICK`] the axes that wait for their limit.
 pub const CONTROL: Code = 1 << 6;

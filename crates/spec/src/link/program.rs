@@ -203,6 +203,9 @@ fn execute(a: &mut Assembler) {
 
     a.label("segment");
     a.jump_if(Fault, "done");
+    // The first wait may end with the scan, before the axis has told: what it told last was another's. An axis that
+    // does not exist never tells.
+    a.acts(WAIT | FOR_ROOM);
     a.acts(WAIT | FOR_ROOM);
     a.load_from(Source::Engine, ROOM);
     a.jump_if(Zero, "broken");

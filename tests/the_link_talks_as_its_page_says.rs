@@ -1,10 +1,12 @@
 //! The gateware's end of the link does what docs/protocol.md says: the page's frames byte by byte, and what else it promises.
 
+use carrystep_export::{LINK_NAME, line_name, line_verilog, link_verilog};
+use carrystep_levels::vectors::Vectors;
 use carrystep_spec::engine::{Cause, Limits};
-use carrystep_spec::link::Uart;
 use carrystep_spec::link::registers::{CLEAR, CONTROL, HOME, POSITION, SEGMENT, START, of_axis};
+use carrystep_spec::link::{Line, Uart};
 use carrystep_spec::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
-use carrystep_tests::link_bench::{LinkBench, Said, frame, on_the_line, unframe};
+use carrystep_tests::link_bench::{Both, LinkBench, Said, frame, on_the_line, ports, unframe};
 
 /// An answer comes within so many cycles.
 const PATIENCE: u64 = 30_000;
@@ -272,4 +274,58 @@ fn segments_over_spi() {
         }
         assert_eq!(ask(&mut bench, 0xc0, of_axis(POSITION, 5), &[]).free, 0);
     }
+}
+
+/// A session with everything in it, then each module's exported Verilog on what its Rust-HDL was told.
+fn replayed(mut bench: LinkBench, line: Line, vectors: Vectors) {
+    bench.vectors = Some(Both { link: ports::link(), line: vectors });
+    let mut next = 0;
+    powered(&mut bench, &mut next);
+    let damaged = on_the_line(&frame(next, 0x80 | of_axis(SEGMENT, 0), &cruise(100, QUARTER))[1..]);
+    bench.send(&damaged);
+    write(&mut bench, &mut next, HOME, &[0b100]);
+    for axis in 0..AXES as u8 {
+        let mut words = cruise(0xc0, -QUARTER);
+        words[6] = 0xdbc0_c0db;
+        write(&mut bench, &mut next, of_axis(SEGMENT, axis), &words);
+    }
+    write(&mut bench, &mut next, START, &[0x3f]);
+    ask(&mut bench, next, 0x80 | START, &[1]);
+    bench.pins.limit_min = 0b100;
+    ask(&mut bench, next.wrapping_add(9), 0x80 | START, &[1]);
+    write(&mut bench, &mut next, CONTROL, &[3]);
+    write(&mut bench, &mut next, CONTROL, &[1]);
+    write(&mut bench, &mut next, CLEAR, &[1]);
+    write(&mut bench, &mut next, of_axis(SEGMENT, 7), &cruise(1, 0));
+    write(&mut bench, &mut next, CLEAR, &[1]);
+    for address in (0..9).chain(0x40..0x70) {
+        ask(&mut bench, address, address, &[]);
+    }
+    let both = bench.vectors.expect("what was kept");
+    let link = link_verilog(&build(), line, "the test").expect("a link");
+    assert_eq!(both.link.difference(LINK_NAME, &link).expect("Icarus"), None);
+    let verilog = line_verilog(line, "the test").expect("a line");
+    assert_eq!(both.line.difference(line_name(line), &verilog).expect("Icarus"), None);
+    assert!(both.link.cycles() > 100_000, "{} cycles are no session", both.link.cycles());
+
+    // A planted bug in each is seen.
+    for (vectors, name, text, from, to) in [
+        (&both.link, LINK_NAME, &link, "32'hedb88320", "32'hedb88321"),
+        (&both.line, line_name(line), &verilog, "1'b1;", "1'b0;"),
+    ] {
+        let planted = text.replacen(from, to, 1);
+        assert_ne!(&planted, text, "{from} is not in {name}");
+        assert!(vectors.difference(name, &planted).expect("Icarus").is_some(), "{name}: {to} is not seen");
+    }
+}
+
+#[test]
+fn the_exported_verilog_of_link_and_uart() {
+    let uart = Uart::new(48_000_000, 3_000_000).expect("a UART");
+    replayed(bench(), uart.into(), ports::uart());
+}
+
+#[test]
+fn the_exported_verilog_of_link_and_spi() {
+    replayed(LinkBench::spi(&build(), 25), Line::Spi, ports::spi());
 }

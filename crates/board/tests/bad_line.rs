@@ -1,0 +1,126 @@
+//! A board at the end of a line that flips, drops, doubles, cuts and delays bytes: its pulses are those of a clean line, or
+//! it has stopped and says why. `CARRYSTEP_FRAMES` asks for so many frames in all.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use carrystep_link::{Command, Ended, HostError, Program, Wish};
+use carrystep_model::fast::Edge;
+use carrystep_spec::AXES;
+use carrystep_spec::engine::Cause;
+use carrystep_spec::link::Uart;
+use support::random::Random;
+use support::wire::Faults;
+use support::{BoardHost, CLOCK_HZ, End, waves};
+
+/// Segments of an axis in a move, and ticks of each: the queues hold a seventh of a second.
+const SEGMENTS: u32 = 60;
+const TICKS: u32 = 10_000;
+
+fn uart() -> Uart {
+    Uart::new(CLOCK_HZ, 3_000_000).unwrap()
+}
+
+/// How a move went: its edges from its load on, and the stop that it ended with.
+struct Went {
+    edges: Vec<Edge>,
+    /// Cycles from its load on.
+    stop: Option<(u64, Cause)>,
+}
+
+/// Makes a move, and clears what has stopped it.
+fn make(end: &End, host: &mut BoardHost, commands: &[Command]) -> Went {
+    let (loads, stops) = (end.0.borrow().board.loads().len(), end.0.borrow().board.stops().len());
+    let ended = host.stream(Program::new(commands, AXES as u8).unwrap(), |_| Wish::GoOn);
+    let positions = host.status().positions;
+    let went = {
+        let world = end.0.borrow();
+        let load = world.board.loads().get(loads).copied().unwrap_or(u64::MAX);
+        assert!(world.board.loads().len() <= loads + 1, "a move was started twice");
+        for axis in 0..AXES as u8 {
+            assert_eq!(positions[usize::from(axis)], world.travelled(axis), "the position of axis {axis} is not true");
+        }
+        let stop = world.board.stops().get(stops).map(|&(cycle, cause)| (cycle.saturating_sub(load), cause));
+        Went { edges: world.edges_since(load), stop }
+    };
+    match (ended, went.stop) {
+        (Ok(Ended::Done), None) => {}
+        (Err(HostError::Fault { cause, .. }), Some((_, called))) => {
+            assert_eq!(cause, called as u8, "the stop has another name");
+            host.clear().unwrap();
+        }
+        other => panic!("{other:?}"),
+    }
+    went
+}
+
+/// What the pins of a new board do at the end of such a line, and how often that harms.
+fn on_a_line(faults: Faults, seed: u64, commands: &[Command]) -> (Went, u64) {
+    let end = End::new(uart(), faults, seed);
+    let mut host = end.connect(uart());
+    host.enable().unwrap();
+    let went = make(&end, &mut host, commands);
+    let harmed = end.0.borrow().harmed();
+    (went, harmed)
+}
+
+/// The same edges, all of them, or all before a stop.
+fn compare(went: &Went, clean: &[Edge]) {
+    let until = went.stop.map_or(u64::MAX, |(cycle, _)| cycle);
+    let before = |edges: &[Edge]| edges.iter().take_while(|edge| edge.clock < until).copied().collect::<Vec<_>>();
+    let (found, expected) = (before(&went.edges), before(clean));
+    if let Some(place) = found.iter().zip(&expected).position(|(one, other)| one != other) {
+        panic!("edge {place} is {:?}, on a clean line {:?}", found[place], expected[place]);
+    }
+    assert_eq!(found.len(), expected.len(), "edges, stop {:?}", went.stop);
+}
+
+#[test]
+fn pulses_on_a_bad_line_are_those_of_a_clean_one() {
+    let frames: u64 = std::env::var("CARRYSTEP_FRAMES").map_or(3000, |text| text.parse().expect("a number of frames"));
+    let mut random = Random(11);
+    let (mut sent, mut moves, mut stops, mut edges, mut harmed) = (0, 0_u64, 0_u64, 0, 0);
+    while sent < frames {
+        let commands = waves(&mut random, SEGMENTS, TICKS);
+        let (clean, _) = on_a_line(Faults::default(), 0, &commands);
+        assert_eq!(clean.stop, None);
+        let (went, harms) = on_a_line(Faults::BAD, random.next(), &commands);
+        compare(&went, &clean.edges);
+        if let Some((_, cause)) = went.stop {
+            // Nothing that a frame could have done: it came too late, or not at all.
+            assert!(matches!(cause, Cause::Underrun | Cause::Watchdog), "{cause:?}");
+            stops += 1;
+        }
+        edges += went.edges.len();
+        sent += commands.len() as u64;
+        moves += 1;
+        harmed += harms;
+    }
+    eprintln!(
+        "FIGURES {sent} frames in {moves} moves, the line harmed {harmed} times, {stops} moves stopped, {edges} edges as on a clean line"
+    );
+    assert!(harmed > sent / 50, "the line is too good: {harmed}");
+    assert!(stops * 2 < moves, "too few moves are made: {stops} of {moves} stopped");
+}
+
+#[test]
+fn garbage_hangs_nothing() {
+    // As fast as the line carries it.
+    let end = End::new(uart(), Faults::default(), 3);
+    let mut random = Random(9);
+    for _ in 0..40 {
+        let mut world = end.0.borrow_mut();
+        for _ in 0..300 {
+            let any = random.next() as u8;
+            world.board.say(if random.below(5) == 0 { [0xc0, 0xdb, 0xdc, 0xdd][usize::from(any & 3)] } else { any });
+        }
+        drop(world);
+        end.wait(1);
+    }
+    assert_eq!(end.0.borrow().board.stops(), []);
+    let mut host = end.connect(uart());
+    host.enable().unwrap();
+    let commands = waves(&mut random, 3, TICKS);
+    let went = make(&end, &mut host, &commands);
+    assert_eq!(went.stop, None);
+}

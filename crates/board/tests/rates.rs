@@ -1,0 +1,46 @@
+//! How many segments a line carries to a board without a queue running dry.
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use carrystep_link::{Ended, Program, Wish};
+use carrystep_spec::link::Uart;
+use support::random::Random;
+use support::wire::Faults;
+use support::{CLOCK_HZ, End, TICK_NS, waves};
+
+/// Six axes with so many segments a second each, for a second and a half.
+#[track_caller]
+fn carries(baud: u32, per_second: u32) {
+    let uart = Uart::new(CLOCK_HZ, baud).unwrap();
+    let end = End::new(uart, Faults::default(), 1);
+    let mut host = end.connect(uart);
+    host.enable().unwrap();
+    let ticks = (1_000_000_000 / TICK_NS) as u32 / per_second;
+    let commands = waves(&mut Random(7), per_second * 3 / 2, ticks);
+    let begun = end.0.borrow().board.cycle();
+    let ended = host.stream(Program::new(&commands, 6).unwrap(), |progress| {
+        end.0.borrow_mut().handed_over = progress.handed_over;
+        Wish::GoOn
+    });
+    let world = end.0.borrow();
+    let took = (world.board.cycle() - begun) as f64 / CLOCK_HZ as f64;
+    eprintln!(
+        "FIGURES {baud} baud: 6 x {per_second} segments/s, {} segments in {took:.3} s, at least {} waiting; {:?}",
+        commands.len() - 1,
+        world.least_waiting,
+        ended
+    );
+    assert_eq!(ended, Ok(Ended::Done));
+    assert!(world.least_waiting > 0, "a queue was dry");
+}
+
+#[test]
+fn six_axes_at_500_segments_over_3_megabaud() {
+    carries(3_000_000, 500);
+}
+
+#[test]
+fn six_axes_at_200_segments_over_921_600_baud() {
+    carries(921_600, 200);
+}

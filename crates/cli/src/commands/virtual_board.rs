@@ -1,0 +1,133 @@
+//! `carrystep virtual-board`: the gateware of a machine behind a pseudo-terminal.
+
+use crate::arguments::VirtualBoard;
+use crate::connection;
+use crate::desk::Desk;
+use crate::failure::Failure;
+use crate::gateware;
+use crate::output::{self, OutputFile};
+use crate::switches::Panel;
+use carrystep_board::{Board, Pace, Terminal};
+use carrystep_levels::pins::PinFeed;
+use carrystep_levels::replay::Replay;
+use carrystep_spec::engine::EngineOutputs;
+use carrystep_spec::{EngineBuild, Machine};
+use carrystep_trace::{OwnCapture, PinsVcd};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::PathBuf;
+
+/// How far a fast board goes without its host: this part of its watchdog's time,
+const PART_OF_WATCHDOG: u64 = 4;
+/// or where it has none this part of a second.
+const PART_OF_SECOND: u64 = 40;
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Served {
+    passed: bool,
+    /// The board's own time.
+    seconds: f64,
+    clocks: u64,
+    fault: Option<String>,
+    axes: Vec<AxisServed>,
+    files: Vec<PathBuf>,
+}
+
+#[derive(Serialize)]
+struct AxisServed {
+    axis: String,
+    position: i32,
+    discarded: u32,
+}
+
+/// Serves until Ctrl-C, or `end` on standard input.
+pub fn run(arguments: &VirtualBoard) -> Result<(), Failure> {
+    let machine = Machine::load(&arguments.machine)?;
+    let build = machine.engine();
+    let (uart, id) = connection::wanted(&machine, &arguments.machine)?;
+    let panel = Panel::new(&machine, &arguments.min, &arguments.max)?;
+    let mut vcd = arguments.vcd.as_deref().map(OutputFile::create).transpose()?;
+    let terminal = Terminal::new().map_err(|error| Failure::Run(format!("no pseudo-terminal: {error}")))?;
+    let told = format!("{}: {} baud, build {}\n", terminal.name(), uart.baud(), id);
+    if arguments.json {
+        // Nobody is left to tell if this fails.
+        let _ = std::io::stderr().write_all(told.as_bytes());
+    } else {
+        output::print(&told)?;
+    }
+    let clock_hz = build.timebase.clock_hz();
+    let pace = if arguments.fast { Pace::fast(clock_hz, ahead(&build)) } else { Pace::real(clock_hz) };
+    let mut desk = Desk { board: Board::new(&build, uart), terminal, pace, panel, clock_hz };
+    match &mut vcd {
+        None => while desk.step(&mut ())? {},
+        Some(out) => capture(&mut desk, &machine, &build, out)?,
+    }
+    let files = vcd.map(OutputFile::appear).transpose()?.into_iter().collect();
+    tell(&served(&desk.board, &machine, files), arguments.json)
+}
+
+/// Clocks.
+fn ahead(build: &EngineBuild) -> u64 {
+    let (guard, time) = (&build.guard, &build.timebase);
+    match u64::from(guard.watchdog) * u64::from(guard.round) * u64::from(time.clocks_per_tick()) {
+        0 => time.clock_hz() / PART_OF_SECOND,
+        watchdog => watchdog / PART_OF_WATCHDOG,
+    }
+}
+
+/// Serves, and writes what the pins do. A capture begins with the time of the first start; before it no pin changes.
+fn capture(desk: &mut Desk, machine: &Machine, build: &EngineBuild, out: &mut OutputFile) -> Result<(), Failure> {
+    let goes_on = desk.until_start()?;
+    let time = build.timebase;
+    let load = desk.board.loads().first().copied().unwrap_or(0);
+    let origin_ps = time.clock_to_ps(load + time.latency_clocks()).cast_signed();
+    let names = machine.axes.iter().map(|axis| axis.name.as_str());
+    let mut vcd = PinsVcd::new(out, OwnCapture { origin_ps, timebase: time }, names)?;
+    let mut feed = PinFeed::new(time, machine.axes.len(), &mut vcd);
+    let mut tell = |cycle: u64, outputs: &EngineOutputs| feed.pins(cycle, outputs.step, outputs.dir);
+    let mut replay = Replay::new(&build.pins, &mut tell);
+    while goes_on && desk.step(&mut replay)? {
+        replay.reach(desk.board.cycle());
+    }
+    // The last of its outputs is told where the next cycle begins.
+    replay.reach(desk.board.cycle() + 1);
+    Ok(feed.end(desk.board.cycle())?)
+}
+
+fn served(board: &Board, machine: &Machine, files: Vec<PathBuf>) -> Served {
+    let core = board.engine().core();
+    let axis = |(number, axis): (usize, &carrystep_spec::Axis)| AxisServed {
+        axis: axis.name.clone(),
+        position: core.shaper(number).position,
+        discarded: core.shaper(number).discarded,
+    };
+    Served {
+        passed: true,
+        seconds: board.cycle() as f64 / core.build().timebase.clock_hz() as f64,
+        clocks: board.cycle(),
+        fault: board.outputs().fault.map(gateware::told),
+        axes: machine.axes.iter().enumerate().map(axis).collect(),
+        files,
+    }
+}
+
+fn tell(served: &Served, json: bool) -> Result<(), Failure> {
+    if json {
+        return output::print_json(served);
+    }
+    let mut text = format!("{:.3} s of the board's time\n", served.seconds);
+    // Writing to a string cannot fail.
+    for AxisServed { axis, position, discarded } in &served.axes {
+        let lost = if *discarded == 0 { String::new() } else { format!(", {discarded} discarded") };
+        let _ = writeln!(text, "{axis} at {position}{lost}");
+    }
+    if let Some(fault) = &served.fault {
+        let _ = writeln!(text, "stopped: {fault}");
+    }
+    for file in &served.files {
+        let _ = writeln!(text, "wrote {}", file.display());
+    }
+    output::print(&text)
+}

@@ -1,0 +1,104 @@
+//! What one module was told and what it showed, cycle by cycle, replayed on its exported Verilog in Icarus.
+
+use crate::LevelError;
+use crate::tool::{self, ICARUS};
+use std::fmt::Write as _;
+use std::process::Command;
+
+const BENCH: &str = include_str!("../bench/vectors_bench.v");
+
+/// Some ports in one cycle, side by side as one number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Bits {
+    bits: u128,
+    counts: u128,
+}
+
+impl Bits {
+    /// With one more port below those that are there; where it is `None` it says nothing that counts.
+    ///
+    /// `width` is at most 64, and all ports together have at most 128 bits.
+    #[must_use]
+    pub fn and(self, width: u32, value: impl Into<Option<u64>>) -> Self {
+        let ones = (1 << width) - 1;
+        let value = value.into();
+        Self {
+            bits: self.bits << width | (u128::from(value.unwrap_or(0)) & ones),
+            counts: self.counts << width | if value.is_some() { ones } else { 0 },
+        }
+    }
+}
+
+/// A module's ports, and its cycles.
+#[derive(Debug, Clone)]
+pub struct Vectors {
+    /// Name and width of each input, in the order in which the cycles have them.
+    pub inputs: &'static [(&'static str, u32)],
+    /// Of each output.
+    pub outputs: &'static [(&'static str, u32)],
+    /// Inputs and outputs, each with its number of cycles.
+    rows: Vec<(u64, Bits, Bits)>,
+}
+
+impl Vectors {
+    /// None yet.
+    pub const fn new(inputs: &'static [(&'static str, u32)], outputs: &'static [(&'static str, u32)]) -> Self {
+        Self { inputs, outputs, rows: Vec::new() }
+    }
+
+    /// One more cycle.
+    pub fn add(&mut self, inputs: Bits, outputs: Bits) {
+        match self.rows.last_mut() {
+            Some((count, before, shown)) if *before == inputs && *shown == outputs => *count += 1,
+            _ => self.rows.push((1, inputs, outputs)),
+        }
+    }
+
+    /// Cycles so far.
+    pub fn cycles(&self) -> u64 {
+        self.rows.iter().map(|(count, ..)| count).sum()
+    }
+
+    /// The first cycle in which the module of this name in this Verilog shows anything else, in words.
+    ///
+    /// # Errors
+    /// [`LevelError`]: Icarus is missing or fails.
+    pub fn difference(&self, module: &str, verilog: &str) -> Result<Option<String>, LevelError> {
+        tool::find(&ICARUS)?;
+        let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+        let mut text = String::new();
+        for (count, inputs, Bits { bits, counts }) in &self.rows {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{count} {:x} {bits:x} {counts:x}", inputs.bits);
+        }
+        for (name, text) in [("module.v", verilog), ("bench.v", &self.bench(module)), ("vectors.txt", &text)] {
+            std::fs::write(folder.path().join(name), text).map_err(tool::io(format!("cannot write {name}")))?;
+        }
+        let compiles = ["-g2005", "-o", "bench.vvp", "bench.v", "module.v"];
+        tool::complete(&ICARUS, Command::new(ICARUS.name).args(compiles).current_dir(&folder))?;
+        let mut runs = Command::new("vvp");
+        let said = runs.args(["-n", "bench.vvp", "+vectors=vectors.txt"]).current_dir(&folder).output();
+        let said = said.map_err(tool::io("cannot start the simulation"))?;
+        let said = String::from_utf8_lossy(&said.stdout).trim().to_owned();
+        Ok((said != format!("same {}", self.cycles())).then_some(said))
+    }
+
+    fn bench(&self, module: &str) -> String {
+        let mut connections = String::new();
+        let mut widths = [0; 2];
+        for (side, (vector, ports)) in [("inputs", self.inputs), ("outputs", self.outputs)].into_iter().enumerate() {
+            let mut below: u32 = ports.iter().map(|(_, width)| width).sum();
+            widths[side] = below;
+            for (name, width) in ports {
+                below -= width;
+                let _ = write!(connections, ",\n        .{name}({vector}[{}:{below}])", below + width - 1);
+            }
+        }
+        let [inputs, outputs] = widths.map(|width| width.to_string());
+        BENCH
+            .replace("CONNECTIONS", &connections)
+            .replace("MODULE", module)
+            .replace("OUTPUTS", &outputs)
+            .replace("INPUTS", &inputs)
+    }
+}

@@ -1,0 +1,126 @@
+//! A VCD of pins and positions alone: of a board that nobody has told its moves.
+
+use crate::edge::{Pin, PinChange, PinSink};
+use crate::error::TraceError;
+use crate::vcd_own::{self, OwnCapture};
+use crate::waves::{SCOPE, VERSION};
+use std::fmt;
+use std::io::{self, Write};
+use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, VarType, Writer};
+
+/// Bits of a position.
+const BITS: u32 = 32;
+
+/// Writes pins as they change, with the names that [`VcdWriter`](crate::VcdWriter) gives them.
+pub struct PinsVcd<W: Write> {
+    out: Writer<W>,
+    axes: Vec<Axis>,
+    time: u64,
+}
+
+struct Axis {
+    step: IdCode,
+    dir: IdCode,
+    position: IdCode,
+    backward: bool,
+    steps: i32,
+}
+
+impl<W: Write> fmt::Debug for PinsVcd<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PinsVcd").field("time", &self.time).finish_non_exhaustive()
+    }
+}
+
+impl<W: Write> PinsVcd<W> {
+    /// Begins a capture of these axes, in the order of their numbers; all pins are low, all positions 0.
+    ///
+    /// # Errors
+    /// [`TraceError::Write`].
+    pub fn new<'n>(out: W, own: OwnCapture, names: impl Iterator<Item = &'n str>) -> Result<Self, TraceError> {
+        Self::begin(Writer::new(out), own, names).map_err(failed)
+    }
+
+    fn begin<'n>(mut out: Writer<W>, own: OwnCapture, names: impl Iterator<Item = &'n str>) -> io::Result<Self> {
+        out.version(VERSION)?;
+        out.comment(&own.to_string())?;
+        out.timescale(1, TimescaleUnit::PS)?;
+        out.add_module(SCOPE)?;
+        let mut axes = Vec::new();
+        for name in names {
+            out.add_module(name)?;
+            let range = ReferenceIndex::Range(BITS as i32 - 1, 0);
+            axes.push(Axis {
+                step: out.add_wire(1, "step")?,
+                dir: out.add_wire(1, "dir")?,
+                position: out.add_var(VarType::Wire, BITS, "position", Some(range))?,
+                backward: false,
+                steps: 0,
+            });
+            out.upscope()?;
+        }
+        out.upscope()?;
+        out.enddefinitions()?;
+        out.timestamp(0)?;
+        out.begin(SimulationCommand::Dumpvars)?;
+        for axis in &axes {
+            out.change_scalar(axis.step, false)?;
+            out.change_scalar(axis.dir, false)?;
+            change_position(&mut out, axis)?;
+        }
+        out.end()?;
+        Ok(Self { out, axes, time: 0 })
+    }
+
+    fn stamp(&mut self, ps: u64) -> io::Result<()> {
+        if ps > self.time {
+            self.out.timestamp(ps)?;
+            self.time = ps;
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, change: PinChange) -> io::Result<()> {
+        self.stamp(change.ps)?;
+        let Some(axis) = self.axes.get_mut(usize::from(change.axis)) else { return Ok(()) };
+        match change.pin {
+            Pin::Dir => {
+                axis.backward = change.level;
+                self.out.change_scalar(axis.dir, change.level)
+            }
+            Pin::Step => {
+                self.out.change_scalar(axis.step, change.level)?;
+                if !change.level {
+                    return Ok(());
+                }
+                axis.steps = axis.steps.wrapping_add(if axis.backward { -1 } else { 1 });
+                change_position(&mut self.out, axis)
+            }
+        }
+    }
+
+    fn close(&mut self, ps: u64) -> io::Result<()> {
+        self.stamp(ps)?;
+        self.out.comment(vcd_own::END)?;
+        self.out.flush()
+    }
+}
+
+fn change_position<W: Write>(out: &mut Writer<W>, axis: &Axis) -> io::Result<()> {
+    let bits = (0..BITS).rev().map(|bit| (axis.steps >> bit & 1 == 1).into());
+    out.change_vector(axis.position, bits)
+}
+
+fn failed(source: io::Error) -> TraceError {
+    TraceError::Write { what: "the VCD", source }
+}
+
+impl<W: Write> PinSink for PinsVcd<W> {
+    fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
+        self.write(change).map_err(failed)
+    }
+
+    fn end(&mut self, ps: u64) -> Result<(), TraceError> {
+        self.close(ps).map_err(failed)
+    }
+}

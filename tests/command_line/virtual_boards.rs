@@ -1,0 +1,230 @@
+//! The commands that drive a board, on a virtual one: moves from file to capture, stops of every kind, homing.
+
+use crate::command::{Folder, Ran, edit};
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::process::{Child, ChildStdout, Command, Stdio};
+use std::time::Duration;
+
+/// Two axes; a host may be held up for long, for the machine that runs these tests may be busy.
+const MACHINE: &str = r#"[machine]
+tick_ns = 2000
+
+[machine.guard]
+watchdog_ms = 4000
+debounce_us = 100
+
+[machine.link]
+baud = 3_000_000
+
+[[machine.axis]]
+name = "x"
+steps_per_unit = 5
+start_speed = 200
+speed_limit = 1000
+accel_limit = 5000
+driver = "a4988"
+
+[[machine.axis]]
+name = "y"
+steps_per_unit = 80
+speed_limit = 50
+accel_limit = 400
+driver = "tmc2209"
+"#;
+
+const MOVES: &str = r#"machine_file = "machine.toml"
+
+[[move]]
+profile = "ranade"
+to = { x = 20, y = -3 }
+
+[[move]]
+profile = "sine"
+to = { x = -12.2 }
+"#;
+
+/// Takes longer than anyone waits.
+const LONG: &str = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trapezoid\"\nto = { x = 1_000_000 }\n";
+
+/// `carrystep virtual-board`, until it is ended.
+struct Board {
+    child: Child,
+    said: BufReader<ChildStdout>,
+    port: String,
+}
+
+impl Board {
+    fn new(folder: &Folder, options: &str) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
+        command.args(["virtual-board", "--machine", "machine.toml"]).args(options.split_whitespace());
+        command.current_dir(folder.path("")).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let mut said = BufReader::new(child.stdout.take().unwrap());
+        let mut line = String::new();
+        said.read_line(&mut line).unwrap();
+        let (port, _) = line.split_once(": 3000000 baud, build ").expect(&line);
+        Self { port: port.to_owned(), child, said }
+    }
+
+    fn press(&mut self, line: &str) {
+        writeln!(self.child.stdin.as_mut().unwrap(), "{line}").unwrap();
+    }
+
+    /// Ends it, and gives what it said.
+    fn end(mut self) -> String {
+        self.press("end");
+        let mut said = String::new();
+        self.said.read_to_string(&mut said).unwrap();
+        assert!(self.child.wait().unwrap().success());
+        said
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        // It has ended, where the test has come so far.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn folder() -> Folder {
+    let folder = Folder::with_move(MOVES);
+    folder.write("machine.toml", MACHINE);
+    folder.write("long.toml", LONG);
+    folder
+}
+
+#[track_caller]
+fn passed(ran: &Ran) {
+    assert_eq!(ran.status, 0, "{}{}", ran.stdout, ran.stderr);
+}
+
+/// A run that is under way: the capture of the board, which it writes, has begun.
+fn begin(folder: &Folder, board: &Board, file: &str) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
+    command.args(["run", file, "--port", &board.port, "--json"]).current_dir(folder.path(""));
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let has_begun = |name: &String| {
+        let known = ["home.toml", "long.toml", "machine.toml", "move.toml"].contains(&name.as_str());
+        !known && folder.path(name).metadata().is_ok_and(|file| file.len() > 0)
+    };
+    // Nobody else can ask the board while that one has the port.
+    while !folder.files().iter().any(has_begun) {
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    child
+}
+
+fn document(child: Child) -> serde_json::Value {
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn moves_reach_the_pins_of_a_board_as_they_were_planned() {
+    let folder = folder();
+    // All of the first move fits into the queues: by the clock on the wall, a host may be late at any time.
+    let (first, _) = MOVES.split_once("\n[[move]]\nprofile = \"sine\"").unwrap();
+    folder.write("first.toml", first);
+    for (options, file, ends) in
+        [("", "first.toml", "x at 100\ny at -240"), ("--fast", "move.toml", "x at 39\ny at -240")]
+    {
+        let board = Board::new(&folder, &format!("--vcd a.vcd {options}"));
+        let ran = folder.run(&format!("run {file} --port {}", board.port));
+        passed(&ran);
+        assert!(ran.stdout.ends_with("DONE\n"), "{}", ran.stdout);
+        passed(&folder.run(&format!("status --port {} --machine machine.toml", board.port)));
+        let said = board.end();
+        assert!(said.contains(&format!("\n{ends}\nwrote a.vcd\n")), "{said}");
+        passed(&folder.run(&format!("check a.vcd {file}")));
+        // The check is of these moves, and sees where they are others.
+        folder.write("other.toml", MOVES.replace("x = 20", "x = 20.2"));
+        assert_eq!(folder.run("check a.vcd other.toml").status, 1);
+    }
+}
+
+#[test]
+fn a_jog_is_a_move_and_comes_after_moves() {
+    let folder = folder();
+    let board = Board::new(&folder, "--fast");
+    let jog = |arguments: &str| folder.run(&format!("jog {arguments} --machine machine.toml --port {}", board.port));
+    passed(&jog("x 3.1"));
+    passed(&jog("y -0.5 --time 0.2"));
+    passed(&jog("x -1"));
+    assert!(board.end().contains("\nx at 11\ny at -40\n"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_comes_to_rest_and_the_next_one_runs() {
+    let folder = folder();
+    let board = Board::new(&folder, "--fast --vcd a.vcd");
+    let child = begin(&folder, &board, "long.toml");
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let told = document(child);
+    assert_eq!((&told["ended"], &told["passed"]), (&"stopped".into(), &false.into()));
+    let position = told["axes"][0]["position"].as_i64().unwrap();
+    assert!((1..5_000_000).contains(&position), "{told}");
+    passed(&folder.run(&format!("run move.toml --port {}", board.port)));
+    assert!(board.end().contains(&format!("\nx at {}\n", position + 39)));
+}
+
+#[test]
+fn an_emergency_stop_is_told_and_stays_until_it_is_released_and_cleared() {
+    let folder = folder();
+    let mut board = Board::new(&folder, "--fast --vcd a.vcd");
+    let child = begin(&folder, &board, "long.toml");
+    board.press("estop 1");
+    let told = document(child);
+    assert_eq!((&told["ended"], &told["cause"]), (&"fault".into(), &"e-stop".into()));
+    let stop = |options: &str| folder.run(&format!("stop --port {} --baud 3000000 {options}", board.port));
+    let ran = stop("--clear");
+    assert_eq!(ran.status, 1, "{}", ran.stdout);
+    assert!(ran.stderr.contains("the machine stands because of: e-stop"), "{}", ran.stderr);
+    let port = board.port.clone();
+    board.press("estop 0");
+    let ran = folder.run(&format!("stop --port {port} --baud 3000000 --clear"));
+    passed(&ran);
+    passed(&folder.run(&format!("run move.toml --port {port}")));
+}
+
+#[test]
+fn homing_finds_the_switch() {
+    let folder = folder();
+    let home = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"constant\"\ntime = 4\nto = { x = -200 }\n";
+    folder.write("home.toml", home);
+    let board = Board::new(&folder, "--fast --min x=-150");
+    let ran = folder.run(&format!("home home.toml --port {} --json", board.port));
+    passed(&ran);
+    let told: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    let latched = told["axes"][0]["latched"].as_i64().unwrap();
+    // The switch is believed a little later than it is reached.
+    assert!((-155..=-150).contains(&latched), "{told}");
+    assert!(told["axes"][0]["position"].as_i64().unwrap() <= latched);
+    drop(board);
+
+    let board = Board::new(&folder, "--fast");
+    let ran = folder.run(&format!("home home.toml --port {}", board.port));
+    assert_eq!(ran.status, 1);
+    assert!(ran.stderr.contains("have not met their limits"), "{}", ran.stderr);
+}
+
+#[test]
+fn a_board_that_cannot_be_is_refused() {
+    let folder = folder();
+    let board = |machine: &str, options: &str| {
+        folder.write("bad.toml", machine);
+        folder.run(&format!("virtual-board --machine bad.toml{options}"))
+    };
+    let (odd, place) = edit(MACHINE, "baud = 3_000_000", "baud = ^3_100_000");
+    board(&odd, "").refuses_at("bad.toml", place, "the next ones that it makes are 3000000 and 3200000");
+    board(&MACHINE.replace("tick_ns = 2000", "tick_ns = 1000\nclock_hz = 16_000_000\n[machine.other]"), "")
+        .refuses("unknown field `other`");
+    board(MACHINE, " --min x").refuses("--min x: expected AXIS=STEPS");
+    board(MACHINE, " --max z=1").refuses("of an axis of x, y");
+    board(MACHINE, " --vcd machine.toml/a.vcd").refuses("machine.toml/a.vcd");
+    folder.run("virtual-board --machine none.toml").refuses("none.toml");
+}
