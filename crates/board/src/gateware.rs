@@ -19,6 +19,9 @@ pub trait Gateware {
     /// Pulses forward less pulses back.
     fn position(&self, axis: usize) -> i32;
 
+    /// Steps that were discarded, where that can be told.
+    fn discarded(&self, axis: usize) -> Option<u32>;
+
     /// Clocks until the first queue ends, where that can be told.
     fn to_go(&self) -> Option<u64>;
 
@@ -64,6 +67,10 @@ impl Gateware for Board {
 
     fn position(&self, axis: usize) -> i32 {
         self.engine().core().shaper(axis).position
+    }
+
+    fn discarded(&self, axis: usize) -> Option<u32> {
+        Some(self.engine().core().shaper(axis).discarded)
     }
 
     fn to_go(&self) -> Option<u64> {

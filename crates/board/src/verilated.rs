@@ -101,6 +101,11 @@ impl Gateware for VerilatedBoard {
     }
 
     /// Its pins do not tell.
+    fn discarded(&self, _: usize) -> Option<u32> {
+        None
+    }
+
+    /// Nor this.
     fn to_go(&self) -> Option<u64> {
         None
     }
