@@ -26,6 +26,8 @@ pub struct VerilatedBoard {
     stops: Vec<(u64, Cause)>,
     pins: [u8; 2],
     travelled: [i32; MAX_AXES],
+    /// Edges between the first load and where it stopped because of it: the next run tells them.
+    late: Vec<Edge>,
 }
 
 impl VerilatedBoard {
@@ -46,6 +48,7 @@ impl VerilatedBoard {
             stops: Vec::new(),
             pins: [0; 2],
             travelled: [0; MAX_AXES],
+            late: Vec::new(),
         })
     }
 
@@ -135,10 +138,17 @@ impl Gateware for VerilatedBoard {
     }
 
     fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError> {
+        self.late.drain(..).for_each(|edge| to.edge(edge));
         let waits = self.loads.is_empty();
-        let at_once = if waits { self.build.timebase.clocks_per_tick().into() } else { CLOCKS };
         while self.cycle() < end && self.loads.is_empty() == waits {
-            self.go(end.min(self.cycle() + at_once), to)?;
+            let stop = end.min(self.cycle() + CLOCKS);
+            if waits {
+                let mut late = Vec::new();
+                self.go(stop, &mut late)?;
+                self.late = late;
+            } else {
+                self.go(stop, to)?;
+            }
         }
         Ok(())
     }

@@ -3,38 +3,14 @@
 
 mod support;
 
-use carrystep_board::{Board, Edges, Gateware, Switches, VerilatedBoard};
+use carrystep_board::{Board, Switches, VerilatedBoard};
 use carrystep_link::{Clock, Command, Ended, Exchanged, Host, HostError, Line, Patience, Program, Segment, Wish};
 use carrystep_model::fast::Edge;
 use carrystep_spec::link::Uart;
 use std::cell::RefCell;
 use std::convert::Infallible;
 use std::rc::Rc;
-use support::{CLOCK_HZ, build};
-
-/// A kind of board that is to do the same as every other.
-trait Kind: Gateware + Sized {
-    fn new(uart: Uart) -> Self;
-}
-
-impl Kind for Board {
-    fn new(uart: Uart) -> Self {
-        Self::new(&build(), uart)
-    }
-}
-
-impl Kind for VerilatedBoard {
-    fn new(uart: Uart) -> Self {
-        Self::new(&build(), uart).unwrap()
-    }
-}
-
-/// To this cycle.
-fn run(board: &mut impl Gateware, end: u64, to: &mut impl Edges) {
-    while board.cycle() < end {
-        board.run(end, to).unwrap();
-    }
-}
+use support::{CLOCK_HZ, Kind, build};
 
 /// The host's end: each exchange is half a millisecond of the board.
 struct End<B>(Rc<RefCell<(B, Vec<Edge>)>>);
@@ -64,7 +40,7 @@ impl<B: Kind> Line for End<B> {
         let (board, edges) = &mut *self.0.borrow_mut();
         out.iter().for_each(|&byte| board.say(byte));
         let end = board.cycle() + CLOCK_HZ / 2000;
-        run(board, end, edges);
+        board.reach(end, edges);
         let mut received = 0;
         for place in into {
             let Some(byte) = board.next_byte() else { break };
@@ -80,7 +56,7 @@ fn connected<B: Kind>(baud: u32) -> (End<B>, Host<End<B>, End<B>>) {
     let end = End::new(uart);
     let id = uart.build_id(&build());
     let host =
-        Host::connect(end.clone(), end.clone(), Some(id.0), Patience { change: 200, ..Patience::default() }).unwrap();
+        Host::connect(end.clone(), end.clone(), Some(id.0), Patience { change: 50, ..Patience::default() }).unwrap();
     (end, host)
 }
 
