@@ -1,6 +1,6 @@
 //! A host that dies in the middle of a move: the board stops within its watchdog's time and the ramp, its positions are
 //! true, and the next host goes on without a restart. `CARRYSTEP_DEATHS` asks for so many.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
 
