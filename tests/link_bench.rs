@@ -33,6 +33,8 @@ pub struct LinkBench {
     pub steps: u64,
     /// What the link was told and showed, if it is kept.
     pub vectors: Option<Both>,
+    /// What the pins of a board have done, if it is kept.
+    pub board: Option<Vectors>,
 }
 
 /// The cycles of link and line.
@@ -45,7 +47,6 @@ pub struct Both {
 }
 
 /// The link with its line, and the host's end of that.
-#[expect(clippy::large_enum_variant, reason = "there is one of them")]
 enum Wire {
     Uart { link: LinkSim, model: Link, sender: Sender, receiver: Receiver },
     Spi { link: Box<dyn AnyLink>, line: SpiSim, model: Link, host: SpiHost },
@@ -78,6 +79,7 @@ impl LinkBench {
             clocks: 0,
             steps: 0,
             vectors: None,
+            board: None,
         }
     }
 
@@ -119,6 +121,10 @@ impl LinkBench {
         let (shown, level) = self.wire.settle(&seen);
         if let Some(both) = &mut self.vectors {
             self.wire.keep(&seen, &shown, level, both);
+        }
+        if let Some(board) = &mut self.board {
+            let (told, showed) = ports::board_cycle(seen.rx, &self.pins, shown.tx, &self.outputs);
+            board.add(told, showed);
         }
         let byte = self.wire.clock(&seen, &shown, level, self.clocks);
         self.engine.clock();

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 /// It has pins for all ports of the engine.
-const PART: Part = Part { device: "hx8k", package: "ct256" };
+const PART: Part<'static> = Part { device: "hx8k", package: "ct256" };
 
 pub struct Stages {
     pub build: EngineBuild,

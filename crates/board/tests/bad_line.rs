@@ -116,24 +116,34 @@ fn pulses_of_the_verilog_on_a_bad_line_are_those_of_models_on_a_clean_one() {
     assert_eq!(went.stop, None, "too little is made");
 }
 
+/// `CARRYSTEP_GARBAGE` asks for so many milliseconds.
 #[test]
 fn garbage_hangs_nothing() {
+    let milliseconds = std::env::var("CARRYSTEP_GARBAGE").map_or(2000, |asked| asked.parse().unwrap());
     // As fast as the line carries it.
-    let end = End::<Board>::new(uart(), Faults::default(), 3);
+    let uart = Uart::new(CLOCK_HZ, 921_600).unwrap();
+    let end = End::<Board>::new(uart, Faults::default(), 3);
     let mut random = Random(9);
-    for _ in 0..40 {
+    let mut bytes = 0_u64;
+    for _ in 0..milliseconds {
         let mut world = end.0.borrow_mut();
-        for _ in 0..300 {
+        while world.board.unsaid() < 92 {
             let any = random.next() as u8;
             world.board.say(if random.below(5) == 0 { [0xc0, 0xdb, 0xdc, 0xdd][usize::from(any & 3)] } else { any });
+            bytes += 1;
         }
         drop(world);
         end.wait(1);
     }
     assert_eq!(end.0.borrow().board.stops(), []);
-    let mut host = end.connect(uart());
+    let mut host = end.connect(uart);
+    assert_eq!(host.status().answer.next, 0, "garbage was executed");
     host.enable().unwrap();
     let commands = waves(&mut random, 3, TICKS);
     let went = make(&end, &mut host, &commands);
     assert_eq!(went.stop, None);
+    eprintln!(
+        "FIGURES {bytes} bytes of garbage in {} s of the line's time, nothing executed, then a move",
+        milliseconds / 1000
+    );
 }

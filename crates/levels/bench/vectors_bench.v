@@ -6,7 +6,7 @@ module vectors_bench;
     reg [INPUTS-1:0] inputs;
     wire [OUTPUTS-1:0] outputs;
     reg [OUTPUTS-1:0] expected, counts;
-    MODULE module_of_vectors (.clock(clock)CONNECTIONS);
+    MODULE module_of_vectors (.CLOCK(clock)CONNECTIONS);
 
     integer file, fields;
     reg [63:0] cycle, count;

@@ -32,6 +32,8 @@ impl Bits {
 /// A module's ports, and its cycles.
 #[derive(Debug, Clone)]
 pub struct Vectors {
+    /// The port of the clock.
+    pub clock: &'static str,
     /// Name and width of each input, in the order in which the cycles have them.
     pub inputs: &'static [(&'static str, u32)],
     /// Of each output.
@@ -43,7 +45,7 @@ pub struct Vectors {
 impl Vectors {
     /// None yet.
     pub const fn new(inputs: &'static [(&'static str, u32)], outputs: &'static [(&'static str, u32)]) -> Self {
-        Self { inputs, outputs, rows: Vec::new() }
+        Self { clock: "clock", inputs, outputs, rows: Vec::new() }
     }
 
     /// One more cycle.
@@ -96,6 +98,7 @@ impl Vectors {
         }
         let [inputs, outputs] = widths.map(|width| width.to_string());
         BENCH
+            .replace("CLOCK", self.clock)
             .replace("CONNECTIONS", &connections)
             .replace("MODULE", module)
             .replace("OUTPUTS", &outputs)

@@ -30,7 +30,7 @@ struct Run {
 }
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its `FIGURES`.
-const RUNS: [Run; 8] = [
+const RUNS: [Run; 9] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
@@ -60,6 +60,12 @@ const RUNS: [Run; 8] = [
         what: "moves over a line that flips, drops, doubles, cuts and delays bytes, to a board of models: pulses are those of a clean line, or a stop says why",
         asks: &[("CARRYSTEP_FRAMES", "100000")],
         cargo: &["-p", "carrystep-board", "--test", "bad_line", "pulses_on_a_bad_line"],
+    },
+    Run {
+        name: "garbage",
+        what: "an hour of garbage at 921 600 baud, then a move",
+        asks: &[("CARRYSTEP_GARBAGE", "3600000")],
+        cargo: &["-p", "carrystep-board", "--test", "bad_line", "garbage_hangs_nothing"],
     },
     Run {
         name: "dead-host",
