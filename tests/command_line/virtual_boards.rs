@@ -129,9 +129,12 @@ fn moves_reach_the_pins_of_a_board_as_they_were_planned() {
     // All of the first move fits into the queues: by the clock on the wall, a host may be late at any time.
     let (first, _) = MOVES.split_once("\n[[move]]\nprofile = \"sine\"").unwrap();
     folder.write("first.toml", first);
-    for (options, file, ends) in
-        [("", "first.toml", "x at 100\ny at -240"), ("--fast", "move.toml", "x at 39\ny at -240")]
-    {
+    folder.write("short.toml", first.replace("x = 20, y = -3", "x = 2, y = -0.2"));
+    for (options, file, ends) in [
+        ("", "first.toml", "x at 100\ny at -240"),
+        ("--fast", "move.toml", "x at 39\ny at -240"),
+        ("--fast --level verilator", "short.toml", "x at 10\ny at -16"),
+    ] {
         let board = Board::new(&folder, &format!("--vcd a.vcd {options}"));
         let ran = folder.run(&format!("run {file} --port {}", board.port));
         passed(&ran);

@@ -5,7 +5,7 @@ use crate::spi::Master;
 use carrystep_model::fast::Edges;
 use carrystep_model::{FastEngine, Link};
 use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{Cause, EngineInputs, EngineOutputs, MAX_AXES};
+use carrystep_spec::engine::{Cause, EngineInputs, EngineOutputs, Guard, MAX_AXES};
 use carrystep_spec::link::{Line, LinkInputs, LinkOutputs, Uart};
 
 /// Switches at the board's inputs; `true` and a bit that is set are active, whatever the level of the pin.
@@ -17,6 +17,19 @@ pub struct Switches {
     pub limit_min: u8,
     /// Limits at the high ends, a bit each axis.
     pub limit_max: u8,
+}
+
+impl Switches {
+    /// What they drive, with the polarity of their pins.
+    pub(crate) fn pins(self, guard: &Guard) -> EngineInputs {
+        let low = if guard.limits_low { 0xff } else { 0 };
+        EngineInputs {
+            estop: self.estop != guard.estop_low,
+            limit_min: self.limit_min ^ low,
+            limit_max: self.limit_max ^ low,
+            ..EngineInputs::default()
+        }
+    }
 }
 
 /// The board.
@@ -115,11 +128,7 @@ impl Board {
 
     /// Sets the switches from this cycle on.
     pub fn press(&mut self, switches: Switches) {
-        let guard = &self.engine.core().build().guard;
-        let low = |wired_low| if wired_low { 0xff } else { 0 };
-        self.pins.estop = switches.estop != guard.estop_low;
-        self.pins.limit_min = switches.limit_min ^ low(guard.limits_low);
-        self.pins.limit_max = switches.limit_max ^ low(guard.limits_low);
+        self.pins = switches.pins(&self.engine.core().build().guard);
     }
 
     /// Goes on to this cycle; `to` hears of the pins. It stops once on its way, where the first start has loaded: until

@@ -5,18 +5,23 @@
 //! bytes <- Ear <---tx----- Link <--------     ^------- e-stop and limits
 //! ```
 //!
-//! Time is clocks of the gateware: whoever has a board says how far it runs.
+//! [`VerilatedBoard`] has the exported Verilog in the place of link and engine. Time is clocks of the gateware: whoever has
+//! a board says how far it runs.
 
 mod board;
+mod gateware;
 mod line;
 mod pace;
 mod spi;
 #[cfg(unix)]
 mod terminal;
+mod verilated;
 
 pub use board::{Board, Switches};
 pub use carrystep_model::fast::Edges;
+pub use gateware::Gateware;
 pub use line::{Ear, Speaker};
 pub use pace::{Pace, Walk};
 #[cfg(unix)]
 pub use terminal::Terminal;
+pub use verilated::VerilatedBoard;

@@ -119,6 +119,11 @@ impl Ear {
         self.level = level;
     }
 
+    /// The line has had its level up to this clock, and keeps it.
+    pub fn reach(&mut self, cycle: u64) {
+        self.hear(cycle, self.level);
+    }
+
     /// The next byte that was heard.
     pub fn next_byte(&mut self) -> Option<u8> {
         self.heard.pop_front()

@@ -4,6 +4,7 @@
 
 mod support;
 
+use carrystep_board::{Board, VerilatedBoard};
 use carrystep_link::{Command, Ended, HostError, Program, Wish};
 use carrystep_model::fast::Edge;
 use carrystep_spec::AXES;
@@ -11,7 +12,7 @@ use carrystep_spec::engine::Cause;
 use carrystep_spec::link::Uart;
 use support::random::Random;
 use support::wire::Faults;
-use support::{BoardHost, CLOCK_HZ, End, waves};
+use support::{BoardHost, CLOCK_HZ, End, Kind, waves};
 
 /// Segments of an axis in a move, and ticks of each: the queues hold a seventh of a second.
 const SEGMENTS: u32 = 60;
@@ -29,7 +30,7 @@ struct Went {
 }
 
 /// Makes a move, and clears what has stopped it.
-fn make(end: &End, host: &mut BoardHost, commands: &[Command]) -> Went {
+fn make<B: Kind>(end: &End<B>, host: &mut BoardHost<B>, commands: &[Command]) -> Went {
     let (loads, stops) = (end.0.borrow().board.loads().len(), end.0.borrow().board.stops().len());
     let ended = host.stream(Program::new(commands, AXES as u8).unwrap(), |_| Wish::GoOn);
     let positions = host.status().positions;
@@ -55,8 +56,8 @@ fn make(end: &End, host: &mut BoardHost, commands: &[Command]) -> Went {
 }
 
 /// What the pins of a new board do at the end of such a line, and how often that harms.
-fn on_a_line(faults: Faults, seed: u64, commands: &[Command]) -> (Went, u64) {
-    let end = End::new(uart(), faults, seed);
+fn on_a_line<B: Kind>(faults: Faults, seed: u64, commands: &[Command]) -> (Went, u64) {
+    let end = End::<B>::new(uart(), faults, seed);
     let mut host = end.connect(uart());
     host.enable().unwrap();
     let went = make(&end, &mut host, commands);
@@ -82,9 +83,9 @@ fn pulses_on_a_bad_line_are_those_of_a_clean_one() {
     let (mut sent, mut moves, mut stops, mut edges, mut harmed) = (0, 0_u64, 0_u64, 0, 0);
     while sent < frames {
         let commands = waves(&mut random, SEGMENTS, TICKS);
-        let (clean, _) = on_a_line(Faults::default(), 0, &commands);
+        let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
         assert_eq!(clean.stop, None);
-        let (went, harms) = on_a_line(Faults::BAD, random.next(), &commands);
+        let (went, harms) = on_a_line::<Board>(Faults::BAD, random.next(), &commands);
         compare(&went, &clean.edges);
         if let Some((_, cause)) = went.stop {
             // Nothing that a frame could have done: it came too late, or not at all.
@@ -103,13 +104,25 @@ fn pulses_on_a_bad_line_are_those_of_a_clean_one() {
     assert!(stops * 2 < moves, "too few moves are made: {stops} of {moves} stopped");
 }
 
+/// The same line, at whose end is the exported Verilog: its pulses are those of a board of models on a clean one.
+#[test]
+fn pulses_of_the_verilog_on_a_bad_line_are_those_of_models_on_a_clean_one() {
+    let commands = waves(&mut Random(12), 9, 3000);
+    let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
+    let (went, harms) = on_a_line::<VerilatedBoard>(Faults::BAD, 5, &commands);
+    compare(&went, &clean.edges);
+    eprintln!("FIGURES the line harmed {harms} times, {} edges, stop {:?}", went.edges.len(), went.stop);
+    assert!(harms > 1, "the line is too good");
+    assert_eq!(went.stop, None, "too little is made");
+}
+
 /// `CARRYSTEP_GARBAGE` asks for so many milliseconds.
 #[test]
 fn garbage_hangs_nothing() {
     let milliseconds = std::env::var("CARRYSTEP_GARBAGE").map_or(2000, |asked| asked.parse().unwrap());
     // As fast as the line carries it.
     let uart = Uart::new(CLOCK_HZ, 921_600).unwrap();
-    let end = End::new(uart, Faults::default(), 3);
+    let end = End::<Board>::new(uart, Faults::default(), 3);
     let mut random = Random(9);
     let mut bytes = 0_u64;
     for _ in 0..milliseconds {

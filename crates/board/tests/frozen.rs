@@ -4,7 +4,7 @@
 
 mod support;
 
-use carrystep_board::Switches;
+use carrystep_board::{Board, Switches};
 use carrystep_link::{Command, HostError, Program, Segment, Wish};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_spec::AXES;
@@ -35,14 +35,14 @@ fn a_freeze_loses_no_step_in_silence() {
         };
         let commands: Vec<_> = waves(&mut random, 10, 8000).into_iter().map(faster).collect();
         let program = || Program::new(&commands, AXES as u8).unwrap();
-        let clean = End::new(uart, Faults::default(), 0);
+        let clean = End::<Board>::new(uart, Faults::default(), 0);
         let mut host = clean.connect(uart);
         host.enable().unwrap();
         host.stream(program(), |_| Wish::GoOn).unwrap();
         let load = clean.0.borrow().board.loads()[0];
         let clean = clean.0.borrow().edges_since(load);
 
-        let end = End::new(uart, Faults::BAD, seed);
+        let end = End::<Board>::new(uart, Faults::BAD, seed);
         let mut host = end.connect(uart);
         host.enable().unwrap();
         let after = (20 + random.below(100)) * MS + random.below(MS);

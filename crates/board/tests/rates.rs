@@ -3,6 +3,7 @@
 
 mod support;
 
+use carrystep_board::Board;
 use carrystep_link::line::spi::SpiLine;
 use carrystep_link::{Ended, Host, Patience, Program, Wish};
 use carrystep_spec::link::{Line, Uart};
@@ -15,7 +16,7 @@ use support::{CLOCK_HZ, End, TICK_NS, build, waves};
 #[track_caller]
 fn carries(baud: u32, per_second: u32) {
     let uart = Uart::new(CLOCK_HZ, baud).unwrap();
-    let end = End::new(uart, Faults::default(), 1);
+    let end = End::<Board>::new(uart, Faults::default(), 1);
     let mut host = end.connect(uart);
     host.enable().unwrap();
     let ticks = (1_000_000_000 / TICK_NS) as u32 / per_second;

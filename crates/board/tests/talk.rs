@@ -1,49 +1,46 @@
 //! A host and a board in one process: who it is, a move, a stop, in simulated time.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-use carrystep_board::{Board, Switches};
+mod support;
+
+use carrystep_board::{Board, Switches, VerilatedBoard};
 use carrystep_link::{Clock, Command, Ended, Exchanged, Host, HostError, Line, Patience, Program, Segment, Wish};
+use carrystep_model::fast::Edge;
 use carrystep_spec::link::Uart;
-use carrystep_spec::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use std::cell::RefCell;
 use std::convert::Infallible;
 use std::rc::Rc;
-
-const CLOCK_HZ: u64 = 48_000_000;
-
-fn build() -> EngineBuild {
-    let timebase = Timebase::new(CLOCK_HZ, 2000, 16).unwrap();
-    let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
-    let mut build = EngineBuild::minimal(&build, 1 << 40);
-    build.guard.watchdog = 100;
-    build.guard.round = 1024;
-    build
-}
+use support::{CLOCK_HZ, Kind, build};
 
 /// The host's end: each exchange is half a millisecond of the board.
-#[derive(Clone)]
-struct End(Rc<RefCell<Board>>);
+struct End<B>(Rc<RefCell<(B, Vec<Edge>)>>);
 
-impl End {
+impl<B> Clone for End<B> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<B: Kind> End<B> {
     fn new(uart: Uart) -> Self {
-        Self(Rc::new(RefCell::new(Board::new(&build(), uart))))
+        Self(Rc::new(RefCell::new((B::new(uart), Vec::new()))))
     }
 }
 
-impl Clock for End {
+impl<B: Kind> Clock for End<B> {
     fn milliseconds(&mut self) -> u32 {
-        (self.0.borrow().cycle() / (CLOCK_HZ / 1000)) as u32
+        (self.0.borrow().0.cycle() / (CLOCK_HZ / 1000)) as u32
     }
 }
 
-impl Line for End {
+impl<B: Kind> Line for End<B> {
     type Error = Infallible;
 
     fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> Result<Exchanged, Infallible> {
-        let mut board = self.0.borrow_mut();
+        let (board, edges) = &mut *self.0.borrow_mut();
         out.iter().for_each(|&byte| board.say(byte));
         let end = board.cycle() + CLOCK_HZ / 2000;
-        board.run(end, &mut ());
+        board.reach(end, edges);
         let mut received = 0;
         for place in into {
             let Some(byte) = board.next_byte() else { break };
@@ -54,12 +51,12 @@ impl Line for End {
     }
 }
 
-fn connected(baud: u32) -> (End, Host<End, End>) {
+fn connected<B: Kind>(baud: u32) -> (End<B>, Host<End<B>, End<B>>) {
     let uart = Uart::new(CLOCK_HZ, baud).unwrap();
     let end = End::new(uart);
     let id = uart.build_id(&build());
     let host =
-        Host::connect(end.clone(), end.clone(), Some(id.0), Patience { change: 200, ..Patience::default() }).unwrap();
+        Host::connect(end.clone(), end.clone(), Some(id.0), Patience { change: 50, ..Patience::default() }).unwrap();
     (end, host)
 }
 
@@ -78,24 +75,24 @@ fn commands(pieces: u32) -> Vec<Command> {
     commands
 }
 
-#[test]
-fn it_knows_who_it_is_and_moves() {
-    for baud in [921_600, 3_000_000] {
-        let (end, mut host) = connected(baud);
-        assert_eq!((host.facts().axes, host.facts().tick_ns, host.facts().watchdog_ticks), (6, 2000, 102_400));
-        host.enable().unwrap();
-        let commands = commands(41);
-        let ended = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap();
-        assert_eq!(ended, Ended::Done);
-        // Half of a step is behind it when it begins.
-        assert_eq!(host.status().positions[..6], [5, 0, 0, 5, 0, 0], "{:?}", host.status());
-        assert_eq!(end.0.borrow().engine().core().shaper(3).position, 5);
-    }
+/// The edges of a move from its load on.
+fn moves<B: Kind>(baud: u32) -> Vec<Edge> {
+    let (end, mut host) = connected::<B>(baud);
+    assert_eq!((host.facts().axes, host.facts().tick_ns, host.facts().watchdog_ticks), (6, 2000, 50_176));
+    host.enable().unwrap();
+    let commands = commands(41);
+    let ended = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap();
+    assert_eq!(ended, Ended::Done);
+    // Half of a step is behind it when it begins.
+    assert_eq!(host.status().positions[..6], [5, 0, 0, 5, 0, 0], "{:?}", host.status());
+    let (board, edges) = &*end.0.borrow();
+    assert_eq!(board.position(3), 5);
+    let load = board.loads()[0];
+    edges.iter().map(|edge| Edge { clock: edge.clock - load, ..*edge }).collect()
 }
 
-#[test]
-fn it_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
-    let (end, mut host) = connected(921_600);
+fn stops<B: Kind>() {
+    let (end, mut host) = connected::<B>(921_600);
     host.enable().unwrap();
     let commands = commands(401);
     let program = || Program::new(&commands, 6).unwrap();
@@ -105,7 +102,7 @@ fn it_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
         if looks == 100 { Wish::Stop } else { Wish::GoOn }
     });
     assert_eq!(ended, Ok(Ended::Stopped));
-    let true_position = end.0.borrow().engine().core().shaper(0).position;
+    let true_position = end.0.borrow().0.position(0);
     assert_eq!(host.status().positions[0], true_position);
     host.clear().unwrap();
 
@@ -114,19 +111,44 @@ fn it_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
     let error = host.stream(program(), |_| {
         looks += 1;
         if looks == 60 {
-            pressed.0.borrow_mut().press(Switches { estop: true, ..Switches::default() });
+            pressed.0.borrow_mut().0.press(Switches { estop: true, ..Switches::default() });
         }
         Wish::GoOn
     });
     assert_eq!(error, Err(HostError::Fault { cause: 0, culprits: 0 }));
     assert!(matches!(host.clear(), Err(HostError::TooLong { .. })));
-    end.0.borrow_mut().press(Switches::default());
+    end.0.borrow_mut().0.press(Switches::default());
     host.clear().unwrap();
+}
+
+#[test]
+fn it_knows_who_it_is_and_moves() {
+    for baud in [921_600, 3_000_000] {
+        moves::<Board>(baud);
+    }
+}
+
+#[test]
+fn it_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
+    stops::<Board>();
+}
+
+#[test]
+fn its_verilog_makes_the_same_pulses_in_the_same_clocks() {
+    let baud = 3_000_000;
+    let edges = moves::<VerilatedBoard>(baud);
+    assert!(edges.len() > 400, "{} edges are no move", edges.len());
+    assert_eq!(edges, moves::<Board>(baud));
+}
+
+#[test]
+fn its_verilog_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
+    stops::<VerilatedBoard>();
 }
 
 /// What a board says to some requests in the middle of a move, and all of it in the end; it runs so many clocks at once.
 fn said(at_once: u64) -> (Vec<u8>, String) {
-    let (end, mut host) = connected(3_000_000);
+    let (end, mut host) = connected::<Board>(3_000_000);
     host.enable().unwrap();
     let commands = commands(41);
     let mut looks = 0;
@@ -135,7 +157,7 @@ fn said(at_once: u64) -> (Vec<u8>, String) {
         if looks == 50 { Wish::Stop } else { Wish::GoOn }
     });
     assert_eq!(stopped, Ok(Ended::Stopped));
-    let mut board = end.0.borrow().clone();
+    let mut board = end.0.borrow().0.clone();
     let mut said = Vec::new();
     let identity = [0xc0, 0x00, 0x00, 0xff, 0x12, 0xd9, 0x41, 0xc0];
     let position = [0xc0, 0x01, 0x4a, 0x30, 0x8b, 0xcb, 0xce, 0xc0];

@@ -8,7 +8,7 @@ use carrystep_levels::Level;
 use carrystep_sweep::Shard;
 use clap::{Args, Parser};
 #[cfg(unix)]
-pub use port::VirtualBoard;
+pub use port::{BoardLevel, VirtualBoard};
 pub use port::{Home, Jog, Peer, Port, Run, Status, Stop};
 pub use profile::Profile;
 use std::path::PathBuf;

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::switches::Panel;
-use carrystep_board::{Board, Edges, Pace, Terminal};
+use carrystep_board::{Edges, Gateware, Pace, Terminal};
 use std::io::Write as _;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -18,8 +18,8 @@ const FULL: usize = 256;
 const NAP: Duration = Duration::from_micros(300);
 
 /// All of it.
-pub struct Desk {
-    pub board: Board,
+pub struct Desk<B> {
+    pub board: B,
     pub terminal: Terminal,
     pub pace: Pace,
     pub panel: Panel,
@@ -27,7 +27,7 @@ pub struct Desk {
     pub clock_hz: u64,
 }
 
-impl Desk {
+impl<B: Gateware> Desk<B> {
     /// Goes on until the first start; false where it is to end before.
     pub fn until_start(&mut self) -> Result<bool, Failure> {
         while self.board.loads().is_empty() {
@@ -40,8 +40,7 @@ impl Desk {
 
     /// Goes on a little; false where it is to end.
     pub fn step(&mut self, to: &mut impl Edges) -> Result<bool, Failure> {
-        let core = self.board.engine().core();
-        let look = self.panel.look(|axis| core.shaper(axis).position);
+        let look = self.panel.look(|axis| self.board.position(axis));
         for line in look.unknown {
             // Nobody is left to tell if this fails.
             let _ = writeln!(std::io::stderr(), "not understood: {line:?}; estop 1, min x 1, max x 0, end are");
@@ -57,10 +56,8 @@ impl Desk {
             }
             bytes.into_iter().for_each(|byte| self.board.say(byte));
         }
-        let core = self.board.engine().core();
-        let to_go = core.ticks_to_go().map(|ticks| ticks * u64::from(core.build().timebase.clocks_per_tick()));
-        let target = self.pace.target(self.board.cycle(), to_go);
-        self.board.run(target.min(self.board.cycle() + self.clock_hz / LOOKS_PER_SECOND), to);
+        let target = self.pace.target(self.board.cycle(), self.board.to_go());
+        self.board.run(target.min(self.board.cycle() + self.clock_hz / LOOKS_PER_SECOND), to)?;
         let heard: Vec<u8> = std::iter::from_fn(|| self.board.next_byte()).collect();
         if !heard.is_empty() {
             self.terminal

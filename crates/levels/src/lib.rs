@@ -4,6 +4,7 @@
 //! outputs of the core, in each cycle in which any of them changed. Equal reports are equal pins in
 //! every clock.
 
+pub mod board;
 pub mod engine;
 mod external;
 pub mod fast;

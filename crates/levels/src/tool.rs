@@ -1,6 +1,7 @@
 //! The external simulators: are they there, and what they say when they fail.
 
 use crate::LevelError;
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// An external program and the line that installs it.
@@ -33,4 +34,12 @@ pub(crate) fn complete(tool: &Tool, command: &mut Command) -> Result<(), LevelEr
 /// An input or output error, with what was tried.
 pub(crate) fn io(context: impl Into<String>) -> impl FnOnce(std::io::Error) -> LevelError {
     move |source| LevelError::Io { context: context.into(), source }
+}
+
+/// Writes files into a folder.
+pub(crate) fn put(folder: &Path, files: &[(&str, &str)]) -> Result<(), LevelError> {
+    for (name, text) in files {
+        std::fs::write(folder.join(name), text).map_err(io(format!("cannot write {name}")))?;
+    }
+    Ok(())
 }

@@ -4,43 +4,63 @@
 use crate::tool::{self, VERILATOR};
 use crate::{Job, LevelError, Observer, Outcome, external};
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
+use std::sync::Mutex;
 
 const BENCH: &str = include_str!("../bench/six_axis_bench.cpp");
-const OPTIONS: [&str; 9] = ["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "-Wno-fatal", "-CFLAGS", "-O2"];
+const OPTIONS: [&str; 7] = ["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "-Wno-fatal"];
 
 pub(crate) fn run(verilog: &str, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
-    tool::find(&VERILATOR)?;
     let program_file = tempfile::NamedTempFile::new().map_err(tool::io("cannot make a temporary file"))?;
+    let six_axis =
+        Simulation { name: "six_axis", top: "carrystep_six_axis", bench: BENCH, options: &["-CFLAGS", "-O2"] };
+    let mut simulation = Command::new(six_axis.compiled(verilog)?);
     std::fs::write(&program_file, external::program_text(job)).map_err(tool::io("cannot write the program"))?;
-    let mut simulation = Command::new(compiled(verilog)?);
     simulation.arg(program_file.path()).args([job.tail.to_string(), job.max_clocks.to_string()]);
     external::observe(&VERILATOR, &mut simulation, job, observer)
 }
 
-/// The compiled simulation of this Verilog, from the cache or made now.
-fn compiled(verilog: &str) -> Result<PathBuf, LevelError> {
-    let cache = std::env::temp_dir().join("carrystep-verilator");
-    std::fs::create_dir_all(&cache).map_err(tool::io("cannot make the cache folder"))?;
-    let mut hash = DefaultHasher::new();
-    (verilog, BENCH, OPTIONS, env!("CARGO_PKG_VERSION")).hash(&mut hash);
-    let binary = cache.join(format!("six_axis_{:016x}", hash.finish()));
-    if !binary.is_file() {
-        let folder = tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
-        let made = compile(folder.path(), verilog)?;
-        // Whole or not at all: another run may be looking for it.
-        std::fs::rename(made, &binary).map_err(tool::io("cannot keep the compiled simulation"))?;
-    }
-    Ok(binary)
+/// Two tests of a process may want the same simulation.
+static COMPILER: Mutex<()> = Mutex::new(());
+
+/// What Verilator makes of Verilog.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Simulation<'a> {
+    /// Before the hash in its name.
+    pub name: &'a str,
+    /// The top module.
+    pub top: &'a str,
+    /// What drives it, in C++.
+    pub bench: &'a str,
+    /// And what else Verilator is told.
+    pub options: &'a [&'a str],
 }
 
-fn compile(folder: &Path, verilog: &str) -> Result<PathBuf, LevelError> {
-    for (name, text) in [("core.v", verilog), ("bench.cpp", BENCH)] {
-        std::fs::write(folder.join(name), text).map_err(tool::io(format!("cannot write {name}")))?;
+impl Simulation<'_> {
+    /// The compiled simulation of this Verilog, from the cache or made now.
+    ///
+    /// # Errors
+    /// [`LevelError`]: Verilator is missing or fails.
+    pub fn compiled(&self, verilog: &str) -> Result<PathBuf, LevelError> {
+        let Self { name, top, bench, options } = *self;
+        tool::find(&VERILATOR)?;
+        let cache = std::env::temp_dir().join("carrystep-verilator");
+        std::fs::create_dir_all(&cache).map_err(tool::io("cannot make the cache folder"))?;
+        let mut hash = DefaultHasher::new();
+        (verilog, bench, top, options, OPTIONS, env!("CARGO_PKG_VERSION")).hash(&mut hash);
+        let binary = cache.join(format!("{name}_{:016x}", hash.finish()));
+        let _one_at_a_time = COMPILER.lock();
+        if !binary.is_file() {
+            let folder = tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
+            tool::put(folder.path(), &[("core.v", verilog), ("bench.cpp", bench)])?;
+            let mut command = Command::new(VERILATOR.name);
+            command.args(OPTIONS).args(options).args(["--top-module", top, "-o", "bench", "core.v", "bench.cpp"]);
+            tool::complete(&VERILATOR, command.current_dir(folder.path()))?;
+            // Whole or not at all: another run may be looking for it.
+            std::fs::rename(folder.path().join("obj_dir").join("bench"), &binary)
+                .map_err(tool::io("cannot keep the compiled simulation"))?;
+        }
+        Ok(binary)
     }
-    let mut command = Command::new(VERILATOR.name);
-    command.args(OPTIONS).args(["--top-module", "carrystep_six_axis", "-o", "bench", "core.v", "bench.cpp"]);
-    tool::complete(&VERILATOR, command.current_dir(folder))?;
-    Ok(folder.join("obj_dir").join("bench"))
 }

@@ -71,7 +71,7 @@ const RUNS: [Run; 9] = [
         name: "dead-host",
         what: "hosts that die in the middle of a move: the board stops in time, its positions are true, the next host goes on",
         asks: &[("CARRYSTEP_DEATHS", "50")],
-        cargo: &["-p", "carrystep-board", "--test", "dead_host"],
+        cargo: &["-p", "carrystep-board", "--test", "dead_host", "the_board_stops"],
     },
     Run {
         name: "resources",

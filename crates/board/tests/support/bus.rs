@@ -1,9 +1,8 @@
 //! A board on an SPI bus, as embedded-hal has it; time is the board's, and a transfer takes a microsecond more than its bits.
 
-use super::{CLOCK_HZ, MS, build};
+use super::{CLOCK_HZ, Kind as _, MS, build};
 use carrystep_board::Board;
 use carrystep_link::Clock;
-use carrystep_spec::AXES;
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -57,10 +56,8 @@ impl SpiDevice for Bus {
         while board.cycle() < end {
             board.run(end, &mut ());
         }
-        let core = board.engine().core();
-        let moving = if wired.handed_over { 0 } else { core.in_a_move() };
-        let waiting = (0..AXES).filter(|axis| moving >> axis & 1 == 1).map(|axis| core.waiting(axis));
-        wired.least_waiting = waiting.min().unwrap_or(usize::MAX).min(wired.least_waiting);
+        let waiting = board.least_waiting().filter(|_| !wired.handed_over);
+        wired.least_waiting = waiting.unwrap_or(usize::MAX).min(wired.least_waiting);
         Ok(())
     }
 }

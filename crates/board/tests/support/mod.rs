@@ -7,7 +7,7 @@ pub mod random;
 #[path = "../../../link/tests/support/wire.rs"]
 pub mod wire;
 
-use carrystep_board::{Board, Edges};
+use carrystep_board::{Board, Edges, Gateware, VerilatedBoard};
 use carrystep_link::{Clock, Command, Exchanged, Host, Line, Patience, Segment};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_spec::link::{END, Uart};
@@ -28,7 +28,43 @@ pub const STOP: u64 = 1 << 45;
 /// The greatest speed of [`waves`].
 pub const FASTEST: i64 = 1 << 58;
 
-pub type BoardHost = Host<End, End>;
+pub type BoardHost<B> = Host<End<B>, End<B>>;
+
+/// A kind of board that is to do the same as every other.
+pub trait Kind: Gateware + Sized {
+    fn new(uart: Uart) -> Self;
+
+    /// Segments that wait for the axis in the middle of a move that has fewest, where that can be told.
+    fn least_waiting(&self) -> Option<usize>;
+
+    /// To this cycle.
+    fn reach(&mut self, end: u64, to: &mut impl Edges) {
+        while self.cycle() < end {
+            self.run(end, to).unwrap();
+        }
+    }
+}
+
+impl Kind for Board {
+    fn new(uart: Uart) -> Self {
+        Self::new(&build(), uart)
+    }
+
+    fn least_waiting(&self) -> Option<usize> {
+        let core = self.engine().core();
+        (0..AXES).filter(|axis| core.in_a_move() >> axis & 1 == 1).map(|axis| core.waiting(axis)).min()
+    }
+}
+
+impl Kind for VerilatedBoard {
+    fn new(uart: Uart) -> Self {
+        Self::new(&build(), uart).unwrap()
+    }
+
+    fn least_waiting(&self) -> Option<usize> {
+        None
+    }
+}
 
 /// Six axes with a watchdog of about 100 ms.
 pub fn build() -> EngineBuild {
@@ -56,8 +92,8 @@ impl Edges for Seen {
     }
 }
 
-pub struct World {
-    pub board: Board,
+pub struct World<B> {
+    pub board: B,
     edges: Seen,
     there: Wire,
     back: Wire,
@@ -74,7 +110,7 @@ pub struct World {
     pub came: u64,
 }
 
-impl World {
+impl<B: Kind> World<B> {
     fn milliseconds(&self) -> u32 {
         (self.board.cycle() / MS) as u32
     }
@@ -84,14 +120,9 @@ impl World {
         for byte in self.there.receive(self.milliseconds()) {
             self.board.say(byte);
         }
-        let end = self.board.cycle() + MS;
-        while self.board.cycle() < end {
-            self.board.run(end, &mut self.edges);
-        }
-        let core = self.board.engine().core();
-        let moving = if self.handed_over { 0 } else { core.in_a_move() };
-        let waiting = (0..AXES).filter(|axis| moving >> axis & 1 == 1).map(|axis| core.waiting(axis));
-        self.least_waiting = waiting.min().unwrap_or(usize::MAX).min(self.least_waiting);
+        self.board.reach(self.board.cycle() + MS, &mut self.edges);
+        let waiting = self.board.least_waiting().filter(|_| !self.handed_over);
+        self.least_waiting = waiting.unwrap_or(usize::MAX).min(self.least_waiting);
         let mut piece = Vec::new();
         while let Some(byte) = self.board.next_byte() {
             self.came += 1;
@@ -134,13 +165,18 @@ impl World {
 }
 
 /// The host's end of the line, and its clock.
-#[derive(Clone)]
-pub struct End(pub Rc<RefCell<World>>);
+pub struct End<B>(pub Rc<RefCell<World<B>>>);
 
-impl End {
+impl<B> Clone for End<B> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<B: Kind> End<B> {
     pub fn new(uart: Uart, faults: Faults, seed: u64) -> Self {
         Self(Rc::new(RefCell::new(World {
-            board: Board::new(&build(), uart),
+            board: B::new(uart),
             edges: Seen::default(),
             there: Wire::new(faults, seed),
             back: Wire::new(faults, !seed),
@@ -154,7 +190,7 @@ impl End {
     }
 
     /// A host, which refuses any board but this.
-    pub fn connect(&self, uart: Uart) -> BoardHost {
+    pub fn connect(&self, uart: Uart) -> BoardHost<B> {
         let id = uart.build_id(&build());
         Host::connect(self.clone(), self.clone(), Some(id.0), Patience::default()).unwrap()
     }
@@ -165,7 +201,7 @@ impl End {
     }
 }
 
-impl Clock for End {
+impl<B: Kind> Clock for End<B> {
     fn milliseconds(&mut self) -> u32 {
         self.0.borrow().milliseconds()
     }
@@ -175,7 +211,7 @@ impl Clock for End {
 #[derive(Debug, PartialEq, Eq)]
 pub struct Died;
 
-impl Line for End {
+impl<B: Kind> Line for End<B> {
     type Error = Died;
 
     /// A millisecond, as long as a frame of USB.

@@ -101,6 +101,14 @@ pub struct Stop {
     pub json: bool,
 }
 
+/// What a virtual board is made of; values without a word each, or clap makes the help of all options twice as long.
+#[cfg(unix)]
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub enum BoardLevel {
+    Model,
+    Verilator,
+}
+
 /// `carrystep virtual-board`
 #[cfg(unix)]
 #[derive(Debug, Args)]
@@ -108,6 +116,9 @@ pub struct VirtualBoard {
     /// The machine whose gateware it has.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: PathBuf,
+    /// What it is made of: models, or the exported Verilog, which is far slower than a real board.
+    #[arg(long, value_enum, default_value_t = BoardLevel::Model)]
+    pub level: BoardLevel,
     /// Do not wait for the clock on the wall, but for a host that is late.
     #[arg(long)]
     pub fast: bool,

@@ -1,13 +1,13 @@
 //! `carrystep virtual-board`: the gateware of a machine behind a pseudo-terminal.
 
-use crate::arguments::VirtualBoard;
+use crate::arguments::{BoardLevel, VirtualBoard};
 use crate::connection;
 use crate::desk::Desk;
 use crate::failure::Failure;
 use crate::gateware;
 use crate::output::{self, OutputFile};
 use crate::switches::Panel;
-use carrystep_board::{Board, Pace, Terminal};
+use carrystep_board::{Board, Gateware, Pace, Terminal, VerilatedBoard};
 use carrystep_levels::pins::PinFeed;
 use carrystep_levels::replay::Replay;
 use carrystep_spec::engine::EngineOutputs;
@@ -39,15 +39,25 @@ struct Served {
 struct AxisServed {
     axis: String,
     position: i32,
-    discarded: u32,
+    /// Where the level can tell.
+    discarded: Option<u32>,
 }
 
 /// Serves until Ctrl-C, or `end` on standard input.
 pub fn run(arguments: &VirtualBoard) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
+    let (uart, _) = connection::wanted(&machine, &arguments.machine)?;
     let build = machine.engine();
-    let (uart, id) = connection::wanted(&machine, &arguments.machine)?;
-    let panel = Panel::new(&machine, &arguments.min, &arguments.max)?;
+    match arguments.level {
+        BoardLevel::Model => serve(Board::new(&build, uart), &machine, arguments),
+        BoardLevel::Verilator => serve(VerilatedBoard::new(&build, uart)?, &machine, arguments),
+    }
+}
+
+fn serve(board: impl Gateware, machine: &Machine, arguments: &VirtualBoard) -> Result<(), Failure> {
+    let build = machine.engine();
+    let (uart, id) = connection::wanted(machine, &arguments.machine)?;
+    let panel = Panel::new(machine, &arguments.min, &arguments.max)?;
     let mut vcd = arguments.vcd.as_deref().map(OutputFile::create).transpose()?;
     let terminal = Terminal::new().map_err(|error| Failure::Run(format!("no pseudo-terminal: {error}")))?;
     let told = format!("{}: {} baud, build {}\n", terminal.name(), uart.baud(), id);
@@ -59,13 +69,13 @@ pub fn run(arguments: &VirtualBoard) -> Result<(), Failure> {
     }
     let clock_hz = build.timebase.clock_hz();
     let pace = if arguments.fast { Pace::fast(clock_hz, ahead(&build)) } else { Pace::real(clock_hz) };
-    let mut desk = Desk { board: Board::new(&build, uart), terminal, pace, panel, clock_hz };
+    let mut desk = Desk { board, terminal, pace, panel, clock_hz };
     match &mut vcd {
         None => while desk.step(&mut ())? {},
-        Some(out) => capture(&mut desk, &machine, &build, out)?,
+        Some(out) => capture(&mut desk, machine, &build, out)?,
     }
     let files = vcd.map(OutputFile::appear).transpose()?.into_iter().collect();
-    tell(&served(&desk.board, &machine, files), arguments.json)
+    tell(&served(&desk.board, machine, files), arguments.json)
 }
 
 /// Clocks.
@@ -78,7 +88,12 @@ fn ahead(build: &EngineBuild) -> u64 {
 }
 
 /// Serves, and writes what the pins do. A capture begins with the time of the first start; before it no pin changes.
-fn capture(desk: &mut Desk, machine: &Machine, build: &EngineBuild, out: &mut OutputFile) -> Result<(), Failure> {
+fn capture(
+    desk: &mut Desk<impl Gateware>,
+    machine: &Machine,
+    build: &EngineBuild,
+    out: &mut OutputFile,
+) -> Result<(), Failure> {
     let goes_on = desk.until_start()?;
     let time = build.timebase;
     let load = desk.board.loads().first().copied().unwrap_or(0);
@@ -96,18 +111,17 @@ fn capture(desk: &mut Desk, machine: &Machine, build: &EngineBuild, out: &mut Ou
     Ok(feed.end(desk.board.cycle())?)
 }
 
-fn served(board: &Board, machine: &Machine, files: Vec<PathBuf>) -> Served {
-    let core = board.engine().core();
+fn served(board: &impl Gateware, machine: &Machine, files: Vec<PathBuf>) -> Served {
     let axis = |(number, axis): (usize, &carrystep_spec::Axis)| AxisServed {
         axis: axis.name.clone(),
-        position: core.shaper(number).position,
-        discarded: core.shaper(number).discarded,
+        position: board.position(number),
+        discarded: board.discarded(number),
     };
     Served {
         passed: true,
-        seconds: board.cycle() as f64 / core.build().timebase.clock_hz() as f64,
+        seconds: board.cycle() as f64 / machine.engine().timebase.clock_hz() as f64,
         clocks: board.cycle(),
-        fault: board.outputs().fault.map(gateware::told),
+        fault: board.fault().map(gateware::told),
         axes: machine.axes.iter().enumerate().map(axis).collect(),
         files,
     }
@@ -120,7 +134,7 @@ fn tell(served: &Served, json: bool) -> Result<(), Failure> {
     let mut text = format!("{:.3} s of the board's time\n", served.seconds);
     // Writing to a string cannot fail.
     for AxisServed { axis, position, discarded } in &served.axes {
-        let lost = if *discarded == 0 { String::new() } else { format!(", {discarded} discarded") };
+        let lost = discarded.filter(|&count| count > 0).map_or(String::new(), |count| format!(", {count} discarded"));
         let _ = writeln!(text, "{axis} at {position}{lost}");
     }
     if let Some(fault) = &served.fault {

@@ -4,20 +4,19 @@
 //! outputs must be those of the model in each clock, and what the engine keeps at the end too.
 
 use crate::engine::{EngineHost, Events};
-use crate::tool::{self, ICARUS, VERILATOR};
+use crate::tool::{self, ICARUS};
+use crate::verilator::Simulation;
 use crate::{Halt, Level, LevelError, halted};
 use carrystep_model::Engine;
 use carrystep_spec::engine::{EngineInputs, EngineOutputs};
 use carrystep_spec::{EngineBuild, Program};
 use std::fmt::Write as _;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 const ICARUS_BENCH: &str = include_str!("../../bench/engine_bench.v");
 const VERILATOR_BENCH: &str = include_str!("../../bench/engine_bench.cpp");
-const OPTIONS: [&str; 7] = ["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "-Wno-fatal"];
 
 /// P low, P high, position and discarded steps of each axis.
 pub type Kept = Vec<[u32; 4]>;
@@ -116,7 +115,7 @@ pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<
     match level {
         Level::Icarus => {
             let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
-            write(folder.path(), &[("stimuli.txt", &recording.text())])?;
+            tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
             first_difference(&mut icarus(folder.path(), verilog, recording.axes())?, recording)
         }
         Level::Verilator => difference_of_mutant(verilog, 0, recording),
@@ -132,7 +131,7 @@ pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<
 /// [`LevelError`]: a tool is missing or fails.
 pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording) -> Result<Option<String>, LevelError> {
     let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
-    write(folder.path(), &[("stimuli.txt", &recording.text())])?;
+    tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
     let mut simulation = Command::new(verilated(verilog, recording.axes())?);
     simulation.arg(folder.path().join("stimuli.txt")).arg(format!("+mutant={mutant}"));
     first_difference(&mut simulation, recording)
@@ -191,7 +190,7 @@ fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
 
 fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelError> {
     tool::find(&ICARUS)?;
-    write(folder, &[("core.v", verilog), ("bench.v", ICARUS_BENCH)])?;
+    tool::put(folder, &[("core.v", verilog), ("bench.v", ICARUS_BENCH)])?;
     let parameter = format!("-Pengine_bench.AXES={axes}");
     let arguments = ["-g2005", &parameter, "-o", "bench.vvp", "bench.v", "core.v"];
     tool::complete(&ICARUS, Command::new(ICARUS.name).args(arguments).current_dir(folder))?;
@@ -202,29 +201,7 @@ fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelErr
 
 /// The compiled simulation of this Verilog, from the cache or made now.
 fn verilated(verilog: &str, axes: usize) -> Result<PathBuf, LevelError> {
-    tool::find(&VERILATOR)?;
-    let cache = std::env::temp_dir().join("carrystep-verilator");
-    std::fs::create_dir_all(&cache).map_err(tool::io("cannot make the cache folder"))?;
-    let mut hash = DefaultHasher::new();
-    (verilog, VERILATOR_BENCH, axes, OPTIONS, env!("CARGO_PKG_VERSION")).hash(&mut hash);
-    let binary = cache.join(format!("engine_{:016x}", hash.finish()));
-    if !binary.is_file() {
-        let folder = tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
-        write(folder.path(), &[("core.v", verilog), ("bench.cpp", VERILATOR_BENCH)])?;
-        let mut command = Command::new(VERILATOR.name);
-        command.args(OPTIONS).args(["-CFLAGS", &format!("-O2 -DAXES={axes}")]);
-        command.args(["--top-module", "carrystep_engine", "-o", "bench", "core.v", "bench.cpp"]);
-        tool::complete(&VERILATOR, command.current_dir(folder.path()))?;
-        // Whole or not at all: another run may be looking for it.
-        std::fs::rename(folder.path().join("obj_dir").join("bench"), &binary)
-            .map_err(tool::io("cannot keep the compiled simulation"))?;
-    }
-    Ok(binary)
-}
-
-fn write(folder: &Path, files: &[(&str, &str)]) -> Result<(), LevelError> {
-    for (name, text) in files {
-        std::fs::write(folder.join(name), text).map_err(tool::io(format!("cannot write {name}")))?;
-    }
-    Ok(())
+    let flags = format!("-O2 -DAXES={axes}");
+    let options: &[&str] = &["-CFLAGS", &flags];
+    Simulation { name: "engine", top: "carrystep_engine", bench: VERILATOR_BENCH, options }.compiled(verilog)
 }

@@ -21,7 +21,7 @@ impl Random {
 
     /// Happens so many times in a million.
     pub fn happens(&mut self, per_million: u32) -> bool {
-        self.below(1_000_000) < per_million.into()
+        self.below(1_000_000) < u64::from(per_million)
     }
 
     /// A word that likes END, ESC and what follows them.

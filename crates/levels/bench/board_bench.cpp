@@ -1,0 +1,58 @@
+// A board in Verilator that goes as far as it is told. On standard input `COUNT RX ESTOP MIN MAX` is so many clocks
+// with these levels (masks in hex), and `0 ...` asks for a full stop. On standard output, each with the first cycle that has it:
+// `t CYCLE TX`, `p CYCLE STEP DIR`, `l CYCLE` a start has loaded, `f CYCLE CAUSE` a stop is called, and for a full stop
+// `. CYCLE IDLE HALTED FAULT CAUSE CULPRITS`.
+#include "Vboard_bench.h"
+#include "verilated.h"
+#include <cinttypes>
+#include <cstdio>
+
+namespace {
+
+struct Seen {
+    unsigned tx = 1, step = 0, dir = 0, fault = 0;
+};
+
+void look(const Vboard_bench& board, uint64_t cycle, Seen& seen) {
+    if (board.tx != seen.tx) std::printf("t %" PRIu64 " %u\n", cycle, unsigned{board.tx});
+    if (board.step != seen.step || board.dir != seen.dir)
+        std::printf("p %" PRIu64 " %x %x\n", cycle, unsigned{board.step}, unsigned{board.dir});
+    if (board.fault && !seen.fault) std::printf("f %" PRIu64 " %u\n", cycle, unsigned{board.cause});
+    seen = {board.tx, board.step, board.dir, board.fault};
+}
+
+}  // namespace
+
+int main() {
+    VerilatedContext context;
+    Vboard_bench board{&context};
+    Seen seen;
+    board.clock = 0;
+    board.rx = 1;
+    board.eval();
+    uint64_t cycle = 0, count;
+    unsigned rx, estop, limit_min, limit_max;
+    while (std::scanf("%" SCNu64 " %u %u %x %x", &count, &rx, &estop, &limit_min, &limit_max) == 5) {
+        board.rx = rx;
+        board.estop = estop;
+        board.limit_min = limit_min;
+        board.limit_max = limit_max;
+        board.eval();
+        if (count == 0) {
+            std::printf(". %" PRIu64 " %u %u %u %u %x\n", cycle, unsigned{board.idle}, unsigned{board.halted},
+                        unsigned{board.fault}, unsigned{board.cause}, unsigned{board.culprits});
+            std::fflush(stdout);
+        }
+        for (; count != 0; --count) {
+            const bool started = board.started;
+            board.clock = 1;
+            board.eval();
+            board.clock = 0;
+            board.eval();
+            ++cycle;
+            if (started) std::printf("l %" PRIu64 "\n", cycle);
+            look(board, cycle, seen);
+        }
+    }
+    return 0;
+}
