@@ -72,11 +72,11 @@ fn session(bench: &mut LinkBench) {
 fn on_the_icestick() {
     let icestick = board("icestick").expect("a board");
     // Nothing that takes milliseconds.
-    let text = shipped_machine(&icestick, &icestick.clocks[0]).expect("a machine");
+    let text = shipped_machine(icestick, &icestick.clocks[0]).expect("a machine");
     let quick = "[machine.guard]\nenable_ms = 0\ndebounce_us = 0\nwatchdog_ms = 0\n";
     let text = text.replace("[machine.guard]\n", quick);
     let source = Source { path: "machine.toml".into(), text: text.into() };
-    let gateware = Gateware::new(&icestick, &icestick.parts[0], source).expect("gateware");
+    let gateware = Gateware::new(icestick, &icestick.parts[0], source).expect("gateware");
     let uart = gateware.uart().expect("a UART");
     assert_eq!(gateware.build().axes(), AXES);
 
@@ -90,7 +90,6 @@ fn on_the_icestick() {
         files.iter().filter(|file| file.name.ends_with(end)).map(|file| file.text.as_str()).collect::<String>()
     };
     let (verilog, pcf) = (text(".v"), text(".pcf"));
-    eprintln!("{} cycles", vectors.cycles());
     let compare = |verilog: &str| vectors.difference(&gateware.top(), &simulated(verilog)).expect("Icarus");
     assert_eq!(compare(&verilog), None, "the Verilog");
 
