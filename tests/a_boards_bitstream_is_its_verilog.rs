@@ -92,6 +92,12 @@ fn on_the_icestick() {
     let (verilog, pcf) = (text(".v"), text(".pcf"));
     let compare = |verilog: &str| vectors.difference(&gateware.top(), &simulated(verilog)).expect("Icarus");
     assert_eq!(compare(&verilog), None, "the Verilog");
+    // Wires crossed on the way to the pins are seen.
+    for (wire, other) in [(".dir(dir)", ".dir(step)"), ("enable_n = !enabled", "enable_n = enabled")] {
+        let crossed = verilog.replace(wire, other);
+        assert_ne!(crossed, verilog, "{wire} is not there");
+        assert!(compare(&crossed).is_some(), "{other} is not seen");
+    }
 
     let part = Part { device: &icestick.parts[0].name, package: &icestick.parts[0].package };
     let netlist = ice40::synthesise_tight(&verilog, &gateware.top()).expect("a netlist");
