@@ -127,8 +127,8 @@ impl<const N: usize> Logic for Link<N> {
         self.machine.answer_take.next = self.answer_take.val();
 
         self.put_valid.next = self.machine.put_valid.val();
-        self.put_axis.next = self.machine.x.val().get_bits::<3>(3);
-        self.put_word.next = self.machine.x.val().get_bits::<3>(0);
+        self.put_axis.next = self.machine.a.val().get_bits::<3>(3);
+        self.put_word.next = self.machine.x.val().get_bits::<3>(2);
         self.put_data.next = self.machine.put_data.val();
         self.machine.put_ready.next = self.put_ready.val();
         self.machine.room.next = self.room.val();

@@ -52,7 +52,7 @@ impl Link {
     pub fn outputs(&self) -> LinkOutputs {
         let machine = self.machine.outputs();
         let (get_axis, get_item) = self.facts.asks();
-        let (axis, word) = (machine.x >> 3 & 7, machine.x & 7);
+        let (axis, word) = (machine.a >> 3 & 7, machine.x >> 2 & 7);
         let mask = machine.a & self.axes;
         let engine = EngineInputs {
             put: machine.puts.then_some(Put { axis, word, data: machine.word }),

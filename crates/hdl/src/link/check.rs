@@ -1,4 +1,4 @@
-//! The CRC of frames, both ways: a bit a clock, eight clocks a byte.
+//! The CRC of frames, both ways, and the words of a segment, made of their bytes: a bit a clock, eight clocks a byte.
 //!
 //! ```text
 //! step     __/^^^^^^^^^^^^^^^^^\____      held until `over`
@@ -24,12 +24,12 @@ pub struct Check {
     pub step: Input<Bit>,
     /// with this byte fed to it,
     pub data: Input<Word<8>>,
-    /// or, if this is not set, down to its next byte.
+    /// or, if this is not set, shifted in above it: its next byte comes down.
     pub feed: Input<Bit>,
     /// The eighth of eight clocks.
     pub over: Signal<Out, Bit>,
-    /// Its low byte.
-    pub low: Signal<Out, Word<8>>,
+    /// All of it.
+    pub word_out: Signal<Out, Word<32>>,
     sum: Register<Word<32>>,
     count: Register<Word<3>>,
     shifted: Signal<Local, Word<8>>,
@@ -39,6 +39,7 @@ pub struct Check {
     last: Literal<3, 7>,
     by_one: Literal<1, 1>,
     ones: Literal<32, 0xffff_ffff>,
+    top: Literal<32, 0x8000_0000>,
     polynomial: Literal<32, { carrystep_spec::link::CRC_POLYNOMIAL as u64 }>,
 }
 
@@ -52,6 +53,9 @@ impl Logic for Check {
         if self.step.val() {
             self.count.d.next = self.count.q.val() + self.one.val();
             self.sum.d.next = self.sum.q.val() >> self.by_one.val();
+            if !self.feed.val() & self.data_bit.val() {
+                self.sum.d.next = (self.sum.q.val() >> self.by_one.val()) ^ self.top.val();
+            }
             if self.feedback.val() {
                 self.sum.d.next = (self.sum.q.val() >> self.by_one.val()) ^ self.polynomial.val();
             }
@@ -63,7 +67,7 @@ impl Logic for Check {
             self.sum.d.next = self.ones.val();
         }
         self.over.next = self.count.q.val() == self.last.val();
-        self.low.next = self.sum.q.val().get_bits::<8>(0);
+        self.word_out.next = self.sum.q.val();
     }
 }
 

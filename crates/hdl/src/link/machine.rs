@@ -26,9 +26,9 @@ pub struct Machine<const N: usize> {
     pub answer_valid: Signal<Out, Bit>,
     /// The offered byte is taken in this cycle.
     pub answer_take: Input<Bit>,
-    /// X: where the facts are read; also which axis and word are put.
+    /// X: where the facts are read; also which word is put.
     pub x: Signal<Out, Word<8>>,
-    /// A: the byte; the axes of a start, and those that wait for their limit.
+    /// A: the byte; the axis that a word is put to; the axes of a start, and those that wait for their limit.
     pub a: Signal<Out, Word<8>>,
     /// The facts at X.
     pub facts: Input<Word<32>>,
@@ -66,9 +66,9 @@ pub struct Machine<const N: usize> {
     pub ready: Input<Bit>,
     /// A start is armed.
     pub armed: Input<Bit>,
-    /// Why.
+    /// Why. Without a fault it says anything, as do the axes that a stop came from.
     pub cause: Input<Word<3>>,
-    /// The axis of X has room for so many segments,
+    /// The axis of A has room for so many segments,
     pub room: Input<Word<3>>,
     /// in this cycle.
     pub room_valid: Input<Bit>,
@@ -76,9 +76,8 @@ pub struct Machine<const N: usize> {
     pub culprits: Input<Word<N>>,
     /// The axes that wait for their limit.
     pub homing: Input<Word<N>>,
-    program: Memory<8, 16>,
+    instructions: Memory<8, 16>,
     data: Memory<8, 8>,
-    words: Memory<3, 32>,
     ring: Memory<8, 8>,
     check: Check,
     stage: Register<Word<2>>,
@@ -107,9 +106,6 @@ pub struct Machine<const N: usize> {
     value: Signal<Local, Word<8>>,
     holds: Signal<Local, Bit>,
     empty: Signal<Local, Bit>,
-    stored: Signal<Local, Bit>,
-    in_words: Signal<Local, Bit>,
-    mask: Signal<Local, Word<32>>,
     fetch: Literal<2, 0>,
     execute: Literal<2, 2>,
     next_stage: Literal<2, 1>,
@@ -119,24 +115,15 @@ pub struct Machine<const N: usize> {
     from_ring: Literal<3, 2>,
     from_x: Literal<3, 3>,
     from_check: Literal<3, 4>,
-    of_words: Literal<3, 1>,
-    byte_0: Literal<32, 0x0000_00ff>,
-    byte_1: Literal<32, 0x0000_ff00>,
-    byte_2: Literal<32, 0x00ff_0000>,
-    byte_3: Literal<32, 0xff00_0000>,
-    no_bytes: Literal<32, 0>,
     none: Literal<8, 0>,
     no_code: Literal<16, 0>,
     all: Literal<8, 0xff>,
     at_5: Literal<4, 5>,
-    at_8: Literal<5, 8>,
     bit_0: Literal<8, 1>,
     bit_1: Literal<8, 2>,
     bit_2: Literal<8, 4>,
     bit_3: Literal<8, 8>,
     bit_4: Literal<8, 16>,
-    at_16: Literal<5, 16>,
-    at_24: Literal<5, 24>,
     if_zero: Literal<3, 1>,
     if_x7: Literal<3, 2>,
     if_x6: Literal<3, 3>,
@@ -153,9 +140,8 @@ impl<const N: usize> Machine<N> {
             image.program.iter().enumerate().map(|(at, code)| (at, Word::from(u64::from(*code)))).collect();
         let data: Vec<_> = image.data.iter().enumerate().map(|(at, byte)| (at, Word::from(u64::from(*byte)))).collect();
         Self {
-            program: Memory::of_words(&program),
+            instructions: Memory::of_words(&program),
             data: Memory::of_words(&data),
-            words: Memory::of_bits(),
             ring: Memory::of_words(&[]),
             ..Self::default()
         }
@@ -166,14 +152,14 @@ impl<const N: usize> Logic for Machine<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, stage, pc, sum, index, written, read, space, control, clears);
-        clock!(self, clock, program, data, words, ring, check);
+        clock!(self, clock, instructions, data, ring, check);
 
         // The instruction, and what it does.
-        self.program.read_address.next = self.pc.q.val();
-        self.program.write_address.next = self.none.val();
-        self.program.write_data.next = self.no_code.val();
-        self.program.write_bits.next = self.no_code.val();
-        self.code.next = self.program.read_data.val();
+        self.instructions.read_address.next = self.pc.q.val();
+        self.instructions.write_address.next = self.none.val();
+        self.instructions.write_data.next = self.no_code.val();
+        self.instructions.write_bits.next = self.no_code.val();
+        self.code.next = self.instructions.read_data.val();
         self.executes.next = self.stage.q.val() == self.execute.val();
         self.sets.next = self.executes.val() & self.code.val().get_bit(15);
         self.stores.next = self.executes.val() & self.code.val().get_bit(14);
@@ -182,9 +168,9 @@ impl<const N: usize> Logic for Machine<N> {
         self.does.next = self.acts.val() & !self.code.val().get_bit(15) & !self.code.val().get_bit(14);
         self.steps.next = self.does.val() & self.code.val().get_bit(2);
         self.waits.next = self.does.val() & self.code.val().get_bit(5);
-        self.state.next = bit_cast::<8, 3>(self.cause.val()) << self.at_5.val();
+        self.state.next = self.none.val();
         if self.fault.val() {
-            self.state.next = self.state.val() | self.bit_0.val();
+            self.state.next = (bit_cast::<8, 3>(self.cause.val()) << self.at_5.val()) | self.bit_0.val();
         }
         if self.halted.val() {
             self.state.next = self.state.val() | self.bit_1.val();
@@ -252,7 +238,10 @@ impl<const N: usize> Logic for Machine<N> {
             self.port.next = bit_cast::<8, 3>(self.space.q.val());
         }
         if self.code.val().get_bit(1) {
-            self.port.next = bit_cast::<8, N>(self.culprits.val());
+            self.port.next = self.none.val();
+            if self.fault.val() {
+                self.port.next = bit_cast::<8, N>(self.culprits.val());
+            }
             if self.code.val().get_bit(0) {
                 self.port.next = bit_cast::<8, N>(self.homing.val());
             }
@@ -270,7 +259,7 @@ impl<const N: usize> Logic for Machine<N> {
             self.value.next = self.index.q.val();
         }
         if self.code.val().get_bits::<3>(8) == self.from_check.val() {
-            self.value.next = self.check.low.val();
+            self.value.next = self.check.word_out.val().get_bits::<8>(0);
         }
         if self.sets.val() {
             self.sum.d.next = self.value.val();
@@ -285,39 +274,17 @@ impl<const N: usize> Logic for Machine<N> {
             self.index.d.next = self.index.q.val() + self.one.val();
         }
 
-        // The data, and the words that the engine takes.
+        // The data.
         self.place.next = self.code.val().get_bits::<8>(0);
         if self.code.val().get_bit(8) {
             self.place.next = self.index.q.val();
         }
-        self.stored.next = self.stores.val() & !self.code.val().get_bit(9);
         self.data.read_address.next = self.place.val();
         self.data.write_address.next = self.place.val();
         self.data.write_data.next = self.sum.q.val();
         self.data.write_bits.next = self.none.val();
-        if self.stored.val() {
+        if self.stores.val() {
             self.data.write_bits.next = self.all.val();
-        }
-        self.in_words.next = self.stored.val() & (self.place.val().get_bits::<3>(5) == self.of_words.val());
-        self.mask.next = self.byte_0.val();
-        if self.place.val().get_bit(0) {
-            self.mask.next = self.byte_1.val();
-        }
-        if self.place.val().get_bit(1) {
-            self.mask.next = self.byte_2.val();
-            if self.place.val().get_bit(0) {
-                self.mask.next = self.byte_3.val();
-            }
-        }
-        self.words.read_address.next = self.index.q.val().get_bits::<3>(0);
-        self.words.write_address.next = self.place.val().get_bits::<3>(2);
-        self.words.write_data.next = bit_cast::<32, 8>(self.sum.q.val())
-            | (bit_cast::<32, 8>(self.sum.q.val()) << self.at_8.val())
-            | (bit_cast::<32, 8>(self.sum.q.val()) << self.at_16.val())
-            | (bit_cast::<32, 8>(self.sum.q.val()) << self.at_24.val());
-        self.words.write_bits.next = self.no_bytes.val();
-        if self.in_words.val() {
-            self.words.write_bits.next = self.mask.val();
         }
 
         // The CRC.
@@ -357,7 +324,7 @@ impl<const N: usize> Logic for Machine<N> {
         self.answer_valid.next = self.waits.val() & self.code.val().get_bit(9);
         self.start_valid.next = self.does.val() & self.code.val().get_bit(10);
         self.put_valid.next = self.does.val() & self.code.val().get_bit(11);
-        self.put_data.next = self.words.read_data.val();
+        self.put_data.next = self.check.word_out.val();
         self.enable.next = self.control.q.val().get_bit(0);
         self.stop.next = self.control.q.val().get_bit(1);
         self.x.next = self.index.q.val();

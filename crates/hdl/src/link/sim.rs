@@ -48,7 +48,8 @@ impl<const N: usize> AnyLink for Link<N> {
         self.get_data.next = Word::from(u64::from(inputs.get_data));
         self.get_valid.next = inputs.get_valid;
         let engine = &inputs.engine;
-        let (cause, culprits) = engine.fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
+        // Without a fault these two are what the last stop has left.
+        let (cause, culprits) = engine.fault.map_or((7, 0xff), |(cause, culprits)| (cause as u64, culprits));
         self.put_ready.next = engine.put_ready;
         self.room.next = Word::from(u64::from(engine.room.unwrap_or(0)));
         self.room_valid.next = engine.room.is_some();

@@ -14,8 +14,10 @@ pub(super) enum Told {
     Nothing,
     /// To begin with this.
     Begin(u32),
-    /// A bit further; the byte that is fed to it, if one is.
-    Step(Option<u8>),
+    /// A bit further, with one of this byte fed to it.
+    Feed(u8),
+    /// A bit further, with one of this byte shifted in above it.
+    Shift(u8),
 }
 
 impl Check {
@@ -24,20 +26,23 @@ impl Check {
         self.count == 7
     }
 
-    /// Its low byte.
-    pub(super) const fn low(self) -> u8 {
-        self.sum as u8
+    /// All of it.
+    pub(super) const fn word(self) -> u32 {
+        self.sum
     }
 
     pub(super) fn clock(&mut self, told: Told) {
-        match told {
-            Told::Nothing => {}
-            Told::Begin(word) => self.sum = word,
-            Told::Step(fed) => {
-                let feedback = fed.is_some_and(|byte| (self.sum ^ u32::from(byte >> self.count)) & 1 == 1);
-                self.sum = self.sum >> 1 ^ if feedback { CRC_POLYNOMIAL } else { 0 };
-                self.count = (self.count + 1) & 7;
+        let bit = |byte: u8| u32::from(byte >> self.count & 1);
+        let above = match told {
+            Told::Nothing => return,
+            Told::Begin(word) => {
+                self.sum = word;
+                return;
             }
-        }
+            Told::Feed(byte) => (self.sum & 1 ^ bit(byte)) * CRC_POLYNOMIAL,
+            Told::Shift(byte) => bit(byte) << 31,
+        };
+        self.sum = self.sum >> 1 ^ above;
+        self.count = (self.count + 1) & 7;
     }
 }

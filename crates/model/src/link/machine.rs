@@ -7,7 +7,7 @@ use carrystep_spec::engine::EngineOutputs;
 use carrystep_spec::link::Image;
 use carrystep_spec::link::machine::{
     ACTS, BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, Code, Condition, FOR_ROOM, GOES, HOMING,
-    INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, Source, TAX, UNLESS, WAIT, WORDS, XOR,
+    INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, Source, TAX, UNLESS, WAIT, XOR,
 };
 use carrystep_spec::link::registers::{CONTROL_ENABLE, CONTROL_STOP};
 use std::sync::Arc;
@@ -23,12 +23,10 @@ pub(super) struct Machine {
     program: Arc<[Code]>,
     data: [u8; SIZE],
     ring: [u8; SIZE],
-    words: [u32; 8],
     /// What the memories give.
     code: Code,
     read: u8,
     received: u8,
-    word: u32,
     check: Check,
     stage: u8,
     pc: u8,
@@ -61,7 +59,7 @@ pub(super) struct Inputs<'a> {
 pub(super) struct Outputs {
     pub a: u8,
     pub x: u8,
-    /// The word of a segment at X.
+    /// The word of a segment.
     pub word: u32,
     pub puts: bool,
     pub starts: bool,
@@ -96,11 +94,9 @@ impl Machine {
             program: program.into(),
             data,
             ring: [0; SIZE],
-            words: [0; 8],
             code: 0,
             read: 0,
             received: 0,
-            word: 0,
             check: Check::default(),
             stage: 0,
             pc: 0,
@@ -125,12 +121,12 @@ impl Machine {
     }
 
     pub(super) fn outputs(&self) -> Outputs {
-        let Self { a, x, word, clear, control, .. } = *self;
+        let Self { a, x, clear, control, .. } = *self;
         let control = u32::from(control);
         Outputs {
             a,
             x,
-            word,
+            word: self.check.word(),
             puts: self.does(PUTS),
             starts: self.does(STARTS),
             goes: self.does(WAIT | GOES),
@@ -161,7 +157,6 @@ impl Machine {
         self.code = self.program[usize::from(self.pc)];
         self.read = self.data[place];
         self.received = self.ring[usize::from(self.read_from)];
-        self.word = self.words[usize::from(x & 7)];
 
         self.check.clock(told);
         if self.stage != EXECUTE {
@@ -176,7 +171,7 @@ impl Machine {
             self.read_from = self.read_from.wrapping_add(1);
         }
         if stores {
-            self.store(place, a);
+            self.data[place] = a;
         }
         if acts && code & TAX != 0 {
             self.x = a;
@@ -215,7 +210,8 @@ impl Machine {
         let feed = self.code & CRC_FEED != 0;
         match (self.does(CRC_BEGIN), self.does(CRC_STEP)) {
             (true, _) => Told::Begin(if feed { fact } else { u32::MAX }),
-            (false, true) => Told::Step(feed.then_some(self.a)),
+            (false, true) if feed => Told::Feed(self.a),
+            (false, true) => Told::Shift(self.a),
             (false, false) => Told::Nothing,
         }
     }
@@ -240,7 +236,7 @@ impl Machine {
             s if s == Source::Data as Code || s == Source::DataAtX as Code => self.read,
             s if s == Source::Received as Code => self.received,
             s if s == Source::X as Code => self.x,
-            s if s == Source::Crc as Code => self.check.low(),
+            s if s == Source::Crc as Code => self.check.word() as u8,
             _ => match self.code as u8 & 3 {
                 ROOM => self.room,
                 CULPRITS => engine.fault.map_or(0, |(_, culprits)| culprits),
@@ -251,16 +247,6 @@ impl Machine {
                     bits.iter().rev().fold(cause, |state, &bit| state << 1 | u8::from(bit))
                 }
             },
-        }
-    }
-
-    /// The words of a segment are seen a second time, as words.
-    fn store(&mut self, place: usize, byte: u8) {
-        self.data[place] = byte;
-        if place & 0xe0 == usize::from(WORDS) {
-            let shift = 8 * (place & 3);
-            let word = &mut self.words[place >> 2 & 7];
-            *word = *word & !(0xff << shift) | u32::from(byte) << shift;
         }
     }
 

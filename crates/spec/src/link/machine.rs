@@ -53,9 +53,9 @@ pub enum Source {
 
 /// Of [`Source::Engine`]: byte 3 of an answer.
 pub const STATE: u8 = 0;
-/// The room that the axis of X had in its last turn.
+/// The room that the axis of A had in its last turn.
 pub const ROOM: u8 = 1;
-/// The axes that a stop came from.
+/// The axes that a stop came from, none without a fault.
 pub const CULPRITS: u8 = 2;
 /// The axes that wait for their limit.
 pub const HOMING: u8 = 3;
@@ -87,14 +87,14 @@ pub const TAX: Code = 1 << 0;
 pub const INX: Code = 1 << 1;
 /// The CRC goes on by eight bits.
 pub const CRC_STEP: Code = 1 << 2;
-/// With [`CRC_STEP`]: A is fed to it; without, its next byte comes down.
+/// With [`CRC_STEP`]: A is fed to it; without, A is shifted in above it and its next byte comes down.
 pub const CRC_FEED: Code = 1 << 3;
 /// The CRC begins; with [`CRC_FEED`] its register takes the facts at X instead.
 pub const CRC_BEGIN: Code = 1 << 4;
 /// Not over before what is offered is taken, or the engine has a fault; where nothing is offered: before the
 /// scan of all axes' items comes round ([`SCAN`] turns).
 pub const WAIT: Code = 1 << 5;
-/// With [`WAIT`]: over as soon as the axis of X has told its room, or the scan comes round.
+/// With [`WAIT`]: over as soon as the axis of A has told its room, or the scan comes round.
 pub const FOR_ROOM: Code = 1 << 3;
 /// A is the control register; with [`KICK`] the axes that wait for their limit.
 pub const CONTROL: Code = 1 << 6;
@@ -108,7 +108,7 @@ pub const CLEARING: Code = 1 << 9;
 pub const GOES: Code = 1 << 9;
 /// A start of the axes of A is offered.
 pub const STARTS: Code = 1 << 10;
-/// A word of a segment is offered: X is its place, axis 3 | word 3.
+/// The CRC's register is offered as a word of a segment: bits 5..3 of A are its axis, bits 4..2 of X its place.
 pub const PUTS: Code = 1 << 11;
 
 /// Turns of axes in which all items of all axes have been asked for once.
@@ -116,7 +116,7 @@ pub const SCAN: u32 = 32;
 
 /// Where the data memory keeps a request: its sequence number, then its address.
 pub const REQUEST: u8 = 0x1e;
-/// And its words, which the engine sees as eight words of 32 bits.
+/// And its words: those of a segment end where bit 6 of X begins.
 pub const WORDS: u8 = 0x20;
 /// First address past what a request may fill.
 pub const REQUEST_END: u8 = 0x80;

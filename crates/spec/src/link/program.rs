@@ -223,9 +223,19 @@ fn execute(a: &mut Assembler) {
     a.acts(BROKEN);
     a.jump("done");
     a.label("words");
-    a.load(ADDRESS);
+    a.load_number(WORDS);
     a.acts(TAX);
-    (0..SEGMENT_FRAME_WORDS).for_each(|_| a.acts(PUTS | WAIT | INX));
+    a.label("word");
+    for _ in 1..4 {
+        a.load_next();
+        a.acts(CRC_STEP);
+    }
+    // X stays in the word until it is taken.
+    a.load_from(Source::DataAtX, 0);
+    a.acts(CRC_STEP);
+    a.load(ADDRESS);
+    a.acts(PUTS | WAIT | INX);
+    a.jump_unless(X6, "word");
 
     a.label("done");
     a.load(NEXT);
@@ -250,7 +260,8 @@ fn answer(a: &mut Assembler) {
     a.label("place");
     a.load_from(Source::Engine, STATE);
     a.store(ANSWER + 3);
-    // Whatever the state says has reached the facts: an axis at rest is where they say. And X has found its room.
+    // Whatever the state says has reached the facts: an axis at rest is where they say. And the axis of A has told its room.
+    a.load_x();
     wait_for_all(a);
     a.load_from(Source::Engine, ROOM);
     a.xor(REFUSED);
@@ -316,6 +327,8 @@ fn send(a: &mut Assembler) {
 }
 
 const _: () = assert!(SEGMENT == AXES_AT && AXES_AT == 0x40, "bit 6 of an address says that it is an axis'");
+const _: () =
+    assert!(WORDS as usize + 4 * SEGMENT_FRAME_WORDS == 0x40, "bit 6 of X says that a segment's words are over");
 const _: () =
     assert!(REQUEST as usize + LONGEST_REQUEST < ANSWER as usize, "no request that is whole reaches the answer");
 
