@@ -11,7 +11,7 @@
 `default_nettype none
 
 // What it does.
-module carrystep_program (
+module carrystep_instructions (
     input  wire         clock,
     input  wire   [7:0] read_address,
     output wire  [15:0] read_data,
@@ -85,7 +85,7 @@ module carrystep_program (
         words[55] = 16'h4083;
         words[56] = 16'h801f;
         words[57] = 16'h1001;
-        words[58] = 16'h2a8b;
+        words[58] = 16'h2a8e;
         words[59] = 16'h801e;
         words[60] = 16'h1001;
         words[61] = 16'h8882;
@@ -98,10 +98,10 @@ module carrystep_program (
         words[68] = 16'h8300;
         words[69] = 16'h8882;
         words[70] = 16'h293f;
-        words[71] = 16'h208b;
+        words[71] = 16'h208e;
         words[72] = 16'h80f0;
         words[73] = 16'h4083;
-        words[74] = 16'h208b;
+        words[74] = 16'h208e;
         words[75] = 16'h801f;
         words[76] = 16'h1001;
         words[77] = 16'h236d;
@@ -117,26 +117,26 @@ module carrystep_program (
         words[87] = 16'h801f;
         words[88] = 16'h88ec;
         words[89] = 16'h215f;
-        words[90] = 16'h2086;
+        words[90] = 16'h2089;
         words[91] = 16'h8020;
         words[92] = 16'h4084;
         words[93] = 16'h1040;
-        words[94] = 16'h2086;
+        words[94] = 16'h2089;
         words[95] = 16'h8020;
         words[96] = 16'h10c0;
-        words[97] = 16'h2086;
+        words[97] = 16'h2089;
         words[98] = 16'h8084;
         words[99] = 16'h1240;
         words[100] = 16'h1020;
         words[101] = 16'h1020;
         words[102] = 16'h1040;
-        words[103] = 16'h2086;
-        words[104] = 16'h2586;
+        words[103] = 16'h2089;
+        words[104] = 16'h2589;
         words[105] = 16'h2e48;
         words[106] = 16'h8020;
         words[107] = 16'h1420;
-        words[108] = 16'h2086;
-        words[109] = 16'h2586;
+        words[108] = 16'h2089;
+        words[109] = 16'h2589;
         words[110] = 16'h1028;
         words[111] = 16'h1028;
         words[112] = 16'h8501;
@@ -150,97 +150,101 @@ module carrystep_program (
         words[120] = 16'h88f5;
         words[121] = 16'h2974;
         words[122] = 16'h1100;
-        words[123] = 16'h2086;
-        words[124] = 16'h801f;
+        words[123] = 16'h2089;
+        words[124] = 16'h80eb;
         words[125] = 16'h1001;
-        words[126] = 16'h1822;
-        words[127] = 16'h1822;
-        words[128] = 16'h1822;
-        words[129] = 16'h1822;
-        words[130] = 16'h1822;
-        words[131] = 16'h1822;
-        words[132] = 16'h1822;
-        words[133] = 16'h1822;
-        words[134] = 16'h8082;
-        words[135] = 16'h1001;
-        words[136] = 16'h1002;
-        words[137] = 16'h8300;
-        words[138] = 16'h4082;
-        words[139] = 16'h801f;
-        words[140] = 16'h1001;
-        words[141] = 16'h2a92;
-        words[142] = 16'h88e9;
-        words[143] = 16'h2391;
-        words[144] = 16'h80e8;
-        words[145] = 16'h1001;
-        words[146] = 16'h8500;
-        words[147] = 16'h4074;
-        words[148] = 16'h1020;
-        words[149] = 16'h1020;
-        words[150] = 16'h8501;
-        words[151] = 16'h8883;
-        words[152] = 16'h4075;
-        words[153] = 16'h8502;
-        words[154] = 16'h4076;
-        words[155] = 16'h8503;
-        words[156] = 16'h4077;
-        words[157] = 16'h1018;
-        words[158] = 16'h8400;
-        words[159] = 16'h4078;
-        words[160] = 16'h1004;
-        words[161] = 16'h8400;
-        words[162] = 16'h4079;
-        words[163] = 16'h1004;
-        words[164] = 16'h8400;
-        words[165] = 16'h407a;
-        words[166] = 16'h1004;
-        words[167] = 16'h8400;
-        words[168] = 16'h407b;
-        words[169] = 16'h1004;
-        words[170] = 16'h801e;
-        words[171] = 16'h4071;
-        words[172] = 16'h801f;
-        words[173] = 16'h4072;
-        words[174] = 16'h8082;
-        words[175] = 16'h4073;
-        words[176] = 16'h80e7;
-        words[177] = 16'h1011;
-        words[178] = 16'h9102;
-        words[179] = 16'h100c;
-        words[180] = 16'h8300;
-        words[181] = 16'h88e6;
-        words[182] = 16'h29b2;
-        words[183] = 16'h8400;
-        words[184] = 16'h88ea;
-        words[185] = 16'h5102;
-        words[186] = 16'h1004;
-        words[187] = 16'h2ab7;
-        words[188] = 16'h80e7;
-        words[189] = 16'h1001;
-        words[190] = 16'h80fa;
-        words[191] = 16'h1220;
-        words[192] = 16'h22d3;
-        words[193] = 16'h9102;
-        words[194] = 16'h2fbf;
-        words[195] = 16'h4080;
-        words[196] = 16'h88fa;
-        words[197] = 16'h21cb;
-        words[198] = 16'h8080;
-        words[199] = 16'h88f9;
-        words[200] = 16'h21cf;
-        words[201] = 16'h8080;
-        words[202] = 16'h20bf;
-        words[203] = 16'h80f9;
-        words[204] = 16'h1220;
-        words[205] = 16'h80f8;
-        words[206] = 16'h20bf;
+        words[126] = 16'h9102;
+        words[127] = 16'h1004;
+        words[128] = 16'h9102;
+        words[129] = 16'h1004;
+        words[130] = 16'h9102;
+        words[131] = 16'h1004;
+        words[132] = 16'h8100;
+        words[133] = 16'h1004;
+        words[134] = 16'h801f;
+        words[135] = 16'h1822;
+        words[136] = 16'h2b7e;
+        words[137] = 16'h8082;
+        words[138] = 16'h1001;
+        words[139] = 16'h1002;
+        words[140] = 16'h8300;
+        words[141] = 16'h4082;
+        words[142] = 16'h801f;
+        words[143] = 16'h1001;
+        words[144] = 16'h2a95;
+        words[145] = 16'h88e9;
+        words[146] = 16'h2394;
+        words[147] = 16'h80e8;
+        words[148] = 16'h1001;
+        words[149] = 16'h8500;
+        words[150] = 16'h4074;
+        words[151] = 16'h8300;
+        words[152] = 16'h1020;
+        words[153] = 16'h1020;
+        words[154] = 16'h8501;
+        words[155] = 16'h8883;
+        words[156] = 16'h4075;
+        words[157] = 16'h8502;
+        words[158] = 16'h4076;
+        words[159] = 16'h8503;
+        words[160] = 16'h4077;
+        words[161] = 16'h1018;
+        words[162] = 16'h8400;
+        words[163] = 16'h4078;
+        words[164] = 16'h1004;
+        words[165] = 16'h8400;
+        words[166] = 16'h4079;
+        words[167] = 16'h1004;
+        words[168] = 16'h8400;
+        words[169] = 16'h407a;
+        words[170] = 16'h1004;
+        words[171] = 16'h8400;
+        words[172] = 16'h407b;
+        words[173] = 16'h1004;
+        words[174] = 16'h801e;
+        words[175] = 16'h4071;
+        words[176] = 16'h801f;
+        words[177] = 16'h4072;
+        words[178] = 16'h8082;
+        words[179] = 16'h4073;
+        words[180] = 16'h80e7;
+        words[181] = 16'h1011;
+        words[182] = 16'h9102;
+        words[183] = 16'h100c;
+        words[184] = 16'h8300;
+        words[185] = 16'h88e6;
+        words[186] = 16'h29b6;
+        words[187] = 16'h8400;
+        words[188] = 16'h88ea;
+        words[189] = 16'h5102;
+        words[190] = 16'h1004;
+        words[191] = 16'h2abb;
+        words[192] = 16'h80e7;
+        words[193] = 16'h1001;
+        words[194] = 16'h80fa;
+        words[195] = 16'h1220;
+        words[196] = 16'h22d7;
+        words[197] = 16'h9102;
+        words[198] = 16'h2fc3;
+        words[199] = 16'h4080;
+        words[200] = 16'h88fa;
+        words[201] = 16'h21cf;
+        words[202] = 16'h8080;
+        words[203] = 16'h88f9;
+        words[204] = 16'h21d3;
+        words[205] = 16'h8080;
+        words[206] = 16'h20c3;
         words[207] = 16'h80f9;
         words[208] = 16'h1220;
-        words[209] = 16'h80f7;
-        words[210] = 16'h20bf;
-        words[211] = 16'h80fa;
+        words[209] = 16'h80f8;
+        words[210] = 16'h20c3;
+        words[211] = 16'h80f9;
         words[212] = 16'h1220;
-        words[213] = 16'h2000;
+        words[213] = 16'h80f7;
+        words[214] = 16'h20c3;
+        words[215] = 16'h80fa;
+        words[216] = 16'h1220;
+        words[217] = 16'h2000;
     end
 
     always @(posedge clock) begin
@@ -299,33 +303,6 @@ module carrystep_data (
     end
 endmodule
 
-// The words of a segment, as the engine takes them.
-module carrystep_words (
-    input  wire         clock,
-    input  wire   [2:0] read_address,
-    output wire  [31:0] read_data,
-    input  wire   [2:0] write_address,
-    input  wire  [31:0] write_bits,
-    input  wire  [31:0] write_data
-);
-    (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:7];
-    reg [31:0] value; // a block RAM gives no value before its first clock
-    integer i;
-
-    assign read_data = value;
-
-    initial begin
-        for (i = 0; i < 8; i = i + 1) words[i] = 0;
-    end
-
-    always @(posedge clock) begin
-        value <= words[read_address];
-        for (i = 0; i < 32; i = i + 1) begin
-            if (write_bits[i]) words[write_address][i] <= write_data[i];
-        end
-    end
-endmodule
-
 // Received bytes that wait.
 module carrystep_ring (
     input  wire         clock,
@@ -360,12 +337,13 @@ module carrystep_check (
     input  wire   [7:0] data,
     input  wire         feed,
     output wire         over,
-    output wire   [7:0] low
+    output wire  [31:0] word_out
 );
     localparam [2:0] ONE = 3'd1;
     localparam [2:0] LAST = 3'd7;
     localparam BY_ONE = 1'b1;
     localparam [31:0] ONES = 32'hffffffff;
+    localparam [31:0] TOP = 32'h80000000;
     localparam [31:0] POLYNOMIAL = 32'hedb88320;
 
     reg [31:0] sum = 32'd0;
@@ -376,12 +354,15 @@ module carrystep_check (
     wire feedback = feed & (sum[0] ^ data_bit);
 
     assign over = count == LAST;
-    assign low = sum[7:0];
+    assign word_out = sum;
 
     always @(posedge clock) begin
         if (step) begin
             count <= count + ONE;
             sum <= sum >> BY_ONE;
+            if (!feed & data_bit) begin
+                sum <= (sum >> BY_ONE) ^ TOP;
+            end
             if (feedback) begin
                 sum <= (sum >> BY_ONE) ^ POLYNOMIAL;
             end
@@ -437,24 +418,15 @@ module carrystep_machine (
     localparam [2:0] FROM_RING = 3'd2;
     localparam [2:0] FROM_X = 3'd3;
     localparam [2:0] FROM_CHECK = 3'd4;
-    localparam [2:0] OF_WORDS = 3'd1;
-    localparam [31:0] BYTE_0 = 32'd255;
-    localparam [31:0] BYTE_1 = 32'd65280;
-    localparam [31:0] BYTE_2 = 32'hff0000;
-    localparam [31:0] BYTE_3 = 32'hff000000;
-    localparam [31:0] NO_BYTES = 32'd0;
     localparam [7:0] NONE = 8'd0;
     localparam [15:0] NO_CODE = 16'd0;
     localparam [7:0] ALL = 8'd255;
     localparam [3:0] AT_5 = 4'd5;
-    localparam [4:0] AT_8 = 5'd8;
     localparam [7:0] BIT_0 = 8'd1;
     localparam [7:0] BIT_1 = 8'd2;
     localparam [7:0] BIT_2 = 8'd4;
     localparam [7:0] BIT_3 = 8'd8;
     localparam [7:0] BIT_4 = 8'd16;
-    localparam [4:0] AT_16 = 5'd16;
-    localparam [4:0] AT_24 = 5'd24;
     localparam [2:0] IF_ZERO = 3'd1;
     localparam [2:0] IF_X7 = 3'd2;
     localparam [2:0] IF_X6 = 3'd3;
@@ -479,18 +451,15 @@ module carrystep_machine (
     reg [7:0] value;
     reg [7:0] place;
     reg [7:0] data_write_bits;
-    reg [31:0] mask;
-    reg [31:0] words_write_bits;
     reg [7:0] ring_write_bits;
 
-    wire [15:0] program_read_data;
+    wire [15:0] instructions_read_data;
     wire [7:0] data_read_data;
-    wire [31:0] words_read_data;
     wire [7:0] ring_read_data;
     wire check_over;
-    wire [7:0] check_low;
+    wire [31:0] check_word_out;
 
-    wire [15:0] code = program_read_data;
+    wire [15:0] code = instructions_read_data;
     wire executes = stage == EXECUTE;
     wire sets = executes & code[15];
     wire stores = executes & code[14];
@@ -501,14 +470,12 @@ module carrystep_machine (
     wire waits = does & code[5];
     wire over = (!waits | waited) & (!steps | check_over);
     wire empty = read == written;
-    wire stored = stores & !code[9];
-    wire in_words = stored & (place[7:5] == OF_WORDS);
 
     assign answer_valid = waits & code[9];
     assign x = index;
     assign a = sum;
     assign put_valid = does & code[11];
-    assign put_data = words_read_data;
+    assign put_data = check_word_out;
     assign start_valid = does & code[10];
     assign clear = clears;
     assign broken = does & code[8];
@@ -518,9 +485,9 @@ module carrystep_machine (
     assign stop = control[1];
 
     always @(*) begin
-        state = {5'b0, cause} << AT_5;
+        state = NONE;
         if (fault) begin
-            state = state | BIT_0;
+            state = ({5'b0, cause} << AT_5) | BIT_0;
         end
         if (halted) begin
             state = state | BIT_1;
@@ -580,7 +547,10 @@ module carrystep_machine (
             port = {5'b0, space};
         end
         if (code[1]) begin
-            port = {2'b0, culprits};
+            port = NONE;
+            if (fault) begin
+                port = {2'b0, culprits};
+            end
             if (code[0]) begin
                 port = {2'b0, homing};
             end
@@ -599,7 +569,7 @@ module carrystep_machine (
             value = index;
         end
         if (code[10:8] == FROM_CHECK) begin
-            value = check_low;
+            value = check_word_out[7:0];
         end
     end
 
@@ -612,28 +582,8 @@ module carrystep_machine (
 
     always @(*) begin
         data_write_bits = NONE;
-        if (stored) begin
+        if (stores) begin
             data_write_bits = ALL;
-        end
-    end
-
-    always @(*) begin
-        mask = BYTE_0;
-        if (place[0]) begin
-            mask = BYTE_1;
-        end
-        if (place[1]) begin
-            mask = BYTE_2;
-            if (place[0]) begin
-                mask = BYTE_3;
-            end
-        end
-    end
-
-    always @(*) begin
-        words_write_bits = NO_BYTES;
-        if (in_words) begin
-            words_write_bits = mask;
         end
     end
 
@@ -644,10 +594,10 @@ module carrystep_machine (
         end
     end
 
-    carrystep_program program (
+    carrystep_instructions instructions (
         .clock(clock),
         .read_address(pc),
-        .read_data(program_read_data),
+        .read_data(instructions_read_data),
         .write_address(NONE),
         .write_bits(NO_CODE),
         .write_data(NO_CODE)
@@ -660,15 +610,6 @@ module carrystep_machine (
         .write_address(place),
         .write_bits(data_write_bits),
         .write_data(sum)
-    );
-
-    carrystep_words words (
-        .clock(clock),
-        .read_address(index[2:0]),
-        .read_data(words_read_data),
-        .write_address(place[4:2]),
-        .write_bits(words_write_bits),
-        .write_data({24'b0, sum} | ({24'b0, sum} << AT_8) | ({24'b0, sum} << AT_16) | ({24'b0, sum} << AT_24))
     );
 
     carrystep_ring ring (
@@ -688,7 +629,7 @@ module carrystep_machine (
         .data(sum),
         .feed(code[3]),
         .over(check_over),
-        .low(check_low)
+        .word_out(check_word_out)
     );
 
     always @(posedge clock) begin
@@ -888,8 +829,8 @@ module carrystep_link (
     assign answer_valid = machine_answer_valid;
     assign answer = machine_a;
     assign put_valid = machine_put_valid;
-    assign put_axis = machine_x[5:3];
-    assign put_word = machine_x[2:0];
+    assign put_axis = machine_a[5:3];
+    assign put_word = machine_x[4:2];
     assign put_data = machine_put_data;
     assign start_valid = machine_start_valid;
     assign start_mask = machine_a[5:0];

@@ -829,7 +829,7 @@ module carrystep_rim (
     input  wire  [15:0] write_bits,
     input  wire  [15:0] write_data
 );
-    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:127];
+    (* no_rw_check, ram_style = "distributed" *) reg [15:0] words [0:127];
     reg [15:0] value; // a block RAM gives no value before its first clock
     integer i;
 

@@ -31,7 +31,7 @@ pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
 const RUST_HDL: &str = "0.46.0";
 
 /// What each module is for, in a line.
-const PURPOSES: [(&str, &str); 34] = [
+const PURPOSES: [(&str, &str); 33] = [
     ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
     ("carrystep_sequencer", "The running and the waiting segment of an axis."),
     ("carrystep_step_edge", "When in its tick a step is due: bisection, then the request to the shaper."),
@@ -58,10 +58,9 @@ const PURPOSES: [(&str, &str); 34] = [
     ("carrystep_spi", "SPI mode 0, the host's clock up to a fifth of this one."),
     ("carrystep_check", "The CRC of frames."),
     ("carrystep_machine", "The little machine that reads requests and writes answers."),
-    ("carrystep_program", "What it does."),
+    ("carrystep_instructions", "What it does."),
     ("carrystep_facts", "What can be read."),
     ("carrystep_known", "Facts of the build, and what the engine has last said of its axes."),
-    ("carrystep_words", "The words of a segment, as the engine takes them."),
     ("carrystep_data", "A request and the answer to it, constants, and what is remembered."),
     ("carrystep_ring", "Received bytes that wait."),
     (LINK_NAME, "The host link: bytes in, words of segments out."),

@@ -14,6 +14,11 @@ use crate::register::Input;
 use crate::word::Word;
 use rust_hdl::prelude::*;
 
+/// Of the Verilog of each memory: it lies in block RAM.
+pub const IN_BLOCK_RAM: &str = "ram_style = \"block\"";
+/// Of the Verilog of those alone that are written bit by bit.
+pub const BIT_BY_BIT: &str = "words[write_address][i] <= write_data[i];";
+
 /// 2^A words of W bits.
 pub struct Memory<const A: usize, const W: usize> {
     /// The clock.
@@ -73,7 +78,7 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         let range = if W == 1 { String::new() } else { format!("[{top}:0] ") };
         let words = self.words.len();
         let mut text = format!(
-            "(* no_rw_check, ram_style = \"block\" *) reg {range}words [0:{}];\nreg {range}value; // a block RAM gives no value before its first clock\ninteger i;\n\n\
+            "(* no_rw_check, {IN_BLOCK_RAM} *) reg {range}words [0:{}];\nreg {range}value; // a block RAM gives no value before its first clock\ninteger i;\n\n\
              assign read_data = value;\n\ninitial begin\n    for (i = 0; i < {words}; i = i + 1) words[i] = 0;\n",
             words - 1
         );
@@ -89,7 +94,7 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         if !self.whole_words && W > 1 {
             text.push_str(&format!(
                 "    for (i = 0; i < {W}; i = i + 1) begin\n        \
-                 if (write_bits[i]) words[write_address][i] <= write_data[i];\n    end\nend"
+                 if (write_bits[i]) {BIT_BY_BIT}\n    end\nend"
             ));
         }
         text

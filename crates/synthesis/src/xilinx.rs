@@ -6,7 +6,7 @@ use crate::tool::{self, YOSYS};
 /// Cells of a family.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Cells {
-    /// LUTs of all widths, inverters included.
+    /// LUTs of all widths, inverters included, and those that are memory.
     pub luts: u32,
     /// Flip-flops.
     pub flip_flops: u32,
@@ -40,6 +40,7 @@ fn count(stat: &str) -> Result<Cells, SynthesisError> {
         let Ok(number) = number.parse::<u32>() else { continue };
         match name {
             "INV" => cells.luts += number,
+            "RAM16X1D" => cells.luts += 2 * number,
             _ if name.starts_with("LUT") => cells.luts += number,
             _ if name.starts_with("FD") => cells.flip_flops += number,
             "MUXCY" | "XORCY" | "CARRY4" => cells.carries += number,

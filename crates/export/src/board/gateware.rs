@@ -4,6 +4,7 @@ use super::{CLOCK_NAME, Design, rendered};
 use crate::ExportError;
 use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, line_name, line_verilog, link_ports, link_verilog};
 use crate::write::TextFile;
+use carrystep_hdl::memory::{BIT_BY_BIT, IN_BLOCK_RAM};
 use carrystep_spec::board::{Board, Clocking, Part};
 use carrystep_spec::engine::Limits;
 use carrystep_spec::link::{BuildId, Line, Uart};
@@ -95,8 +96,18 @@ impl<'a> Gateware<'a> {
             self.design(&[], &[]).clock()?,
             file(line_name(self.line), line_verilog(self.line, &description)?),
             file(LINK_NAME, link_verilog(&self.build, self.line, &description)?),
-            file(ENGINE_NAME, engine_verilog(&self.build, &description)?),
+            file(ENGINE_NAME, self.placed(engine_verilog(&self.build, &description)?)),
         ])
+    }
+
+    /// Its memories where the family can have them.
+    fn placed(&self, verilog: String) -> String {
+        if self.board.family.writes_parts_of_words() {
+            return verilog;
+        }
+        let in_luts = |module: &str| module.replace(IN_BLOCK_RAM, "ram_style = \"distributed\"");
+        let modules = verilog.split_inclusive("endmodule");
+        modules.map(|module| if module.contains(BIT_BY_BIT) { in_luts(module) } else { module.to_owned() }).collect()
     }
 
     /// Everything in the board's folder.

@@ -53,6 +53,12 @@ impl Family {
         }
     }
 
+    /// Its block RAMs can write a part of a word (Xilinx UG331, 2011, "Using Block RAM": a Spartan-3 or 3E has one write
+    /// enable a port); where they cannot, memories that are written bit by bit lie in LUTs.
+    pub const fn writes_parts_of_words(self) -> bool {
+        !matches!(self, Self::Spartan3 | Self::Spartan3e)
+    }
+
     /// What makes clocks in it. The DCM's ranges are meant to be those of the slowest speed grade in the low-frequency mode. They
     /// are as remembered: look them up in the data sheets (DS099, DS312, DS162) before counting on a clock near their ends.
     pub const fn clock_managers(self) -> ClockManagers {

@@ -78,8 +78,8 @@ By yosys 0.23, nextpnr 0.4 and icetime, on the pins of the board; the first of f
 | board | part | logic cells | block RAMs | clock, MHz | tick, ns | phases | nextpnr, MHz | icetime, MHz | seed | reached |
 |---|---|---|---|---|---|---|---|---|---|---|
 {ours}
-What yosys makes of it for the Spartans. Their own tools place it, which nobody here has done: whether the clock is reached is not known. A Spartan-3 or 3E cannot write single bits of a block RAM, so a memory
-that is written bit by bit (there is one in the link) takes a block RAM for each bit: **more than the parts of `s3board`, `nexys2` and `papilio-one` have**. On these three it does not fit as it is.
+What yosys makes of it for the Spartans. Their own tools place it, which nobody here has done: whether the clock is reached is not known. A Spartan-3 or 3E cannot write single bits of a block RAM,
+so on `s3board`, `nexys2` and `papilio-one` the engine's wheel of events, the one memory that is written bit by bit, lies in LUTs.
 
 | board | part | LUTs | flip-flops | carry cells | block RAMs | clock, MHz | tick, ns | phases |
 |---|---|---|---|---|---|---|---|---|
