@@ -47,11 +47,13 @@ const BOARDS: &str = "passed tried_on_hardware boards boards[].name boards[].tit
     boards[].clocks boards[].clocks[].clock_hz boards[].clocks[].tick_ns boards[].clocks[].phases
     boards[].clocks[].made_by boards[].clocks[].why boards[].io boards[].wires boards[].wires[].port
     boards[].wires[].pin boards[].wires[].at boards[].wires[].at.connector boards[].wires[].at.label boards[].ties
-    boards[].led_low boards[].flash boards[].bitstream boards[].notes boards[].conflicts boards[].sources";
+    boards[].led_low boards[].flash boards[].bitstream boards[].notes boards[].conflicts boards[].sources
+    boards[].measured boards[].measured.block_rams";
 
 const ICE40: &str = "boards[].pll boards[].parts[].logic_cells boards[].usb boards[].clocks[].made_by.ice40_pll
     boards[].clocks[].made_by.ice40_pll.divr boards[].clocks[].made_by.ice40_pll.divf
-    boards[].clocks[].made_by.ice40_pll.divq boards[].clocks[].made_by.ice40_pll.filter_range";
+    boards[].clocks[].made_by.ice40_pll.divq boards[].clocks[].made_by.ice40_pll.filter_range
+    boards[].measured.logic_cells boards[].measured.nextpnr_mhz boards[].measured.icetime_mhz boards[].measured.seed";
 
 const TIES: &str = "boards[].ties[].port boards[].ties[].pin boards[].ties[].level boards[].ties[].why";
 
@@ -59,7 +61,8 @@ const SPARTANS: &str =
     "boards[].vccaux boards[].max_baud boards[].parts[].speed boards[].bitgen boards[].clocks[].made_by.dcm
     boards[].clocks[].made_by.dcm.multiply boards[].clocks[].made_by.dcm.divide boards[].clocks[].made_by.mmcm
     boards[].clocks[].made_by.mmcm.multiply boards[].clocks[].made_by.mmcm.divide
-    boards[].clocks[].made_by.mmcm.out_divide";
+    boards[].clocks[].made_by.mmcm.out_divide boards[].measured.luts boards[].measured.flip_flops
+    boards[].measured.carries";
 
 /// Every name in a document, `a.b` for b in a and `a[]` for what the list a holds.
 fn names(value: &Value, path: &str, found: &mut Vec<String>) {

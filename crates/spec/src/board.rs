@@ -10,11 +10,13 @@ use std::sync::LazyLock;
 
 mod error;
 mod family;
+mod measured;
 mod port;
 mod raw;
 
 pub use error::BoardError;
 pub use family::{Family, IoStandard, PllInput, Toolchain};
+pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
 pub use port::{OSCILLATOR, PORTS, Port, Way};
 
 /// Baud rates that are proposed, the fastest first: those that USB serial chips make exactly, and the usual ones.

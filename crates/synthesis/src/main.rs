@@ -1,6 +1,7 @@
 //! `cargo xtask resources`: measures every row and writes `hdl-out/resources.md`; with the argument `boards`, which `cargo xtask
-//! long boards` gives, builds all boards and writes `hdl-out/boards.md`.
+//! long boards` gives, builds all boards and writes `hdl-out/boards.md` and the figures that `carrystep boards` shows.
 
+use carrystep_spec::board::MEASURED_AT;
 use carrystep_synthesis::board::page;
 use carrystep_synthesis::resources::{self, FAMILIES, Measured, PAGE, ROWS};
 use carrystep_synthesis::xilinx;
@@ -27,9 +28,15 @@ fn main() -> ExitCode {
     }
 }
 
+/// What is written above the figures of the boards.
+const HEAD: &str = "# What the shipped gateware takes of each board, on its first part with its first clock. Written by `cargo xtask long boards`.\n\n";
+
 /// All boards; one that does not reach its clock stands in the table, and is a failure.
 fn boards() -> Result<(), String> {
-    let text = page::page(&mut say).map_err(|error| error.to_string())?;
+    let all = page::measure(&mut say).map_err(|error| error.to_string())?;
+    let text = page::page(&all);
+    let data = toml::to_string(&all).map_err(|error| error.to_string())?;
+    write(MEASURED_AT, &(HEAD.to_owned() + &data))?;
     write(page::PAGE, &text)?;
     if text.contains("**no**") {
         return Err(format!("{}: a clock is not reached", page::PAGE));
@@ -41,7 +48,7 @@ fn boards() -> Result<(), String> {
 /// Whole or not at all.
 fn write(page: &str, text: &str) -> Result<(), String> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(page);
-    let next = path.with_extension("md.new");
+    let next = path.with_extension("new");
     std::fs::write(&next, text).and_then(|()| std::fs::rename(&next, &path)).map_err(|error| error.to_string())
 }
 

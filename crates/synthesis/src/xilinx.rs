@@ -2,19 +2,7 @@
 
 use crate::SynthesisError;
 use crate::tool::{self, YOSYS};
-
-/// Cells of a family.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Cells {
-    /// LUTs of all widths, inverters included, and those that are memory.
-    pub luts: u32,
-    /// Flip-flops.
-    pub flip_flops: u32,
-    /// Cells of the carry chain: a bit each up to xc3s (`MUXCY`, `XORCY`), four bits each from xc6s on (`CARRY4`).
-    pub carries: u32,
-    /// Block RAMs of all sizes.
-    pub block_rams: u32,
-}
+use carrystep_spec::board::Mapped;
 
 /// Counts what `synth_xilinx` makes of a design for `xc3s`, `xc6s`, `xc7`.
 ///
@@ -22,7 +10,7 @@ pub struct Cells {
 ///
 /// # Errors
 /// [`SynthesisError`]: yosys is missing or refuses the text.
-pub fn cells(verilog: &str, top: &str, family: &str) -> Result<Cells, SynthesisError> {
+pub fn cells(verilog: &str, top: &str, family: &str) -> Result<Mapped, SynthesisError> {
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", verilog)?;
     let script = format!(
@@ -32,8 +20,8 @@ pub fn cells(verilog: &str, top: &str, family: &str) -> Result<Cells, SynthesisE
     count(&tool::read(folder.path(), "stat.txt")?)
 }
 
-fn count(stat: &str) -> Result<Cells, SynthesisError> {
-    let mut cells = Cells::default();
+fn count(stat: &str) -> Result<Mapped, SynthesisError> {
+    let mut cells = Mapped::default();
     for line in stat.lines() {
         let mut words = line.split_whitespace();
         let (Some(name), Some(number), None) = (words.next(), words.next(), words.next()) else { continue };

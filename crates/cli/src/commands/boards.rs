@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::output;
 use carrystep_export::Gateware;
 use carrystep_spec::Source;
-use carrystep_spec::board::{Board, BoardError, Part, Place, board, boards};
+use carrystep_spec::board::{Board, BoardError, Mapped, Measured, Part, Place, Placed, board, boards};
 use carrystep_spec::clock::mhz;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -21,7 +21,16 @@ struct Shown<'a> {
     passed: bool,
     /// Whether carrystep was ever run on a real one.
     tried_on_hardware: bool,
-    boards: &'a [Board],
+    boards: Vec<ShownBoard<'a>>,
+}
+
+#[derive(Serialize)]
+struct ShownBoard<'a> {
+    #[serde(flatten)]
+    board: &'a Board,
+    /// What the shipped gateware takes of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    measured: Option<Measured>,
 }
 
 /// Shows all boards, or one.
@@ -29,7 +38,8 @@ pub fn run(arguments: &Boards) -> Result<(), Failure> {
     let one = arguments.board.as_deref().map(find).transpose()?;
     let shown = one.as_deref().map_or(boards(), std::slice::from_ref);
     if arguments.json {
-        return output::print_json(&Shown { passed: true, tried_on_hardware: false, boards: shown });
+        let boards = shown.iter().map(|board| ShownBoard { board, measured: board.measured() }).collect();
+        return output::print_json(&Shown { passed: true, tried_on_hardware: false, boards });
     }
     output::print(&one.as_deref().map_or_else(list, in_full))
 }
@@ -59,22 +69,38 @@ pub fn gateware<'a>(board: &'a Board, part: Option<&str>, machine: Option<&Path>
 
 /// A line for each.
 fn list() -> String {
-    let mut text = format!("{:<12}  {:<9}  {:>5}  {:>4}  {:>6}  board\n", "name", "part", "MHz", "tick", "phases");
+    let mut text = format!(
+        "{:<12}  {:<9}  {:>5}  {:>4}  {:>6}  {:>14}  {:>8}  {:>5}  board\n",
+        "name", "part", "MHz", "tick", "phases", "logic", "RAMs", "Fmax"
+    );
     for board in boards() {
-        let clock = &board.clocks[0];
+        let (part, clock) = (&board.parts[0], &board.clocks[0]);
+        let [logic, rams, fmax] = match board.measured() {
+            Some(Measured::Placed(Placed { logic_cells, block_rams, nextpnr_mhz, .. })) => [
+                part.logic_cells.map_or_else(String::new, |of| format!("{logic_cells}/{of} LC")),
+                format!("{block_rams}/{}", part.block_rams),
+                format!("{nextpnr_mhz:.1}"),
+            ],
+            Some(Measured::Mapped(Mapped { luts, block_rams, .. })) => {
+                [format!("{luts} LUTs"), format!("{block_rams}/{}", part.block_rams), "-".to_owned()]
+            }
+            None => ["-".to_owned(), "-".to_owned(), "-".to_owned()],
+        };
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{:<12}  {:<9}  {:>5}  {:>4}  {:>6}  {}",
+            "{:<12}  {:<9}  {:>5}  {:>4}  {:>6}  {logic:>14}  {rams:>8}  {fmax:>5}  {}",
             board.name,
-            board.parts[0].name,
+            part.name,
             mhz(clock.clock_hz),
             clock.tick_ns,
             clock.phases,
             board.title
         );
     }
-    text + "tick in ns. `carrystep boards BOARD` shows its pins, and its other parts and clocks.\n" + UNTRIED
+    text + "tick in ns, Fmax in MHz by nextpnr; what a Spartan reaches only ISE or Vivado can say. `carrystep boards BOARD` shows its\n\
+            pins, and its other parts and clocks.\n"
+        + UNTRIED
 }
 
 /// Everything about one.
@@ -101,6 +127,21 @@ fn in_full(board: &Board) -> String {
             clock.why
         );
     }
+    let first = &board.parts[0];
+    let _ = match board.measured() {
+        Some(Measured::Placed(Placed { logic_cells, block_rams, nextpnr_mhz, icetime_mhz, .. })) => writeln!(
+            text,
+            "measured     {logic_cells} of {} logic cells, {block_rams} of {} block RAMs, {nextpnr_mhz:.1} MHz by nextpnr, {icetime_mhz:.1} MHz by icetime",
+            first.logic_cells.unwrap_or_default(),
+            first.block_rams
+        ),
+        Some(Measured::Mapped(Mapped { luts, flip_flops, block_rams, .. })) => writeln!(
+            text,
+            "measured     {luts} LUTs, {flip_flops} flip-flops, {block_rams} of {} block RAMs by yosys; never placed",
+            first.block_rams
+        ),
+        None => Ok(()),
+    };
     let _ = writeln!(text, "\n{:<12}  {:<4}  at", "port", "pin");
     for wire in &board.wires {
         let at = wire

@@ -2,10 +2,9 @@
 
 use super::{Built, Job, build};
 use crate::resources::failed;
-use crate::xilinx::{self, Cells};
-use crate::{SynthesisError, ice40};
+use crate::{SynthesisError, ice40, xilinx};
 use carrystep_export::Gateware;
-use carrystep_spec::board::{Board, boards};
+use carrystep_spec::board::{AllMeasured, Board, Mapped, Measured, Placed, boards};
 use carrystep_spec::clock::mhz;
 
 /// Where it is, seen from the root of the workspace.
@@ -32,41 +31,65 @@ pub fn built(board: &Board) -> Result<Built, SynthesisError> {
     build(&job, &mut |_| {})
 }
 
-/// The row of an iCE40 board.
-pub fn row(board: &Board, built: &Built) -> String {
-    let (part, clock) = (&board.parts[0], &board.clocks[0]);
-    let (cells, rams) = (built.size.logic_cells, built.size.block_rams);
-    let of = part.logic_cells.unwrap_or_default();
-    let reached = if built.reaches(clock.clock_hz) { "yes" } else { "**no**" };
-    format!(
-        "| `{}` | {} | {cells} of {of} | {rams} of {} | {} | {} | {} | {:.1} | {:.1} | {} | {reached} |\n",
-        board.name,
-        part.name,
-        part.block_rams,
-        mhz(clock.clock_hz),
-        clock.tick_ns,
-        clock.phases,
-        built.mhz,
-        built.icetime_mhz,
-        built.seed
-    )
+/// What an iCE40 board takes, as it is written down.
+pub fn placed(built: &Built) -> Placed {
+    let tenths = |mhz: f64| (mhz * 10.0).round() / 10.0;
+    Placed {
+        logic_cells: built.size.logic_cells,
+        block_rams: built.size.block_rams,
+        nextpnr_mhz: tenths(built.mhz),
+        icetime_mhz: tenths(built.icetime_mhz),
+        seed: built.seed,
+    }
 }
 
-/// The whole page; `say` hears of each row.
+/// Builds all boards; `say` hears of each.
 ///
 /// # Errors
 /// As [`built`].
-pub fn page(say: &mut dyn FnMut(&str)) -> Result<String, SynthesisError> {
-    let (mut ours, mut theirs) = (String::new(), String::new());
+pub fn measure(say: &mut dyn FnMut(&str)) -> Result<AllMeasured, SynthesisError> {
+    let mut all = AllMeasured::new();
     for board in boards() {
-        let (rows, row) = match board.family.yosys() {
-            None => (&mut ours, row(board, &built(board)?)),
-            Some(family) => (&mut theirs, cells_row(board, &cells(board, family)?)),
+        let measured = match board.family.yosys() {
+            None => Measured::Placed(placed(&built(board)?)),
+            Some(family) => Measured::Mapped(cells(board, family)?),
         };
-        say(row.trim());
-        rows.push_str(&row);
+        say(row(board, &measured).trim());
+        all.insert(board.name.clone(), measured);
     }
-    Ok(format!(
+    Ok(all)
+}
+
+/// A board's row.
+pub fn row(board: &Board, measured: &Measured) -> String {
+    let (part, clock) = (&board.parts[0], &board.clocks[0]);
+    let time = format!("{} | {} | {}", mhz(clock.clock_hz), clock.tick_ns, clock.phases);
+    match *measured {
+        Measured::Placed(Placed { logic_cells, block_rams, nextpnr_mhz, icetime_mhz, seed }) => format!(
+            "| `{}` | {} | {logic_cells} of {} | {block_rams} of {} | {time} | {nextpnr_mhz:.1} | {icetime_mhz:.1} | {seed} | {} |\n",
+            board.name,
+            part.name,
+            part.logic_cells.unwrap_or_default(),
+            part.block_rams,
+            if nextpnr_mhz * 1e6 >= clock.clock_hz as f64 { "yes" } else { "**no**" },
+        ),
+        Measured::Mapped(Mapped { luts, flip_flops, carries, block_rams }) => format!(
+            "| `{}` | {} | {luts} | {flip_flops} | {carries} | {block_rams} of {} | {time} |\n",
+            board.name,
+            part.ordered(),
+            part.block_rams,
+        ),
+    }
+}
+
+/// The whole page.
+pub fn page(all: &AllMeasured) -> String {
+    let (mut ours, mut theirs) = (String::new(), String::new());
+    for (board, measured) in boards().iter().filter_map(|board| Some((board, all.get(&board.name)?))) {
+        let rows = if matches!(measured, Measured::Placed(_)) { &mut ours } else { &mut theirs };
+        rows.push_str(&row(board, measured));
+    }
+    format!(
         "\
 # Boards
 
@@ -84,29 +107,15 @@ so on `s3board`, `nexys2` and `papilio-one` the engine's wheel of events, the on
 | board | part | LUTs | flip-flops | carry cells | block RAMs | clock, MHz | tick, ns | phases |
 |---|---|---|---|---|---|---|---|---|
 {theirs}"
-    ))
+    )
 }
 
 fn gateware(board: &Board) -> Result<Gateware<'_>, SynthesisError> {
     Gateware::shipped(board, &board.parts[0]).map_err(failed)
 }
 
-fn cells(board: &Board, family: &str) -> Result<Cells, SynthesisError> {
+fn cells(board: &Board, family: &str) -> Result<Mapped, SynthesisError> {
     let gateware = gateware(board)?;
     let verilog: String = gateware.verilog().map_err(failed)?.into_iter().map(|file| file.text).collect();
     xilinx::cells(&verilog, &gateware.top(), family)
-}
-
-fn cells_row(board: &Board, cells: &Cells) -> String {
-    let (part, clock) = (&board.parts[0], &board.clocks[0]);
-    let Cells { luts, flip_flops, carries, block_rams } = cells;
-    format!(
-        "| `{}` | {} | {luts} | {flip_flops} | {carries} | {block_rams} of {} | {} | {} | {} |\n",
-        board.name,
-        part.ordered(),
-        part.block_rams,
-        mhz(clock.clock_hz),
-        clock.tick_ns,
-        clock.phases
-    )
 }

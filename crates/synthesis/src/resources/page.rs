@@ -5,13 +5,13 @@ use super::measure::Measured;
 use super::peers::PEERS;
 use super::rows::{FAMILIES, Family, ROWS, Row, SEEDS};
 use crate::ice40::Size;
-use crate::xilinx::Cells;
+use carrystep_spec::board::Mapped;
 
 /// Where it is, from the root of the workspace.
 pub const PAGE: &str = "hdl-out/resources.md";
 
 /// The page, from what was found for each of the [`ROWS`], the [`LINES`] and the [`FAMILIES`].
-pub fn page(rows: &[Measured], links: &[Size], families: &[Cells]) -> String {
+pub fn page(rows: &[Measured], links: &[Size], families: &[Mapped]) -> String {
     let mut text = format!(
         "# What the engine costs\n\n\
          Written by `cargo xtask resources` with yosys 0.23 and nextpnr 0.4; `tests/engine_fits_its_budget.rs` fails where a change goes \
@@ -74,7 +74,7 @@ fn link_line(name: &str, found: &Size) -> String {
     format!("| {name} | {} ({}) | {} |\n", found.logic_cells, LINK_BUDGET.logic_cells, found.block_rams)
 }
 
-fn cells_line(family: &Family, found: &Cells) -> String {
+fn cells_line(family: &Family, found: &Mapped) -> String {
     let (luts, budget) = (found.luts, family.budget.luts);
     format!(
         "| {} | {luts} ({budget}) | {} | {} | {} |\n",

@@ -1,7 +1,7 @@
 //! The rows, and what each may cost. A new part, tick or number of axes is a new row.
 
 use crate::ice40::{Part, Size};
-use crate::xilinx::Cells;
+use carrystep_spec::board::Mapped;
 use carrystep_spec::engine::clocks_of_turns;
 
 /// Placements are tried with these; the best counts.
@@ -94,12 +94,12 @@ pub struct Family {
     /// The engine.
     pub of: Row,
     /// What it may take.
-    pub budget: Cells,
+    pub budget: Mapped,
 }
 
 /// All rows for Xilinx: the engine of the first row.
 pub const FAMILIES: [Family; 3] = [
-    Family { name: "xc3s", of: TWO, budget: Cells { luts: 700, flip_flops: 400, carries: 360, block_rams: 16 } },
-    Family { name: "xc6s", of: TWO, budget: Cells { luts: 690, flip_flops: 410, carries: 60, block_rams: 8 } },
-    Family { name: "xc7", of: TWO, budget: Cells { luts: 650, flip_flops: 410, carries: 60, block_rams: 6 } },
+    Family { name: "xc3s", of: TWO, budget: Mapped { luts: 700, flip_flops: 400, carries: 360, block_rams: 16 } },
+    Family { name: "xc6s", of: TWO, budget: Mapped { luts: 690, flip_flops: 410, carries: 60, block_rams: 8 } },
+    Family { name: "xc7", of: TWO, budget: Mapped { luts: 650, flip_flops: 410, carries: 60, block_rams: 6 } },
 ];
