@@ -16,6 +16,7 @@ mod spi;
 #[cfg(unix)]
 mod terminal;
 mod verilated;
+mod wire;
 
 pub use board::{Board, Switches};
 pub use carrystep_model::fast::Edges;

@@ -4,13 +4,12 @@
 mod support;
 
 use carrystep_board::Board;
-use carrystep_link::line::spi::SpiLine;
-use carrystep_link::{Ended, Host, Patience, Program, Wish};
-use carrystep_spec::link::{Line, Uart};
+use carrystep_link::{Ended, Program, Wish};
+use carrystep_spec::link::Uart;
 use support::bus::Bus;
 use support::random::Random;
 use support::wire::Faults;
-use support::{CLOCK_HZ, End, TICK_NS, build, waves};
+use support::{CLOCK_HZ, End, TICK_NS, waves};
 
 /// Six axes with so many segments a second each, for a second and a half.
 #[track_caller]
@@ -41,10 +40,8 @@ fn carries(baud: u32, per_second: u32) {
 /// The same over SPI: the driver for embedded-hal, six segments on their way at the most (docs/protocol.md).
 #[test]
 fn six_axes_at_500_segments_over_spi_at_10_mhz() {
-    let bus = Bus::new(10_000_000);
-    let id = Line::Spi.build_id(&build());
-    let mut host =
-        Host::<_, _, 6>::connect(SpiLine::new(bus.clone()), bus.clone(), Some(id.0), Patience::default()).unwrap();
+    let bus = Bus::<Board>::new(10_000_000);
+    let mut host = bus.connect();
     host.enable().unwrap();
     let per_second = 500;
     let commands = waves(&mut Random(7), per_second * 3 / 2, (1_000_000_000 / TICK_NS) as u32 / per_second);

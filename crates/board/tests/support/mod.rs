@@ -34,6 +34,9 @@ pub type BoardHost<B> = Host<End<B>, End<B>>;
 pub trait Kind: Gateware + Sized {
     fn new(uart: Uart) -> Self;
 
+    /// On an SPI of this rate, Hz.
+    fn on_spi(sck_hz: u64) -> Self;
+
     /// Segments that wait for the axis in the middle of a move that has fewest, where that can be told.
     fn least_waiting(&self) -> Option<usize>;
 
@@ -50,6 +53,10 @@ impl Kind for Board {
         Self::new(&build(), uart)
     }
 
+    fn on_spi(sck_hz: u64) -> Self {
+        Self::on_spi(&build(), sck_hz)
+    }
+
     fn least_waiting(&self) -> Option<usize> {
         let core = self.engine().core();
         (0..AXES).filter(|axis| core.in_a_move() >> axis & 1 == 1).map(|axis| core.waiting(axis)).min()
@@ -59,6 +66,10 @@ impl Kind for Board {
 impl Kind for VerilatedBoard {
     fn new(uart: Uart) -> Self {
         Self::new(&build(), uart).unwrap()
+    }
+
+    fn on_spi(sck_hz: u64) -> Self {
+        Self::on_spi(&build(), sck_hz).unwrap()
     }
 
     fn least_waiting(&self) -> Option<usize> {
@@ -78,9 +89,17 @@ pub fn build() -> EngineBuild {
 
 /// Edges, and the sum of them all.
 #[derive(Default)]
-struct Seen {
+pub struct Seen {
     edges: Vec<Edge>,
     travelled: [i32; AXES],
+}
+
+impl Seen {
+    /// Edges from this cycle on, their clocks counted from there.
+    pub fn since(&self, cycle: u64) -> Vec<Edge> {
+        let since = self.edges.iter().filter(|edge| edge.clock >= cycle);
+        since.map(|edge| Edge { clock: edge.clock - cycle, ..*edge }).collect()
+    }
 }
 
 impl Edges for Seen {
@@ -144,8 +163,7 @@ impl<B: Kind> World<B> {
 
     /// Edges from this cycle on, their clocks counted from there.
     pub fn edges_since(&self, cycle: u64) -> Vec<Edge> {
-        let since = self.edges.edges.iter().filter(|edge| edge.clock >= cycle);
-        since.map(|edge| Edge { clock: edge.clock - cycle, ..*edge }).collect()
+        self.edges.since(cycle)
     }
 
     /// The last edge.
