@@ -2,14 +2,16 @@
 #![allow(dead_code, reason = "each test uses a part")]
 
 pub mod bus;
-#[path = "../../../link/tests/support/random.rs"]
-pub mod random;
-#[path = "../../../link/tests/support/wire.rs"]
-pub mod wire;
+#[path = "../../../link/tests/support/mod.rs"]
+pub mod link;
+pub mod words;
+
+pub use link::{random, wire};
 
 use carrystep_board::{Board, Edges, Gateware, VerilatedBoard};
 use carrystep_link::{Clock, Command, Exchanged, Host, Line, Patience, Segment};
 use carrystep_model::fast::{Change, Edge};
+use carrystep_spec::engine::Limits;
 use carrystep_spec::link::{END, Uart};
 use carrystep_spec::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use random::Random;
@@ -23,7 +25,7 @@ pub const TICK_NS: u64 = 2000;
 /// Cycles of a millisecond, and of a tick.
 pub const MS: u64 = CLOCK_HZ / 1000;
 pub const TICK: u64 = CLOCK_HZ * TICK_NS / 1_000_000_000;
-/// Of every axis: it takes 8192 ticks, 16 ms, from the greatest speed of [`waves`] to rest.
+/// Of every axis but one: it takes 8192 ticks, 16 ms, from the greatest speed of [`waves`] to rest.
 pub const STOP: u64 = 1 << 45;
 /// The greatest speed of [`waves`].
 pub const FASTEST: i64 = 1 << 58;
@@ -77,13 +79,15 @@ impl Kind for VerilatedBoard {
     }
 }
 
-/// Six axes with a watchdog of about 100 ms.
+/// Six axes with a watchdog of about 100 ms and limits; axis 1 stops as fast as that of docs/protocol.md.
 pub fn build() -> EngineBuild {
     let timebase = Timebase::new(CLOCK_HZ, TICK_NS, 16).unwrap();
     let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
     let mut build = EngineBuild::minimal(&build, STOP);
     build.guard.round = 1024;
     build.guard.watchdog = 49;
+    build.guard.limits = Limits::Pair;
+    build.guard.stop[1] = 1 << 54;
     build
 }
 
