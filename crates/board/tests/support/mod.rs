@@ -9,10 +9,10 @@ pub mod words;
 pub use link::{random, wire};
 
 use carrystep_board::{Board, Edges, Gateware, VerilatedBoard};
-use carrystep_link::{Clock, Command, Exchanged, Host, Line, Patience, Segment};
+use carrystep_link::{Clock, Command, Exchanged, Host, HostError, Line, Patience, Segment};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_spec::engine::Limits;
-use carrystep_spec::link::{END, Uart};
+use carrystep_spec::link::{BuildId, END, Uart};
 use carrystep_spec::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use random::Random;
 use std::cell::RefCell;
@@ -131,6 +131,8 @@ pub struct World<B> {
     pub handed_over: bool,
     /// Answers and what else has come, in bytes.
     pub came: u64,
+    /// Called each millisecond.
+    pub meanwhile: Box<dyn FnMut(&mut B)>,
 }
 
 impl<B: Kind> World<B> {
@@ -144,6 +146,7 @@ impl<B: Kind> World<B> {
             self.board.say(byte);
         }
         self.board.reach(self.board.cycle() + MS, &mut self.edges);
+        (self.meanwhile)(&mut self.board);
         let waiting = self.board.least_waiting().filter(|_| !self.handed_over);
         self.least_waiting = waiting.unwrap_or(usize::MAX).min(self.least_waiting);
         let mut piece = Vec::new();
@@ -208,13 +211,18 @@ impl<B: Kind> End<B> {
             least_waiting: usize::MAX,
             handed_over: false,
             came: 0,
+            meanwhile: Box::new(|_| ()),
         })))
     }
 
     /// A host, which refuses any board but this.
     pub fn connect(&self, uart: Uart) -> BoardHost<B> {
-        let id = uart.build_id(&build());
-        Host::connect(self.clone(), self.clone(), Some(id.0), Patience::default()).unwrap()
+        self.connect_to(uart.build_id(&build()), Patience::default()).unwrap()
+    }
+
+    /// A host, which refuses any board but this one.
+    pub fn connect_to(&self, id: BuildId, patience: Patience) -> Result<BoardHost<B>, HostError<Died>> {
+        Host::connect(self.clone(), self.clone(), Some(id.0), patience)
     }
 
     /// Time passes without a host.
