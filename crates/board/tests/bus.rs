@@ -1,5 +1,5 @@
 //! The driver for embedded-hal's SPI, with a board of models and with the exported Verilog at the bus.
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
 

@@ -1,6 +1,6 @@
 //! The C library as the host of a board of models and of the exported Verilog: the pulses are those that the driver in Rust
 //! makes, on a clean line and on a bad one, over UART and SPI; another build is refused.
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
 

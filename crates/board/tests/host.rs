@@ -125,7 +125,7 @@ fn a_stop_of_the_machine_is_named<B: Kind>() {
     assert!(error.to_string().starts_with("the machine has stopped: limit"), "{error}");
     positions_are_true(&end, &host);
     let press = |estop| {
-        end.0.borrow_mut().meanwhile = Box::new(move |board| board.press(Switches { estop, ..Switches::default() }))
+        end.0.borrow_mut().meanwhile = Box::new(move |board| board.press(Switches { estop, ..Switches::default() }));
     };
     press(false);
     host.clear().unwrap();

@@ -91,6 +91,11 @@ pub fn build() -> EngineBuild {
     build
 }
 
+/// How much a longer run asks for in its environment; else so much.
+pub fn asked(name: &str, usual: u64) -> u64 {
+    std::env::var(name).map_or(usual, |text| text.parse().expect(name))
+}
+
 /// Edges, and the sum of them all.
 #[derive(Default)]
 pub struct Seen {
