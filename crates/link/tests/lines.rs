@@ -64,7 +64,11 @@ fn a_port_that_cannot_be_opened_says_why() {
     drop(first);
 
     let file = tempfile::NamedTempFile::new().unwrap();
-    let none = SerialLine::open(file.path().to_str().unwrap(), 921_600).err().unwrap();
+    for path in [file.path(), file.path().parent().unwrap()] {
+        let none = SerialLine::open(path.to_str().unwrap(), 921_600).err().unwrap();
+        assert!(matches!(none, OpenError::NoPort { .. }), "{none}");
+    }
+    let none = SerialLine::open("/dev/null", 921_600).err().unwrap();
     assert!(matches!(none, OpenError::Unusable { .. }), "{none}");
 }
 
