@@ -175,6 +175,64 @@ fn an_interrupted_run_comes_to_rest_and_the_next_one_runs() {
     assert!(board.end().contains(&format!("\nx at {}\n", position + 39)));
 }
 
+#[cfg(unix)]
+#[test]
+fn a_host_that_is_killed_leaves_a_machine_that_stands_and_says_why() {
+    let folder = folder();
+    folder.write("machine.toml", MACHINE.replace("watchdog_ms = 4000", "watchdog_ms = 400"));
+    let board = Board::new(&folder, "--fast --vcd a.vcd");
+    let mut child = begin(&folder, &board, "long.toml");
+    let status = format!("status --port {} --machine machine.toml", board.port);
+    folder.run(&status).refuses("in use by");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    // A fast board waits for its host, and goes on by itself after a second without one.
+    let mut alone = Duration::from_secs(2);
+    let told = loop {
+        std::thread::sleep(alone);
+        alone *= 2;
+        let ran = folder.run(&status);
+        passed(&ran);
+        if ran.stdout.contains("STOPPED") {
+            break ran.stdout;
+        }
+    };
+    assert!(["watchdog", "underrun"].iter().any(|cause| told.contains(cause)), "{told}");
+    let run = format!("run move.toml --port {}", board.port);
+    let ran = folder.run(&run);
+    assert_eq!(ran.status, 1);
+    assert!(ran.stderr.starts_with("error: the machine has stopped: "), "{}", ran.stderr);
+    assert!(ran.stderr.ends_with("; `carrystep stop --clear` resumes\n"), "{}", ran.stderr);
+    passed(&folder.run(&format!("stop --clear --port {} --machine machine.toml", board.port)));
+    passed(&folder.run(&run));
+}
+
+#[test]
+fn a_board_that_is_gone_is_named() {
+    let folder = folder();
+    let mut board = Board::new(&folder, "--fast --vcd a.vcd");
+    let child = begin(&folder, &board, "long.toml");
+    board.child.kill().unwrap();
+    let output = child.wait_with_output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{said}");
+    assert!(said.starts_with("error: the line to the board is gone: "), "{said}");
+    assert!(said.ends_with("; what moves stops by its watchdog\n"), "{said}");
+    folder.run(&format!("run move.toml --port {}", board.port)).refuses("there is no serial port");
+}
+
+#[test]
+fn a_limit_that_was_met_is_told_with_its_axis() {
+    let folder = folder();
+    let board = Board::new(&folder, "--fast --max y=100");
+    let on = format!("--machine machine.toml --port {}", board.port);
+    let ran = folder.run(&format!("jog y 5 {on}"));
+    assert_eq!(ran.status, 1);
+    assert!(ran.stdout.contains("STOPPED by the machine: limit;"), "{}", ran.stdout);
+    let ran = folder.run(&format!("jog x 1 {on}"));
+    assert_eq!(ran.stderr, "error: the machine has stopped: limit, from y; `carrystep stop --clear` resumes\n");
+}
+
 #[test]
 fn an_emergency_stop_is_told_and_stays_until_it_is_released_and_cleared() {
     let folder = folder();
@@ -212,7 +270,7 @@ fn homing_finds_the_switch() {
     let board = Board::new(&folder, "--fast");
     let ran = folder.run(&format!("home home.toml --port {}", board.port));
     assert_eq!(ran.status, 1);
-    assert!(ran.stderr.contains("have not met their limits"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("no limit was met by x\n"), "{}", ran.stderr);
 }
 
 #[test]

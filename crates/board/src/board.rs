@@ -1,7 +1,6 @@
 //! Engine and link on one clock, and the line to the host.
 
-use crate::line::{Ear, Speaker};
-use crate::spi::Master;
+use crate::wire::{Driven, SPI_RESTS, Wire};
 use carrystep_model::fast::Edges;
 use carrystep_model::{FastEngine, Link};
 use carrystep_spec::EngineBuild;
@@ -44,24 +43,15 @@ pub struct Board {
     stops: Vec<(u64, Cause)>,
 }
 
-/// The host's end of the line.
-#[derive(Debug, Clone)]
-enum Wire {
-    Uart(Speaker, Ear),
-    /// And MISO as it is.
-    Spi(Master, bool),
-}
-
 impl Board {
     /// A board as it is configured, in cycle 0, with no switch pressed.
     pub fn new(build: &EngineBuild, uart: Uart) -> Self {
-        let clock_hz = build.timebase.clock_hz();
-        Self::with(build, uart.into(), Wire::Uart(Speaker::new(clock_hz, uart), Ear::new(clock_hz, uart)))
+        Self::with(build, uart.into(), Wire::uart(build.timebase.clock_hz(), uart))
     }
 
     /// The same on an SPI of this rate, Hz.
     pub fn on_spi(build: &EngineBuild, sck_hz: u64) -> Self {
-        Self::with(build, Line::Spi, Wire::Spi(Master::new(build.timebase.clock_hz(), sck_hz), true))
+        Self::with(build, Line::Spi, Wire::spi(build.timebase.clock_hz(), sck_hz))
     }
 
     fn with(build: &EngineBuild, line: Line, wire: Wire) -> Self {
@@ -104,26 +94,17 @@ impl Board {
 
     /// Says a byte to it, at the line's pace.
     pub fn say(&mut self, byte: u8) {
-        match &mut self.wire {
-            Wire::Uart(speaker, _) => speaker.say(byte),
-            Wire::Spi(master, _) => master.say(byte),
-        }
+        self.wire.say(byte);
     }
 
     /// Bytes that have not yet gone to it.
     pub fn unsaid(&self) -> usize {
-        match &self.wire {
-            Wire::Uart(speaker, _) => speaker.unsaid(),
-            Wire::Spi(master, _) => master.unsaid(),
-        }
+        self.wire.unsaid()
     }
 
     /// The next byte from it.
     pub fn next_byte(&mut self) -> Option<u8> {
-        match &mut self.wire {
-            Wire::Uart(_, ear) => ear.next_byte(),
-            Wire::Spi(master, _) => master.next_byte(),
-        }
+        self.wire.next_byte()
     }
 
     /// Sets the switches from this cycle on.
@@ -153,8 +134,8 @@ impl Board {
     fn run_link(&mut self, end: u64) -> u64 {
         let mut cycle = self.cycle();
         while cycle < end && self.link.is_alone() {
-            let (rx, spi, stays) = self.wire.pins(cycle);
-            let quiet = self.link.quiet(rx).min(stays).min(end - cycle);
+            let Driven { rx, spi, stays } = self.wire.drive(cycle);
+            let quiet = if spi == SPI_RESTS { self.link.quiet(rx).min(stays).min(end - cycle) } else { 0 };
             if quiet == 0 {
                 self.link.clock_alone(rx, spi);
             } else {
@@ -191,7 +172,7 @@ impl Board {
     fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
         let asks = self.link.outputs();
         let says = self.engine.outputs(inputs);
-        let (rx, spi, _) = self.wire.pins(self.cycle());
+        let Driven { rx, spi, .. } = self.wire.drive(self.cycle());
         self.link.clock(&LinkInputs { rx, spi, ..self.told(&asks, &says) });
         self.clock_engine(inputs, &says, to);
         self.wire.hear(self.cycle(), self.link.tx());
@@ -222,28 +203,6 @@ impl Board {
             get_data: core.item(axis, item),
             get_valid: core.answers(),
             ..LinkInputs::default()
-        }
-    }
-}
-
-impl Wire {
-    /// The line to the gateware in a clock, SCK and select (low), and for how many clocks they stay.
-    fn pins(&mut self, cycle: u64) -> (bool, [bool; 2], u64) {
-        match self {
-            Self::Uart(speaker, _) => (speaker.level(cycle), [false, true], speaker.stays(cycle)),
-            Self::Spi(master, _) if master.rests() => (false, [false, true], u64::MAX),
-            Self::Spi(master, miso) => {
-                let [sck, select_n, mosi] = master.clock(*miso);
-                (mosi, [sck, select_n], 0)
-            }
-        }
-    }
-
-    /// The line from the gateware has had its level up to this clock, and has this one from here on.
-    fn hear(&mut self, cycle: u64, level: bool) {
-        match self {
-            Self::Uart(_, ear) => ear.hear(cycle, level),
-            Self::Spi(_, miso) => *miso = level,
         }
     }
 }

@@ -9,6 +9,8 @@
 //! a board says how far it runs.
 
 mod board;
+#[cfg(unix)]
+mod desk;
 mod gateware;
 mod line;
 mod pace;
@@ -16,9 +18,12 @@ mod spi;
 #[cfg(unix)]
 mod terminal;
 mod verilated;
+mod wire;
 
 pub use board::{Board, Switches};
 pub use carrystep_model::fast::Edges;
+#[cfg(unix)]
+pub use desk::{Desk, DeskError};
 pub use gateware::Gateware;
 pub use line::{Ear, Speaker};
 pub use pace::{Pace, Walk};

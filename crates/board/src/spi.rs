@@ -9,95 +9,130 @@
 
 use std::collections::VecDeque;
 
+/// Edges of SCK in a byte.
+const EDGES: u8 = 16;
+
 /// The host; its clock need not divide the gateware's.
 #[derive(Debug, Clone)]
-pub struct Master {
-    clock_hz: u64,
-    /// Edges of SCK in a second.
-    edges_hz: u64,
-    /// Edges that are due, in parts of one: `clock_hz` are one edge.
-    due: u64,
+pub(crate) struct Master {
+    /// Parts of a clock, and of half a period of SCK.
+    parts: u128,
+    half: u128,
+    /// When the present levels may change.
+    ends: u128,
     queue: VecDeque<u8>,
-    /// What is being said, the present bit highest, and edges that are left of it; none while it is not selected.
+    /// What is being said, the present bit highest, and edges that are left of it.
     byte: u8,
     left: u8,
     selected: bool,
     sck: bool,
-    comes: u8,
+    /// Clocks in which MISO is to be looked at, its level, and what was seen under a mark.
+    looks: VecDeque<u64>,
+    miso: bool,
+    comes: u16,
     heard: VecDeque<u8>,
 }
 
 impl Master {
     /// A host at rest, with this SCK.
-    pub fn new(clock_hz: u64, sck_hz: u64) -> Self {
+    pub(crate) fn new(clock_hz: u64, sck_hz: u64) -> Self {
         Self {
-            clock_hz,
-            edges_hz: 2 * sck_hz,
-            due: 0,
+            parts: u128::from(2 * sck_hz),
+            half: clock_hz.into(),
+            ends: 0,
             queue: VecDeque::new(),
             byte: 0,
             left: 0,
             selected: false,
             sck: false,
-            comes: 0,
+            looks: VecDeque::new(),
+            miso: true,
+            comes: 1,
             heard: VecDeque::new(),
         }
     }
 
     /// Says a byte after all others, and hears one.
-    pub fn say(&mut self, byte: u8) {
+    pub(crate) fn say(&mut self, byte: u8) {
         self.queue.push_back(byte);
     }
 
     /// Bytes that are not said yet, the present one included; 1 too until it has let go.
-    pub fn unsaid(&self) -> usize {
+    pub(crate) fn unsaid(&self) -> usize {
         self.queue.len() + usize::from(self.selected)
     }
 
     /// The next byte that was heard.
-    pub fn next_byte(&mut self) -> Option<u8> {
+    pub(crate) fn next_byte(&mut self) -> Option<u8> {
         self.heard.pop_front()
     }
 
-    /// Nothing is said, and nothing is to be said.
-    pub fn rests(&self) -> bool {
-        self.unsaid() == 0
+    /// SCK, select (low) and MOSI in a clock, which is never before the last one that was asked about.
+    pub(crate) fn pins(&mut self, cycle: u64) -> [bool; 3] {
+        while self.changes() <= cycle && self.unsaid() > 0 {
+            self.ends = if self.selected { self.ends } else { self.ends.max(u128::from(cycle) * self.parts) };
+            self.go_on();
+            self.ends += self.half;
+        }
+        [self.sck, !self.selected, self.byte & 0x80 != 0]
     }
 
-    /// SCK, select (low) and MOSI in the next clock, MISO being as it is.
-    pub fn clock(&mut self, miso: bool) -> [bool; 3] {
-        if !self.selected {
-            let Some(byte) = self.queue.pop_front() else { return [false, true, false] };
-            (self.selected, self.byte, self.left, self.due) = (true, byte, 16, 0);
-            return self.pins();
-        }
-        self.due += self.edges_hz;
-        if self.due < self.clock_hz {
-            return self.pins();
-        }
-        self.due -= self.clock_hz;
-        if self.left == 0 {
-            // Half a period behind the last edge.
-            self.selected = false;
-            return self.pins();
-        }
-        self.sck = !self.sck;
-        self.left -= 1;
-        if self.sck {
-            self.comes = self.comes << 1 | u8::from(miso);
-        } else {
-            self.byte <<= 1;
-        }
-        if self.left == 0 {
-            self.heard.push_back(self.comes);
-            if let Some(byte) = self.queue.pop_front() {
-                (self.byte, self.left) = (byte, 16);
+    /// Half a period.
+    fn go_on(&mut self) {
+        match (self.left, self.sck) {
+            (0, _) if self.selected => self.selected = false,
+            (0, _) => {
+                self.selected = true;
+                self.next();
+            }
+            (_, false) => {
+                self.sck = true;
+                self.left -= 1;
+                self.looks.push_back(self.changes());
+            }
+            (_, true) => {
+                self.sck = false;
+                self.left -= 1;
+                self.byte <<= 1;
+                if self.left == 0 {
+                    self.next();
+                }
             }
         }
-        self.pins()
     }
 
-    const fn pins(&self) -> [bool; 3] {
-        [self.sck, !self.selected, self.byte & 0x80 != 0]
+    /// The next byte, where there is one.
+    fn next(&mut self) {
+        if let Some(byte) = self.queue.pop_front() {
+            (self.byte, self.left) = (byte, EDGES);
+        }
+    }
+
+    /// The first clock that does not begin before the present levels end.
+    fn changes(&self) -> u64 {
+        self.ends.div_ceil(self.parts) as u64
+    }
+
+    /// Clocks for which the pins stay, this one included; more where nothing is said.
+    pub(crate) fn stays(&self, cycle: u64) -> u64 {
+        if self.unsaid() == 0 { u64::MAX } else { self.changes().saturating_sub(cycle) }
+    }
+
+    /// MISO has had its level up to this clock, and has this one from here on.
+    pub(crate) fn hear(&mut self, cycle: u64, level: bool) {
+        while self.looks.front().is_some_and(|look| *look < cycle) {
+            self.looks.pop_front();
+            self.comes = self.comes << 1 | u16::from(self.miso);
+            if self.comes & 0x100 != 0 {
+                self.heard.push_back(self.comes as u8);
+                self.comes = 1;
+            }
+        }
+        self.miso = level;
+    }
+
+    /// MISO has had its level up to this clock, and keeps it.
+    pub(crate) fn reach(&mut self, cycle: u64) {
+        self.hear(cycle, self.miso);
     }
 }

@@ -2,16 +2,16 @@
 
 use crate::board::Switches;
 use crate::gateware::Gateware;
-use crate::line::{Ear, Speaker};
+use crate::wire::{Driven, Wire};
 use carrystep_levels::LevelError;
 use carrystep_levels::board::{BoardProcess, Did, Levels, Standing};
 use carrystep_model::fast::{Change, Edge, Edges};
 use carrystep_spec::EngineBuild;
 use carrystep_spec::engine::{Cause, MAX_AXES};
-use carrystep_spec::link::Uart;
+use carrystep_spec::link::{Line, Uart};
 
 /// Clocks that the process is told of at once.
-const CLOCKS: u64 = 10_000;
+const CLOCKS: u64 = 5000;
 
 /// The board; its time is that of its process, far slower than a real one's.
 #[derive(Debug)]
@@ -19,8 +19,7 @@ pub struct VerilatedBoard {
     build: EngineBuild,
     process: BoardProcess,
     standing: Standing,
-    speaker: Speaker,
-    ear: Ear,
+    wire: Wire,
     switches: Switches,
     loads: Vec<u64>,
     stops: Vec<(u64, Cause)>,
@@ -36,13 +35,23 @@ impl VerilatedBoard {
     /// # Errors
     /// [`LevelError`]: Verilator is missing or fails, or there is no such gateware.
     pub fn new(build: &EngineBuild, uart: Uart) -> Result<Self, LevelError> {
-        let clock_hz = build.timebase.clock_hz();
+        Self::with(build, uart.into(), Wire::uart(build.timebase.clock_hz(), uart))
+    }
+
+    /// The same on an SPI of this rate, Hz.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn on_spi(build: &EngineBuild, sck_hz: u64) -> Result<Self, LevelError> {
+        Self::with(build, Line::Spi, Wire::spi(build.timebase.clock_hz(), sck_hz))
+    }
+
+    fn with(build: &EngineBuild, line: Line, wire: Wire) -> Result<Self, LevelError> {
         Ok(Self {
             build: build.clone(),
-            process: BoardProcess::new(build, uart)?,
+            process: BoardProcess::new(build, line)?,
             standing: Standing { idle: true, ..Standing::default() },
-            speaker: Speaker::new(clock_hz, uart),
-            ear: Ear::new(clock_hz, uart),
+            wire,
             switches: Switches::default(),
             loads: Vec::new(),
             stops: Vec::new(),
@@ -59,14 +68,14 @@ impl VerilatedBoard {
         let mut stimuli = Vec::new();
         let mut cycle = self.cycle();
         while cycle < end {
-            let rx = self.speaker.level(cycle);
-            let count = self.speaker.stays(cycle).min(end - cycle);
-            stimuli.push((count, Levels { rx, estop: pins.estop, limit_min, limit_max }));
+            let Driven { rx, spi, stays } = self.wire.drive(cycle);
+            let count = stays.min(end - cycle);
+            stimuli.push((count, Levels { rx, spi, estop: pins.estop, limit_min, limit_max }));
             cycle += count;
         }
-        let Self { process, ear, loads, stops, pins, travelled, .. } = self;
+        let Self { process, wire, loads, stops, pins, travelled, .. } = self;
         let standing = process.run(&stimuli, &mut |did| match did {
-            Did::Tx(cycle, level) => ear.hear(cycle, level),
+            Did::Tx(cycle, level) => wire.hear(cycle, level),
             Did::Pins(cycle, now) => {
                 edges(cycle, *pins, now, &mut |edge| {
                     if edge.change == Change::Rise {
@@ -81,7 +90,7 @@ impl VerilatedBoard {
             Did::Stop(cycle, cause) => stops.push((cycle, cause)),
         })?;
         self.standing = standing;
-        self.ear.reach(end);
+        self.wire.reach(end);
         Ok(())
     }
 }
@@ -122,15 +131,15 @@ impl Gateware for VerilatedBoard {
     }
 
     fn say(&mut self, byte: u8) {
-        self.speaker.say(byte);
+        self.wire.say(byte);
     }
 
     fn unsaid(&self) -> usize {
-        self.speaker.unsaid()
+        self.wire.unsaid()
     }
 
     fn next_byte(&mut self) -> Option<u8> {
-        self.ear.next_byte()
+        self.wire.next_byte()
     }
 
     fn press(&mut self, switches: Switches) {

@@ -1,6 +1,6 @@
 //! A board at the end of a line that flips, drops, doubles, cuts and delays bytes: its pulses are those of a clean line, or
 //! it has stopped and says why. `CARRYSTEP_FRAMES` asks for so many frames in all.
-#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
 
@@ -12,7 +12,7 @@ use carrystep_spec::engine::Cause;
 use carrystep_spec::link::Uart;
 use support::random::Random;
 use support::wire::Faults;
-use support::{BoardHost, CLOCK_HZ, End, Kind, waves};
+use support::{BoardHost, CLOCK_HZ, End, Kind, asked, waves};
 
 /// Segments of an axis in a move, and ticks of each: the queues hold a seventh of a second.
 const SEGMENTS: u32 = 60;
@@ -78,7 +78,7 @@ fn compare(went: &Went, clean: &[Edge]) {
 
 #[test]
 fn pulses_on_a_bad_line_are_those_of_a_clean_one() {
-    let frames: u64 = std::env::var("CARRYSTEP_FRAMES").map_or(3000, |text| text.parse().expect("a number of frames"));
+    let frames = asked("CARRYSTEP_FRAMES", 3000);
     let mut random = Random(11);
     let (mut sent, mut moves, mut stops, mut edges, mut harmed) = (0, 0_u64, 0_u64, 0, 0);
     while sent < frames {
@@ -119,10 +119,19 @@ fn pulses_of_the_verilog_on_a_bad_line_are_those_of_models_on_a_clean_one() {
 /// `CARRYSTEP_GARBAGE` asks for so many milliseconds.
 #[test]
 fn garbage_hangs_nothing() {
-    let milliseconds = std::env::var("CARRYSTEP_GARBAGE").map_or(2000, |asked| asked.parse().unwrap());
+    hears_garbage::<Board>(asked("CARRYSTEP_GARBAGE", 2000));
+}
+
+/// `CARRYSTEP_VERILOG_MS` asks for so many milliseconds.
+#[test]
+fn garbage_hangs_no_verilog_at_921_600_baud() {
+    hears_garbage::<VerilatedBoard>(asked("CARRYSTEP_VERILOG_MS", 50));
+}
+
+fn hears_garbage<B: Kind>(milliseconds: u64) {
     // As fast as the line carries it.
     let uart = Uart::new(CLOCK_HZ, 921_600).unwrap();
-    let end = End::<Board>::new(uart, Faults::default(), 3);
+    let end = End::<B>::new(uart, Faults::default(), 3);
     let mut random = Random(9);
     let mut bytes = 0_u64;
     for _ in 0..milliseconds {
@@ -139,11 +148,10 @@ fn garbage_hangs_nothing() {
     let mut host = end.connect(uart);
     assert_eq!(host.status().answer.next, 0, "garbage was executed");
     host.enable().unwrap();
-    let commands = waves(&mut random, 3, TICKS);
-    let went = make(&end, &mut host, &commands);
+    let went = make(&end, &mut host, &waves(&mut random, 3, 3000));
     assert_eq!(went.stop, None);
     eprintln!(
         "FIGURES {bytes} bytes of garbage in {} s of the line's time, nothing executed, then a move",
-        milliseconds / 1000
+        milliseconds as f64 / 1000.0
     );
 }

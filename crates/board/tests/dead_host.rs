@@ -11,12 +11,11 @@ use carrystep_spec::engine::Cause;
 use carrystep_spec::link::Uart;
 use support::random::Random;
 use support::wire::Faults;
-use support::{BoardHost, CLOCK_HZ, End, FASTEST, Kind, MS, STOP, TICK, build, waves};
+use support::{BoardHost, CLOCK_HZ, End, FASTEST, Kind, MS, STOP, TICK, asked, build, waves};
 
 #[test]
 fn the_board_stops_and_another_host_goes_on() {
-    let deaths = std::env::var("CARRYSTEP_DEATHS").map_or(4, |text| text.parse().expect("a number of deaths"));
-    hosts_die::<Board>(deaths, 700, Faults::BAD);
+    hosts_die::<Board>(asked("CARRYSTEP_DEATHS", 4), 700, Faults::BAD);
 }
 
 #[test]

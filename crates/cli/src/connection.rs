@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use carrystep_link::host::SystemClock;
 use carrystep_link::line::serial::{OpenError, SerialLine};
+use carrystep_link::registers::CAUSES;
 use carrystep_link::{Host, HostError, Patience};
 use carrystep_spec::Machine;
 use carrystep_spec::link::{BuildId, Line, Uart};
@@ -66,18 +67,29 @@ fn connect(port: &str, baud: u32, id: Option<BuildId>) -> Result<Board, Failure>
 fn opening(port: &str, error: &OpenError) -> String {
     let access = match error {
         OpenError::Busy { .. } | OpenError::NotPermitted { .. } => carrystep_doctor::obstacle(Path::new(port)),
-        OpenError::Absent { .. } | OpenError::Unusable { .. } => None,
+        OpenError::Absent { .. } | OpenError::NoPort { .. } | OpenError::Unusable { .. } => None,
     };
     access.map_or_else(|| error.to_string(), |access| format!("serial port {port} {access}"))
 }
 
-/// What went wrong with a board that was driven already.
-pub fn broken(error: &BoardError) -> Failure {
-    match error {
+/// What went wrong with a board that was driven already; its axes have these names.
+pub fn broken(error: &BoardError, axes: &[String]) -> Failure {
+    let of = |mask: u8| {
+        let is_of = |number: usize| mask.checked_shr(number as u32).is_some_and(|bits| bits & 1 == 1);
+        let names: Vec<&str> = (0..).zip(axes).filter(|&(number, _)| is_of(number)).map(|(_, name)| &**name).collect();
+        names.join(", ")
+    };
+    match *error {
         HostError::Program(error) => Failure::input(error.to_string()),
-        HostError::Line(why) => Failure::Run(format!("{error}: {why}; what moves stops by its watchdog")),
-        HostError::NotIdle | HostError::Fault { .. } => {
-            Failure::Run(format!("{error}: `carrystep stop --clear` does that"))
+        HostError::Line(ref why) => Failure::Run(format!("{error}: {why}; what moves stops by its watchdog")),
+        HostError::NotIdle => Failure::Run(format!("{error}: `carrystep stop --clear` does that")),
+        HostError::Fault { cause, culprits } => {
+            let cause = CAUSES.get(usize::from(cause)).unwrap_or(&"?");
+            let from = if culprits == 0 { String::new() } else { format!(", from {}", of(culprits)) };
+            Failure::Run(format!("the machine has stopped: {cause}{from}; `carrystep stop --clear` resumes"))
+        }
+        HostError::NoLimit { axes } => {
+            Failure::Run(format!("the homing move is over, and no limit was met by {}", of(axes)))
         }
         _ => Failure::Run(error.to_string()),
     }

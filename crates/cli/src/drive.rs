@@ -100,6 +100,15 @@ impl Streamed {
         Ok(Self { commands, steps, seconds: plan.total_ticks() as f64 * plan.build.timebase.tick_seconds() })
     }
 
+    /// Segments of the axis that has most, and which it is.
+    pub fn most_segments(&self) -> (usize, usize) {
+        let of = |axis: usize| {
+            let own = |command: &&Command| matches!(command, Command::Segment { axis: other, .. } if usize::from(*other) == axis);
+            self.commands.iter().filter(own).count()
+        };
+        (0..self.steps.len()).map(|axis| (of(axis), axis)).max().unwrap_or_default()
+    }
+
     /// The axes that it moves, a bit each.
     pub fn moving(&self) -> u8 {
         (0..).zip(&self.steps).fold(0, |mask, (axis, &steps)| mask | u8::from(steps != 0) << axis)
@@ -110,7 +119,7 @@ impl Streamed {
 pub fn drive(connection: Connection, port: &str, streamed: &Streamed, homing: Option<u8>) -> Result<Driven, Failure> {
     let Connection { mut board, axes } = connection;
     let begun = Instant::now();
-    let told = |error| connection::broken(&error);
+    let told = |error| connection::broken(&error, &axes);
     let start = *board.status();
     if start.answer.fault {
         return Err(told(HostError::Fault { cause: start.answer.cause, culprits: start.answer.culprits }));
@@ -149,7 +158,7 @@ pub fn drive(connection: Connection, port: &str, streamed: &Streamed, homing: Op
         steps_planned: streamed.steps[number],
         latched: latched.filter(|_| homing.is_some_and(|mask| mask >> number & 1 == 1)).map(|at| at[number]),
     };
-    let axes: Vec<AxisDriven> = axes.into_iter().enumerate().map(axis).collect();
+    let axes: Vec<AxisDriven> = axes.iter().cloned().enumerate().map(axis).collect();
     let moved = |axis: &AxisDriven| i64::from(axis.position.wrapping_sub(axis.before)) == axis.steps_planned;
     Ok(Driven {
         passed: ended == How::Done && (homing.is_some() || axes.iter().all(moved)),

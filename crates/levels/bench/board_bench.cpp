@@ -1,5 +1,5 @@
-// A board in Verilator that goes as far as it is told. On standard input `COUNT RX ESTOP MIN MAX` is so many clocks
-// with these levels (masks in hex), and `0 ...` asks for a full stop. On standard output, each with the first cycle that has it:
+// A board in Verilator that goes as far as it is told. On standard input `COUNT PINS MIN MAX` is so many clocks with these
+// levels (in hex; of PINS bit 0 is RX or MOSI, then SCK, select, e-stop), and `0 ...` asks for a full stop. On standard output, each with the first cycle that has it:
 // `t CYCLE TX`, `p CYCLE STEP DIR`, `l CYCLE` a start has loaded, `f CYCLE CAUSE` a stop is called, and for a full stop
 // `. CYCLE IDLE HALTED FAULT CAUSE CULPRITS`.
 #include "Vboard_bench.h"
@@ -28,13 +28,15 @@ int main() {
     Vboard_bench board{&context};
     Seen seen;
     board.clock = 0;
-    board.rx = 1;
+    board.rx = board.select_n = 1;
     board.eval();
     uint64_t cycle = 0, count;
-    unsigned rx, estop, limit_min, limit_max;
-    while (std::scanf("%" SCNu64 " %u %u %x %x", &count, &rx, &estop, &limit_min, &limit_max) == 5) {
-        board.rx = rx;
-        board.estop = estop;
+    unsigned pins, limit_min, limit_max;
+    while (std::scanf("%" SCNu64 " %x %x %x", &count, &pins, &limit_min, &limit_max) == 4) {
+        board.rx = pins & 1;
+        board.sck = pins >> 1 & 1;
+        board.select_n = pins >> 2 & 1;
+        board.estop = pins >> 3 & 1;
         board.limit_min = limit_min;
         board.limit_max = limit_max;
         board.eval();

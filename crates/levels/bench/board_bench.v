@@ -1,8 +1,10 @@
 // Line, link and engine as on a board, without clock and pins.
 module board_bench #(parameter AXES = 6) (
     input wire clock,
-    input wire rx,
-    output wire tx,
+    input wire rx,       // or MOSI
+    output wire tx,      // or MISO
+    input wire sck,
+    input wire select_n,
     input wire estop,
     input wire [AXES-1:0] limit_min,
     input wire [AXES-1:0] limit_max,
@@ -25,7 +27,11 @@ module board_bench #(parameter AXES = 6) (
     wire [31:0] put_data, get_data;
     wire [AXES-1:0] start_mask, home_mask, homing;
 
+`ifdef SPI
+    carrystep_spi line (.mosi(rx), .miso(tx), .*);
+`else
     carrystep_uart line (.*);
+`endif
     carrystep_link link (.*);
     carrystep_engine engine (.*);
 endmodule

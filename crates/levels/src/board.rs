@@ -6,7 +6,7 @@ use crate::verilator::Simulation;
 use carrystep_export::{engine_verilog, line_verilog, link_verilog};
 use carrystep_spec::EngineBuild;
 use carrystep_spec::engine::{CAUSES, Cause};
-use carrystep_spec::link::Uart;
+use carrystep_spec::link::Line;
 use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
@@ -16,8 +16,10 @@ const BENCH: &str = include_str!("../bench/board_bench.cpp");
 /// Levels of a board's input pins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Levels {
-    /// The line from the host.
+    /// The line from the host: RX, or MOSI.
     pub rx: bool,
+    /// SCK, and select (low).
+    pub spi: [bool; 2],
     /// The e-stop's pin.
     pub estop: bool,
     /// The pins of the limits at the low ends, a bit each axis.
@@ -29,7 +31,7 @@ pub struct Levels {
 /// What a board has done, with the first cycle that has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Did {
-    /// The line to the host.
+    /// The line to the host: TX, or MISO.
     Tx(u64, bool),
     /// STEP and DIR of all axes.
     Pins(u64, [u8; 2]),
@@ -61,14 +63,13 @@ pub struct BoardProcess {
 }
 
 impl BoardProcess {
-    /// The exported Verilog of this build, in cycle 0.
+    /// The exported Verilog of this build on this line, in cycle 0.
     ///
     /// # Errors
     /// [`LevelError`]: Verilator is missing or fails, or there is no such gateware.
-    pub fn new(build: &EngineBuild, uart: Uart) -> Result<Self, LevelError> {
+    pub fn new(build: &EngineBuild, line: Line) -> Result<Self, LevelError> {
         let what = "a simulation";
-        let parts =
-            [line_verilog(uart.into(), what), link_verilog(build, uart.into(), what), engine_verilog(build, what)];
+        let parts = [line_verilog(line, what), link_verilog(build, line, what), engine_verilog(build, what)];
         // They are Verilog-2005, the top is more.
         let mut verilog = format!("{TOP}`begin_keywords \"1364-2005\"\n");
         for part in parts {
@@ -76,7 +77,8 @@ impl BoardProcess {
         }
         verilog += "`end_keywords\n";
         let axes = format!("-GAXES={}", build.axes());
-        let options: &[&str] = &["-CFLAGS", "-O2", &axes];
+        let define = if line == Line::Spi { "-DSPI" } else { "-DUART" };
+        let options: &[&str] = &["-CFLAGS", "-O2", &axes, define];
         let board = Simulation { name: "board", top: "board_bench", bench: BENCH, options };
         let mut command = Command::new(board.compiled(&verilog)?);
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -93,9 +95,11 @@ impl BoardProcess {
     /// [`LevelError`]: the process is gone.
     pub fn run(&mut self, stimuli: &[(u64, Levels)], to: &mut dyn FnMut(Did)) -> Result<Standing, LevelError> {
         let last = stimuli.last().map(|&(_, levels)| (0, levels));
-        for (count, Levels { rx, estop, limit_min, limit_max }) in stimuli.iter().copied().chain(last) {
-            let (rx, estop) = (u8::from(rx), u8::from(estop));
-            writeln!(self.to, "{count} {rx} {estop} {limit_min:x} {limit_max:x}")
+        for (count, Levels { rx, spi: [sck, select_n], estop, limit_min, limit_max }) in
+            stimuli.iter().copied().chain(last)
+        {
+            let bits = [estop, select_n, sck, rx].into_iter().fold(0, |bits, pin| bits << 1 | u8::from(pin));
+            writeln!(self.to, "{count} {bits:x} {limit_min:x} {limit_max:x}")
                 .map_err(tool::io("the simulation is gone"))?;
         }
         self.to.flush().map_err(tool::io("the simulation is gone"))?;

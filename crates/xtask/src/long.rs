@@ -30,7 +30,7 @@ struct Run {
 }
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its `FIGURES`.
-const RUNS: [Run; 9] = [
+const RUNS: [Run; 10] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
@@ -72,6 +72,12 @@ const RUNS: [Run; 9] = [
         what: "hosts that die in the middle of a move: the board stops in time, its positions are true, the next host goes on",
         asks: &[("CARRYSTEP_DEATHS", "50")],
         cargo: &["-p", "carrystep-board", "--test", "dead_host", "the_board_stops"],
+    },
+    Run {
+        name: "verilog-board",
+        what: "the exported Verilog as a board: a second of garbage, then a move; a second of six axes at 500 segments/s over 3 Mbaud",
+        asks: &[("CARRYSTEP_VERILOG_MS", "1000")],
+        cargo: &["-p", "carrystep-board", "--test", "bad_line", "--test", "rates", "verilog_at"],
     },
     Run {
         name: "resources",

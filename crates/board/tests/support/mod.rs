@@ -2,15 +2,17 @@
 #![allow(dead_code, reason = "each test uses a part")]
 
 pub mod bus;
-#[path = "../../../link/tests/support/random.rs"]
-pub mod random;
-#[path = "../../../link/tests/support/wire.rs"]
-pub mod wire;
+#[path = "../../../link/tests/support/mod.rs"]
+pub mod link;
+pub mod words;
+
+pub use link::{random, wire};
 
 use carrystep_board::{Board, Edges, Gateware, VerilatedBoard};
-use carrystep_link::{Clock, Command, Exchanged, Host, Line, Patience, Segment};
+use carrystep_link::{Clock, Command, Exchanged, Host, HostError, Line, Patience, Segment};
 use carrystep_model::fast::{Change, Edge};
-use carrystep_spec::link::{END, Uart};
+use carrystep_spec::engine::Limits;
+use carrystep_spec::link::{BuildId, END, Uart};
 use carrystep_spec::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use random::Random;
 use std::cell::RefCell;
@@ -23,7 +25,7 @@ pub const TICK_NS: u64 = 2000;
 /// Cycles of a millisecond, and of a tick.
 pub const MS: u64 = CLOCK_HZ / 1000;
 pub const TICK: u64 = CLOCK_HZ * TICK_NS / 1_000_000_000;
-/// Of every axis: it takes 8192 ticks, 16 ms, from the greatest speed of [`waves`] to rest.
+/// Of every axis but one: it takes 8192 ticks, 16 ms, from the greatest speed of [`waves`] to rest.
 pub const STOP: u64 = 1 << 45;
 /// The greatest speed of [`waves`].
 pub const FASTEST: i64 = 1 << 58;
@@ -33,6 +35,9 @@ pub type BoardHost<B> = Host<End<B>, End<B>>;
 /// A kind of board that is to do the same as every other.
 pub trait Kind: Gateware + Sized {
     fn new(uart: Uart) -> Self;
+
+    /// On an SPI of this rate, Hz.
+    fn on_spi(sck_hz: u64) -> Self;
 
     /// Segments that wait for the axis in the middle of a move that has fewest, where that can be told.
     fn least_waiting(&self) -> Option<usize>;
@@ -50,6 +55,10 @@ impl Kind for Board {
         Self::new(&build(), uart)
     }
 
+    fn on_spi(sck_hz: u64) -> Self {
+        Self::on_spi(&build(), sck_hz)
+    }
+
     fn least_waiting(&self) -> Option<usize> {
         let core = self.engine().core();
         (0..AXES).filter(|axis| core.in_a_move() >> axis & 1 == 1).map(|axis| core.waiting(axis)).min()
@@ -61,26 +70,45 @@ impl Kind for VerilatedBoard {
         Self::new(&build(), uart).unwrap()
     }
 
+    fn on_spi(sck_hz: u64) -> Self {
+        Self::on_spi(&build(), sck_hz).unwrap()
+    }
+
     fn least_waiting(&self) -> Option<usize> {
         None
     }
 }
 
-/// Six axes with a watchdog of about 100 ms.
+/// Six axes with a watchdog of about 100 ms and limits; axis 1 stops as fast as that of docs/protocol.md.
 pub fn build() -> EngineBuild {
     let timebase = Timebase::new(CLOCK_HZ, TICK_NS, 16).unwrap();
     let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
     let mut build = EngineBuild::minimal(&build, STOP);
     build.guard.round = 1024;
     build.guard.watchdog = 49;
+    build.guard.limits = Limits::Pair;
+    build.guard.stop[1] = 1 << 54;
     build
+}
+
+/// How much a longer run asks for in its environment; else so much.
+pub fn asked(name: &str, usual: u64) -> u64 {
+    std::env::var(name).map_or(usual, |text| text.parse().expect(name))
 }
 
 /// Edges, and the sum of them all.
 #[derive(Default)]
-struct Seen {
+pub struct Seen {
     edges: Vec<Edge>,
     travelled: [i32; AXES],
+}
+
+impl Seen {
+    /// Edges from this cycle on, their clocks counted from there.
+    pub fn since(&self, cycle: u64) -> Vec<Edge> {
+        let since = self.edges.iter().filter(|edge| edge.clock >= cycle);
+        since.map(|edge| Edge { clock: edge.clock - cycle, ..*edge }).collect()
+    }
 }
 
 impl Edges for Seen {
@@ -108,6 +136,8 @@ pub struct World<B> {
     pub handed_over: bool,
     /// Answers and what else has come, in bytes.
     pub came: u64,
+    /// Called each millisecond.
+    pub meanwhile: Box<dyn FnMut(&mut B)>,
 }
 
 impl<B: Kind> World<B> {
@@ -121,6 +151,7 @@ impl<B: Kind> World<B> {
             self.board.say(byte);
         }
         self.board.reach(self.board.cycle() + MS, &mut self.edges);
+        (self.meanwhile)(&mut self.board);
         let waiting = self.board.least_waiting().filter(|_| !self.handed_over);
         self.least_waiting = waiting.unwrap_or(usize::MAX).min(self.least_waiting);
         let mut piece = Vec::new();
@@ -144,8 +175,7 @@ impl<B: Kind> World<B> {
 
     /// Edges from this cycle on, their clocks counted from there.
     pub fn edges_since(&self, cycle: u64) -> Vec<Edge> {
-        let since = self.edges.edges.iter().filter(|edge| edge.clock >= cycle);
-        since.map(|edge| Edge { clock: edge.clock - cycle, ..*edge }).collect()
+        self.edges.since(cycle)
     }
 
     /// The last edge.
@@ -186,13 +216,18 @@ impl<B: Kind> End<B> {
             least_waiting: usize::MAX,
             handed_over: false,
             came: 0,
+            meanwhile: Box::new(|_| ()),
         })))
     }
 
     /// A host, which refuses any board but this.
     pub fn connect(&self, uart: Uart) -> BoardHost<B> {
-        let id = uart.build_id(&build());
-        Host::connect(self.clone(), self.clone(), Some(id.0), Patience::default()).unwrap()
+        self.connect_to(uart.build_id(&build()), Patience::default()).unwrap()
+    }
+
+    /// A host, which refuses any board but this one.
+    pub fn connect_to(&self, id: BuildId, patience: Patience) -> Result<BoardHost<B>, HostError<Died>> {
+        Host::connect(self.clone(), self.clone(), Some(id.0), patience)
     }
 
     /// Time passes without a host.

@@ -5,6 +5,7 @@ use crate::connection;
 use crate::drive::{Driven, Streamed, drive};
 use crate::failure::{Failure, refused};
 use crate::{job, output};
+use carrystep_link::registers::QUEUE_SEGMENTS;
 use carrystep_plan::plan;
 use carrystep_spec::{Machine, MoveFile, Source};
 use std::path::Path;
@@ -40,6 +41,12 @@ fn moved(file: &MoveFile, name: &Path, port: &Port, homing: bool) -> Result<Driv
     let streamed = Streamed::new(file, &plan, file.machine.baud)?;
     if homing && file.moves.len() > 1 {
         return Err(file.move_error(1, "homing is one move: what comes after a limit is never sent").into());
+    }
+    let (segments, axis) = streamed.most_segments();
+    if homing && segments > QUEUE_SEGMENTS.into() {
+        let name = &file.machine.axes[axis].name;
+        let message = format!("homing takes what a queue holds, {QUEUE_SEGMENTS} segments: axis {name} has {segments}");
+        return Err(file.move_error(0, message).help("a constant profile has one").into());
     }
     let connection = connection::to_machine(port, &file.machine, name)?;
     drive(connection, &port.name, &streamed, homing.then(|| streamed.moving()))

@@ -53,8 +53,8 @@ pub fn status(arguments: &Status) -> Result<(), Failure> {
 /// Stops what moves; resumes and takes the power away where that is wished.
 pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     let mut connection = connection::to_peer(&arguments.peer)?;
-    let board = &mut connection.board;
-    let failed = |error| connection::broken(&error);
+    let Connection { board, axes } = &mut connection;
+    let failed = |error| connection::broken(&error, axes);
     if !board.status().answer.idle {
         board.stop().map_err(failed)?;
     }
@@ -73,7 +73,7 @@ fn told(connection: Connection, port: &str, json: bool) -> Result<(), Failure> {
 }
 
 fn look(Connection { mut board, axes }: Connection, port: &str) -> Result<Found, Failure> {
-    let failed = |error| connection::broken(&error);
+    let failed = |error| connection::broken(&error, &axes);
     let status = board.look().map_err(failed)?;
     let mut discarded = [0; MOST_AXES as usize];
     for (axis, place) in (0..).zip(discarded.iter_mut().take(axes.len())) {
@@ -102,7 +102,7 @@ fn look(Connection { mut board, axes }: Connection, port: &str) -> Result<Found,
         fault,
         halted,
         cause: status.answer.cause_name(),
-        axes: axes.into_iter().enumerate().map(axis).collect(),
+        axes: axes.iter().cloned().enumerate().map(axis).collect(),
     })
 }
 

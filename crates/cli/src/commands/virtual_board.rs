@@ -2,12 +2,12 @@
 
 use crate::arguments::{BoardLevel, VirtualBoard};
 use crate::connection;
-use crate::desk::Desk;
+use crate::desk::Manned;
 use crate::failure::Failure;
 use crate::gateware;
 use crate::output::{self, OutputFile};
 use crate::switches::Panel;
-use carrystep_board::{Board, Gateware, Pace, Terminal, VerilatedBoard};
+use carrystep_board::{Board, Desk, Gateware, Pace, Terminal, VerilatedBoard};
 use carrystep_levels::pins::PinFeed;
 use carrystep_levels::replay::Replay;
 use carrystep_spec::engine::EngineOutputs;
@@ -69,13 +69,13 @@ fn serve(board: impl Gateware, machine: &Machine, arguments: &VirtualBoard) -> R
     }
     let clock_hz = build.timebase.clock_hz();
     let pace = if arguments.fast { Pace::fast(clock_hz, ahead(&build)) } else { Pace::real(clock_hz) };
-    let mut desk = Desk { board, terminal, pace, panel, clock_hz };
+    let mut manned = Manned { desk: Desk::new(board, terminal, pace, clock_hz), panel };
     match &mut vcd {
-        None => while desk.step(&mut ())? {},
-        Some(out) => capture(&mut desk, machine, &build, out)?,
+        None => while manned.step(&mut ())? {},
+        Some(out) => capture(&mut manned, machine, &build, out)?,
     }
     let files = vcd.map(OutputFile::appear).transpose()?.into_iter().collect();
-    tell(&served(&desk.board, machine, files), arguments.json)
+    tell(&served(&manned.desk.board, machine, files), arguments.json)
 }
 
 /// Clocks.
@@ -89,26 +89,26 @@ fn ahead(build: &EngineBuild) -> u64 {
 
 /// Serves, and writes what the pins do. A capture begins with the time of the first start; before it no pin changes.
 fn capture(
-    desk: &mut Desk<impl Gateware>,
+    manned: &mut Manned<impl Gateware>,
     machine: &Machine,
     build: &EngineBuild,
     out: &mut OutputFile,
 ) -> Result<(), Failure> {
-    let goes_on = desk.until_start()?;
+    let goes_on = manned.until_start()?;
     let time = build.timebase;
-    let load = desk.board.loads().first().copied().unwrap_or(0);
+    let load = manned.desk.board.loads().first().copied().unwrap_or(0);
     let origin_ps = time.clock_to_ps(load + time.latency_clocks()).cast_signed();
     let names = machine.axes.iter().map(|axis| axis.name.as_str());
     let mut vcd = PinsVcd::new(out, OwnCapture { origin_ps, timebase: time }, names)?;
     let mut feed = PinFeed::new(time, machine.axes.len(), &mut vcd);
     let mut tell = |cycle: u64, outputs: &EngineOutputs| feed.pins(cycle, outputs.step, outputs.dir);
     let mut replay = Replay::new(&build.pins, &mut tell);
-    while goes_on && desk.step(&mut replay)? {
-        replay.reach(desk.board.cycle());
+    while goes_on && manned.step(&mut replay)? {
+        replay.reach(manned.desk.board.cycle());
     }
     // The last of its outputs is told where the next cycle begins.
-    replay.reach(desk.board.cycle() + 1);
-    Ok(feed.end(desk.board.cycle())?)
+    replay.reach(manned.desk.board.cycle() + 1);
+    Ok(feed.end(manned.desk.board.cycle())?)
 }
 
 fn served(board: &impl Gateware, machine: &Machine, files: Vec<PathBuf>) -> Served {

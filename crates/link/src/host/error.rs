@@ -4,6 +4,7 @@ use crate::command::ProgramError;
 use crate::facts::Refusal;
 use crate::registers::CAUSES;
 use crate::window::OutOfStep;
+use core::fmt;
 use thiserror::Error;
 
 /// Why the driver could not do what was asked.
@@ -42,7 +43,7 @@ pub enum HostError<E> {
     #[error(transparent)]
     Program(#[from] ProgramError),
     /// The machine stopped.
-    #[error("the machine has stopped: {} (axes {culprits:#04x}); clear resumes", CAUSES.get(usize::from(*cause)).unwrap_or(&"?"))]
+    #[error("the machine has stopped: {}{}; clear resumes", CAUSES.get(usize::from(*cause)).unwrap_or(&"?"), Axes(", from", *culprits))]
     Fault {
         /// Why: a place in [`CAUSES`].
         cause: u8,
@@ -60,9 +61,24 @@ pub enum HostError<E> {
         ms: u32,
     },
     /// A homing move ended before its limits came.
-    #[error("the homing move is over, and axes {axes:#04x} have not met their limits")]
+    #[error("the homing move is over, and no limit was met{}", Axes(" by", *axes))]
     NoLimit {
         /// The axes, a bit each.
         axes: u8,
     },
+}
+
+/// Axes by their numbers, a bit each, behind a word; nothing where there are none.
+struct Axes(&'static str, u8);
+
+impl fmt::Display for Axes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(word, mask) = self;
+        let mut before = word;
+        for axis in (0..8).filter(|axis| mask >> axis & 1 == 1) {
+            write!(f, "{before} axis {axis}")?;
+            before = &" and";
+        }
+        Ok(())
+    }
 }

@@ -38,7 +38,15 @@ pub enum OpenError {
         /// The name.
         port: String,
     },
-    /// It is there but is no serial port, or cannot be set to this baud rate.
+    /// It is a file or a folder.
+    #[error("{port} is no serial port.{others}")]
+    NoPort {
+        /// The name.
+        port: String,
+        /// The ports that there are, as a sentence.
+        others: String,
+    },
+    /// It is there but cannot be used as a serial port, or be set to this baud rate.
     #[error("serial port {port} cannot be used at {baud} baud: {why}")]
     Unusable {
         /// The name.
@@ -77,6 +85,7 @@ fn refusal(port: &str, baud: u32, error: &serialport::Error) -> OpenError {
     let name = || port.to_owned();
     let exists = || std::path::Path::new(port).exists();
     match error.kind() {
+        _ if is_file(port) => OpenError::NoPort { port: name(), others: others() },
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => OpenError::NotPermitted { port: name() },
         ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Absent { port: name(), others: others() },
         // What is there and cannot be locked, another has locked.
@@ -84,6 +93,11 @@ fn refusal(port: &str, baud: u32, error: &serialport::Error) -> OpenError {
         ErrorKind::NoDevice => OpenError::Absent { port: name(), others: others() },
         _ => OpenError::Unusable { port: name(), baud, why: error.to_string() },
     }
+}
+
+/// Whether this is there and no device.
+fn is_file(port: &str) -> bool {
+    std::fs::metadata(port).is_ok_and(|there| there.is_file() || there.is_dir())
 }
 
 fn others() -> String {

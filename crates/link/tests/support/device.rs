@@ -51,13 +51,7 @@ pub struct Device {
     pub facts: [u32; 9],
     pub log: Vec<Done>,
     pub fault: Option<u8>,
-    pub homing: u8,
     pub position: [i32; 8],
-    pub latched: [i32; 8],
-    /// The e-stop is pressed: a clear changes nothing.
-    pub pressed: bool,
-    /// No tick comes.
-    pub freeze_time: bool,
     pub frames: u64,
     pub damaged: u64,
     pub repeated: u64,
@@ -169,11 +163,10 @@ impl Device {
                     self.armed = Some(mask);
                 }
             }
-            0x22 if self.fault.is_some() && !self.pressed => {
+            0x22 if self.fault.is_some() => {
                 self.fault = None;
                 self.queues.iter_mut().for_each(VecDeque::clear);
             }
-            0x23 => self.homing = mask,
             _ => {}
         }
         true
@@ -186,31 +179,18 @@ impl Device {
         self.running = [None; 8];
     }
 
-    /// The limit of an axis is reached.
-    pub fn limit(&mut self, axis: usize) {
-        if self.homing >> axis & 1 == 1 {
-            self.homing &= !(1 << axis);
-            self.latched[axis] = self.position[axis];
-            self.running[axis] = None;
-            self.queues[axis].clear();
-        } else {
-            self.stop(5);
-        }
-    }
-
     fn answer(&self, sequence: u8, address: u8, refused: bool) -> Vec<u8> {
         let plain = address & 0x7f;
         let axis = if plain >= 0x40 { usize::from(plain >> 3 & 7) } else { 0 };
-        let data = match (address, plain & 7) {
-            (0..0x20, _) => self.facts.get(usize::from(plain)).copied().unwrap_or(0),
-            (0x40..0x80, 4) => self.latched[axis] as u32,
+        let data = match address {
+            0..0x20 => self.facts.get(usize::from(plain)).copied().unwrap_or(0),
             _ => self.position[axis] as u32,
         };
         let halted = self.fault.is_some();
         let state = [halted, halted, self.idle(), self.powered, self.armed.is_some()];
         let bits = state.iter().rev().fold(0, |bits, &on| bits << 1 | u8::from(on)) | self.fault.unwrap_or(0) << 5;
         let free = 7 - self.queues[axis].len() as u8;
-        let mut frame = vec![sequence, address, self.next, bits, free | u8::from(refused) << 3, 0, self.homing];
+        let mut frame = vec![sequence, address, self.next, bits, free | u8::from(refused) << 3, 0, 0];
         frame.extend(data.to_le_bytes());
         on_the_line(&frame)
     }
@@ -221,7 +201,7 @@ impl Device {
 
     /// Time passes: starts, segments, ends, dry queues. A segment's V of so many steps a tick moves the position.
     pub fn elapse(&mut self, mut ticks: u32) {
-        while ticks > 0 && self.fault.is_none() && !self.freeze_time {
+        while ticks > 0 && self.fault.is_none() {
             if let Some(mask) = self.armed {
                 let masked = |axis: &usize| mask >> axis & 1 == 1;
                 if (0..8).filter(masked).all(|axis| self.running[axis].is_none() && !self.queues[axis].is_empty()) {

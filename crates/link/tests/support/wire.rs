@@ -59,8 +59,4 @@ impl Wire {
         let come = self.bytes.iter().take_while(|(due, _)| *due <= now).count();
         self.bytes.drain(..come).map(|(_, byte)| byte).collect()
     }
-
-    pub fn is_empty(&self) -> bool {
-        self.bytes.is_empty()
-    }
 }
