@@ -15,6 +15,11 @@ pub fn is_long() -> bool {
     asked().is_some()
 }
 
+/// Every board, not one of a kind.
+pub fn is_every_board() -> bool {
+    std::env::var_os("CARRYSTEP_BOARDS").is_some()
+}
+
 /// A line about what has been done.
 pub fn say(line: &str) {
     // Nobody is left to tell if this fails.

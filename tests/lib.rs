@@ -1,6 +1,7 @@
 //! What the rungs share: the golden vectors, an independent closed form, random programs, proofs.
 
 pub mod axis_bench;
+pub mod board_session;
 pub mod closed_form;
 pub mod dense;
 pub mod effort;

@@ -1,10 +1,12 @@
 //! The link and the engine together, with a host at the other end of the line: Rust-HDL's modules of both, the model of the
 //! link in lock-step.
 
+mod board;
 mod frames;
 mod hosts;
 pub mod ports;
 
+pub use board::BoardPins;
 pub use frames::{Said, frame, on_the_line, unframe};
 
 use hosts::{Receiver, Sender, SpiHost};
@@ -34,7 +36,7 @@ pub struct LinkBench {
     /// What the link was told and showed, if it is kept.
     pub vectors: Option<Both>,
     /// What the pins of a board have done, if it is kept.
-    pub board: Option<Vectors>,
+    pub board: Option<BoardPins>,
 }
 
 /// The cycles of link and line.
@@ -123,8 +125,7 @@ impl LinkBench {
             self.wire.keep(&seen, &shown, level, both);
         }
         if let Some(board) = &mut self.board {
-            let (told, showed) = ports::board_cycle(seen.rx, &self.pins, shown.tx, &self.outputs);
-            board.add(told, showed);
+            board.add(seen.rx, &self.pins, shown.tx, &self.outputs);
         }
         let byte = self.wire.clock(&seen, &shown, level, self.clocks);
         self.engine.clock();

@@ -3,7 +3,6 @@
 use carrystep_hdl::line::LineOutputs;
 use carrystep_levels::vectors::{Bits, Vectors};
 use carrystep_spec::AXES;
-use carrystep_spec::engine::{EngineInputs, EngineOutputs};
 use carrystep_spec::link::{LinkInputs, LinkOutputs};
 
 const MASK: u32 = AXES as u32;
@@ -54,28 +53,6 @@ const UART_INPUTS: &[(&str, u32)] = &[("rx", 1), ("answer_valid", 1), ("answer",
 const SPI_INPUTS: &[(&str, u32)] = &[("sck", 1), ("select_n", 1), ("mosi", 1), ("answer_valid", 1), ("answer", 8)];
 const UART_OUTPUTS: &[(&str, u32)] = &[("received_valid", 1), ("received", 8), ("answer_take", 1), ("tx", 1)];
 const SPI_OUTPUTS: &[(&str, u32)] = &[("received_valid", 1), ("received", 8), ("answer_take", 1), ("miso", 1)];
-
-const BOARD_INPUTS: &[(&str, u32)] = &[("uart_rx", 1), ("estop", 1), ("limit_min", MASK)];
-const BOARD_OUTPUTS: &[(&str, u32)] = &[("uart_tx", 1), ("enable_n", 1), ("step", MASK), ("dir", MASK)];
-
-/// A board with one limit switch an axis, whose clock was at rest for so many cycles.
-pub fn board(rest: u64) -> Vectors {
-    let mut vectors = Vectors::new(BOARD_INPUTS, BOARD_OUTPUTS);
-    vectors.clock = "oscillator";
-    let (told, showed) = board_cycle(true, &EngineInputs::default(), true, &EngineOutputs::default());
-    (0..rest).for_each(|_| vectors.add(told, showed));
-    vectors
-}
-
-pub(super) fn board_cycle(rx: bool, pins: &EngineInputs, tx: bool, shown: &EngineOutputs) -> (Bits, Bits) {
-    let told = Bits::default().and(1, u64::from(rx)).and(1, u64::from(pins.estop)).and(MASK, u64::from(pins.limit_min));
-    let showed = Bits::default()
-        .and(1, u64::from(tx))
-        .and(1, u64::from(!shown.enabled))
-        .and(MASK, u64::from(shown.step))
-        .and(MASK, u64::from(shown.dir));
-    (told, showed)
-}
 
 /// No cycles of a link yet.
 pub const fn link() -> Vectors {

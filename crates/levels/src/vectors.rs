@@ -2,6 +2,7 @@
 
 use crate::LevelError;
 use crate::tool::{self, ICARUS};
+use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::process::Command;
 
@@ -35,9 +36,9 @@ pub struct Vectors {
     /// The port of the clock.
     pub clock: &'static str,
     /// Name and width of each input, in the order in which the cycles have them.
-    pub inputs: &'static [(&'static str, u32)],
+    pub inputs: Cow<'static, [(&'static str, u32)]>,
     /// Of each output.
-    pub outputs: &'static [(&'static str, u32)],
+    pub outputs: Cow<'static, [(&'static str, u32)]>,
     /// Inputs and outputs, each with its number of cycles.
     rows: Vec<(u64, Bits, Bits)>,
 }
@@ -45,6 +46,7 @@ pub struct Vectors {
 impl Vectors {
     /// None yet.
     pub const fn new(inputs: &'static [(&'static str, u32)], outputs: &'static [(&'static str, u32)]) -> Self {
+        let (inputs, outputs) = (Cow::Borrowed(inputs), Cow::Borrowed(outputs));
         Self { clock: "clock", inputs, outputs, rows: Vec::new() }
     }
 
@@ -88,10 +90,10 @@ impl Vectors {
     fn bench(&self, module: &str) -> String {
         let mut connections = String::new();
         let mut widths = [0; 2];
-        for (side, (vector, ports)) in [("inputs", self.inputs), ("outputs", self.outputs)].into_iter().enumerate() {
+        for (side, (vector, ports)) in [("inputs", &self.inputs), ("outputs", &self.outputs)].into_iter().enumerate() {
             let mut below: u32 = ports.iter().map(|(_, width)| width).sum();
             widths[side] = below;
-            for (name, width) in ports {
+            for (name, width) in ports.iter() {
                 below -= width;
                 let _ = write!(connections, ",\n        .{name}({vector}[{}:{below}])", below + width - 1);
             }

@@ -10,7 +10,7 @@
 //! memories (`synth_ice40` up to `map_ffram`). All that is after it (gates, flip-flops, LUTs, carry) is proved.
 
 use crate::SynthesisError;
-use crate::cells::{self, pattern};
+use crate::cells::{self, ICE40, pattern};
 use crate::ice40::Netlist;
 use crate::inverses::with_inverses;
 use crate::tool::{self, YOSYS};
@@ -99,7 +99,7 @@ fn cells_in(file: &str, top: &str) -> String {
 fn prove(top: &str, gold: &str, gold_text: &str, gate_text: &str) -> Result<Verdict, SynthesisError> {
     let folder = tool::folder()?;
     let both = format!("{gold_text}{gate_text} SB_RAM40_4K");
-    for (name, text) in [("core.v", gold_text), ("gate.v", gate_text), ("cells.v", &cells::models(&both)?)] {
+    for (name, text) in [("core.v", gold_text), ("gate.v", gate_text), ("cells.v", &cells::models(&ICE40, &both)?)] {
         tool::write(folder.path(), name, text)?;
     }
     let gate = cells_in("gate.v", top);

@@ -1,10 +1,11 @@
 //! Verilog to an iCE40 bitstream by yosys, nextpnr and icepack; and what each stage says of it.
 
 use crate::cells::pattern;
-use crate::tool::{self, ICEBOX_VLOG, ICEPACK, ICEUNPACK, NEXTPNR};
+use crate::tool::{self, ICEBOX_VLOG, ICEPACK, ICEUNPACK, NEXTPNR, PYTHON};
 use crate::{SynthesisError, cells, read_back};
 use serde_json::Value;
 use std::collections::HashMap;
+use std::path::Path;
 
 /// A part: what nextpnr calls its device, and its package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -171,8 +172,19 @@ impl Placed {
         tool::write(folder.path(), "placed.asc", asc)?;
         tool::run(&ICEPACK, folder.path(), &["placed.asc", "core.bin"])?;
         tool::run(&ICEUNPACK, folder.path(), &["core.bin", "back.asc"])?;
-        let text = tool::run(&ICEBOX_VLOG, folder.path(), &["-S", "back.asc"])?;
+        let text = icebox_vlog(folder.path())?;
         read_back::named(&text, &self.placement, netlist.top())
+    }
+}
+
+/// Runs icebox_vlog on `back.asc`; where it stops at a UP5K's `SB_PLL40_CORE`, with what its table of that lacks.
+fn icebox_vlog(folder: &Path) -> Result<String, SynthesisError> {
+    match tool::run(&ICEBOX_VLOG, folder, &["-S", "back.asc"]) {
+        Err(SynthesisError::Tool { message, .. }) if message.contains("KeyError: 'SHIFTREG_DIV_MODE'") => {
+            tool::write(folder, "mended.py", include_str!("icebox_vlog.py"))?;
+            tool::run(&PYTHON, folder, &["mended.py", "-S", "back.asc"])
+        }
+        said => said,
     }
 }
 

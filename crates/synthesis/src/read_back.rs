@@ -8,7 +8,7 @@ use crate::SynthesisError;
 use crate::cells::pattern;
 use crate::tool::{ICEBOX_VLOG, NEXTPNR};
 use serde_json::{Map, Value};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write as _;
 
 /// The module with names.
@@ -34,6 +34,10 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
         let name = places.flip_flops.get(&format!("X{x}/Y{y}/lc{z}")).ok_or_else(|| unread("an unknown flip-flop"))?;
         names.insert(wire.to_owned(), format!("\\{name} "));
     }
+    let pad = places.pad_of_pll(body)?;
+    if let Some((wire, io)) = &pad {
+        names.insert(wire.clone(), names[io].clone());
+    }
     let place = pattern(r"\b(?:n\d+|io_\d+_\d+_\d+|ram40_\d+_\d+)\b");
     let body = place.replace_all(body, |found: &regex::Captures<'_>| {
         names.get(&found[0]).cloned().unwrap_or_else(|| found[0].to_owned())
@@ -43,7 +47,7 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
     for (io, port) in &places.pins {
         let (name, bit) = port.split_once('[').unwrap_or((port, "0]"));
         let bit: usize = bit.trim_end_matches(']').parse().map_err(|_| unread("a port's bit"))?;
-        let is_input = inputs.contains(&io.as_str());
+        let is_input = inputs.contains(&io.as_str()) || pad.as_ref().is_some_and(|(_, of_pll)| of_pll == io);
         let widest = ports.entry(name).or_insert((is_input, port.contains('['), 0));
         widest.2 = widest.2.max(bit);
         let wire = &names[io];
@@ -106,5 +110,16 @@ impl Places {
             }
         }
         Ok(places)
+    }
+
+    /// The wire on which a PLL takes a pad's level, and that pad: the only placed one that icebox_vlog shows nowhere else.
+    fn pad_of_pll(&self, body: &str) -> Result<Option<(String, String)>, SynthesisError> {
+        let Some(wire) = pattern(r"\.PACKAGEPIN\((n\d+)\)").captures(body) else { return Ok(None) };
+        let shown: HashSet<&str> = pattern(r"\bio_\d+_\d+_\d+\b").find_iter(body).map(|io| io.as_str()).collect();
+        let mut hidden = self.pins.keys().filter(|io| !shown.contains(io.as_str()));
+        match (hidden.next(), hidden.next()) {
+            (Some(io), None) => Ok(Some((wire[1].to_owned(), io.clone()))),
+            _ => Err(SynthesisError::Unread { tool: ICEBOX_VLOG.name, what: "the pad of the PLL".to_owned() }),
+        }
     }
 }

@@ -23,6 +23,8 @@ pub(crate) const ICEPACK: Tool = Tool { name: "icepack", install: PACK };
 pub(crate) const ICEUNPACK: Tool = Tool { name: "iceunpack", install: PACK };
 pub(crate) const ICETIME: Tool = Tool { name: "icetime", install: ICESTORM };
 pub(crate) const ICEBOX_VLOG: Tool = Tool { name: "icebox_vlog", install: ICESTORM };
+/// It runs icebox_vlog, too.
+pub(crate) const PYTHON: Tool = Tool { name: "python3", install: "`sudo apt-get install python3`" };
 
 /// How much of a failed tool's words is kept.
 const LAST_LINES: usize = 12;
