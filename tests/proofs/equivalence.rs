@@ -9,6 +9,7 @@ use super::builds::{small, small_engine};
 use super::solver::{LIMIT, ProofError, reached, run};
 use super::{Bug, Case, Promises};
 use carrystep_spec::engine::Limits;
+use carrystep_spec::tool::{YOSYS, YOSYS_ABC};
 use carrystep_spec::{AXES, Build, PinTiming};
 use std::fmt::Write as _;
 use std::fs;
@@ -120,7 +121,7 @@ pub fn compare(pair: &Move, asked: Asked) -> Result<(), ProofError> {
         fs::write(dir.path().join(name), text)?;
     }
     fs::write(dir.path().join("miter.ys"), script(pair, asked))?;
-    let (fine, said) = run(dir.path(), "yosys", &["-q", "miter.ys"])?;
+    let (fine, said) = run(dir.path(), YOSYS, &["-q", "miter.ys"])?;
     if !fine {
         return Err(ProofError::Tool { tool: "yosys", said });
     }
@@ -143,7 +144,7 @@ fn swept(dir: &Path, clocks: u32, assertions: usize, equal: bool) -> Result<(boo
     }
     let unrolled = format!("read_aiger promises.aig; scleanup; frames -i -F {clocks}; orpos; cleanup");
     let sweep = format!("{unrolled}; &get; &fraig -y; &put; dprove -T {LIMIT}");
-    let (fine, said) = run(dir, "yosys-abc", &["-c", &sweep])?;
+    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &sweep])?;
     let answer = said.lines().find(|line| line.contains("SATISFIABLE")).map(|line| line.starts_with("UN"));
     Ok((fine && answer == Some(equal), said))
 }

@@ -2,19 +2,12 @@
 //! runs that reach something (covers, bugs) are looked for by yosys-abc, bit by bit, which is a hundred times faster.
 
 use super::{Case, Promises};
+use carrystep_spec::tool::{Tool, YOSYS, YOSYS_ABC, YOSYS_SMTBMC, Z3};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use thiserror::Error;
-
-/// Programs, and the line that installs each.
-const TOOLS: [(&str, &str); 4] = [
-    ("yosys", "sudo apt-get install yosys"),
-    ("yosys-smtbmc", "sudo apt-get install yosys"),
-    ("yosys-abc", "sudo apt-get install yosys"),
-    ("z3", "sudo apt-get install z3"),
-];
 
 /// Seconds for one question; the slowest takes a tenth of it on an idle machine.
 pub(super) const LIMIT: &str = "300";
@@ -39,13 +32,8 @@ const TO_GATES: &str = "opt_clean -purge\nmemory_map\nopt -full\ntechmap\nopt -f
 #[derive(Debug, Error)]
 pub enum ProofError {
     /// A tool is not there.
-    #[error("{tool} is missing: {install}")]
-    Missing {
-        /// Its name.
-        tool: &'static str,
-        /// The line that installs it.
-        install: &'static str,
-    },
+    #[error("{} is not installed: {} installs it", .0.name, .0.ways())]
+    Missing(Tool),
     /// A tool stopped.
     #[error("{tool} failed: {said}")]
     Tool {
@@ -82,9 +70,9 @@ pub enum Question {
 
 /// Fails where a tool is missing.
 pub fn tools() -> Result<(), ProofError> {
-    for (tool, install) in TOOLS {
-        let started = Command::new(tool).arg("--help").stdout(Stdio::null()).stderr(Stdio::null()).status();
-        started.map_err(|_| ProofError::Missing { tool, install })?;
+    for tool in [YOSYS, YOSYS_SMTBMC, YOSYS_ABC, Z3] {
+        let started = Command::new(tool.name).arg("--help").stdout(Stdio::null()).stderr(Stdio::null()).status();
+        started.map_err(|_| ProofError::Missing(tool))?;
     }
     Ok(())
 }
@@ -100,7 +88,7 @@ pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), P
     fs::write(dir.path().join("promises.sv"), text)?;
     fs::write(dir.path().join("look.sv"), LOOK)?;
     fs::write(dir.path().join("prove.ys"), script(promises, case, question))?;
-    let (fine, said) = run(dir.path(), "yosys", &["-q", "prove.ys"])?;
+    let (fine, said) = run(dir.path(), YOSYS, &["-q", "prove.ys"])?;
     if !fine {
         return Err(ProofError::Tool { tool: "yosys", said });
     }
@@ -121,7 +109,7 @@ fn holds(promises: &Promises, dir: &Path, question: &[&str]) -> Result<(bool, St
     let mut arguments = vec!["-s", "z3", "--unroll", "--noprogress", "--timeout", LIMIT];
     arguments.extend(question);
     arguments.push("promises.smt2");
-    let (fine, said) = run(dir, "yosys-smtbmc", &arguments)?;
+    let (fine, said) = run(dir, YOSYS_SMTBMC, &arguments)?;
     let trouble = ["ERROR", "UNKNOWN", "unknown"].into_iter().any(|what| said.contains(what));
     Ok((fine && said.contains("Status: PASSED") && !trouble, said))
 }
@@ -131,14 +119,14 @@ pub(super) fn reached(dir: &Path, clocks: u32, count: usize) -> Result<(bool, St
     // One after the other: asked for all at once, bmc3 of ABC 1.01 may crash.
     let ask = |output| format!("read_aiger promises.aig; fold; cone -s -O {output}; bmc3 -F {clocks} -T {LIMIT}");
     let commands: Vec<String> = (0..count).map(ask).collect();
-    let (fine, said) = run(dir, "yosys-abc", &["-c", &commands.join("; ")])?;
+    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &commands.join("; ")])?;
     Ok((fine && count > 0 && said.matches("was asserted in frame").count() == count, said))
 }
 
 /// Whether any assertion fails within so many clocks.
 fn any_reached(dir: &Path, clocks: u32) -> Result<(bool, String), ProofError> {
     let ask = format!("read_aiger promises.aig; fold; orpos; bmc3 -F {clocks} -T {LIMIT}");
-    let (fine, said) = run(dir, "yosys-abc", &["-c", &ask])?;
+    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &ask])?;
     Ok((fine && said.contains("was asserted in frame"), said))
 }
 
@@ -190,10 +178,9 @@ fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
 }
 
 /// Whether it ended well, and all that it printed.
-pub(super) fn run(dir: &Path, tool: &'static str, arguments: &[&str]) -> Result<(bool, String), ProofError> {
-    let install = TOOLS.into_iter().find(|(name, _)| *name == tool).map_or("", |(_, install)| install);
-    let output = Command::new(tool).args(arguments).current_dir(dir).output();
-    let output = output.map_err(|_| ProofError::Missing { tool, install })?;
+pub(super) fn run(dir: &Path, tool: Tool, arguments: &[&str]) -> Result<(bool, String), ProofError> {
+    let output = Command::new(tool.name).args(arguments).current_dir(dir).output();
+    let output = output.map_err(|_| ProofError::Missing(tool))?;
     let said = [output.stdout, output.stderr].concat();
     Ok((output.status.success(), String::from_utf8_lossy(&said).into_owned()))
 }

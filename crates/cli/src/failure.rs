@@ -126,7 +126,7 @@ impl From<ExportError> for Failure {
 impl From<SynthesisError> for Failure {
     fn from(error: SynthesisError) -> Self {
         match error {
-            SynthesisError::Missing { .. } => Self::Tool(error.to_string()),
+            SynthesisError::Missing(_) => Self::Tool(error.to_string()),
             _ => Self::Run(error.to_string()),
         }
     }
@@ -135,7 +135,7 @@ impl From<SynthesisError> for Failure {
 impl From<LevelError> for Failure {
     fn from(error: LevelError) -> Self {
         match error {
-            LevelError::Missing { .. } => Self::Tool(error.to_string()),
+            LevelError::Missing(_) => Self::Tool(error.to_string()),
             _ => Self::Run(error.to_string()),
         }
     }

@@ -10,7 +10,7 @@ mod tools;
 pub use access::{Access, Refusal, obstacle};
 pub use host::{Host, User};
 pub use ports::{SerialPort, UsbDevice, serial_ports, usb_devices};
-pub use tools::{Tool, tools};
+pub use tools::{Found, tools};
 
 use carrystep_spec::board::Board;
 use serde::Serialize;
@@ -19,7 +19,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Report {
     /// Tools that are wanted, whether they are there or not.
-    pub tools: Vec<Tool>,
+    pub tools: Vec<Found>,
     /// Serial ports of USB devices.
     pub serial_ports: Vec<SerialPort>,
     /// USB devices that are one of the boards, by vendor and product.

