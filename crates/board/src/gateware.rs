@@ -19,6 +19,9 @@ pub trait Gateware {
     /// Pulses forward less pulses back.
     fn position(&self, axis: usize) -> i32;
 
+    /// The STEP pins, a bit each axis.
+    fn step(&self) -> u8;
+
     /// Steps that were discarded, where that can be told.
     fn discarded(&self, axis: usize) -> Option<u32>;
 
@@ -67,6 +70,10 @@ impl Gateware for Board {
 
     fn position(&self, axis: usize) -> i32 {
         self.engine().core().shaper(axis).position
+    }
+
+    fn step(&self) -> u8 {
+        self.outputs().step
     }
 
     fn discarded(&self, axis: usize) -> Option<u32> {

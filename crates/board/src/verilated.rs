@@ -112,6 +112,10 @@ impl Gateware for VerilatedBoard {
         self.travelled[axis]
     }
 
+    fn step(&self) -> u8 {
+        self.pins[0]
+    }
+
     /// Its pins do not tell.
     fn discarded(&self, _: usize) -> Option<u32> {
         None
