@@ -78,8 +78,7 @@ impl BoardProcess {
         verilog += "`end_keywords\n";
         let axes = format!("-GAXES={}", build.axes());
         let define = if line == Line::Spi { "-DSPI" } else { "-DUART" };
-        // Verilator's own makefile says -Os behind all flags of ours: by that a board has a third of the speed.
-        let options: &[&str] = &["-MAKEFLAGS", "OPT_FAST=-O2", &axes, define];
+        let options: &[&str] = &[&axes, define];
         let board = Simulation { name: "board", top: "board_bench", bench: BENCH, options };
         let mut command = Command::new(board.compiled(&verilog)?);
         command.stdin(Stdio::piped()).stdout(Stdio::piped());

@@ -201,7 +201,7 @@ fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelErr
 
 /// The compiled simulation of this Verilog, from the cache or made now.
 fn verilated(verilog: &str, axes: usize) -> Result<PathBuf, LevelError> {
-    let flags = format!("-O2 -DAXES={axes}");
+    let flags = format!("-DAXES={axes}");
     let options: &[&str] = &["-CFLAGS", &flags];
     Simulation { name: "engine", top: "carrystep_engine", bench: VERILATOR_BENCH, options }.compiled(verilog)
 }
