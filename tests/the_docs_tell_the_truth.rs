@@ -66,7 +66,18 @@ fn the_long_runs_have_passed_on_this_gateware() {
     let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
     assert_eq!(
         names,
-        ["lockstep", "rust-hdl", "proofs", "mutants", "bad-line", "garbage", "dead-host", "resources", "boards"]
+        [
+            "lockstep",
+            "rust-hdl",
+            "proofs",
+            "mutants",
+            "bad-line",
+            "garbage",
+            "dead-host",
+            "resources",
+            "boards",
+            "equivalence"
+        ]
     );
     for row in rows {
         let [name, _, figures, result, took, date, commit, gateware] = row[..] else { panic!("a row of {row:?}") };

@@ -30,7 +30,7 @@ struct Run {
 }
 
 /// All runs, in the order in which they are done. To add one: a line here; its command says its `FIGURES`.
-const RUNS: [Run; 9] = [
+const RUNS: [Run; 10] = [
     Run {
         name: "lockstep",
         what: "random programs with stops on all six axes: the model against the exported engine in Verilator, every output in every clock",
@@ -84,6 +84,12 @@ const RUNS: [Run; 9] = [
         what: "the gateware of all [boards](../hdl-out/boards.md): iCE40 to bitstreams on their pins, Spartans to yosys' cells",
         asks: &[],
         cargo: &["-p", "carrystep-synthesis", "--", "boards"],
+    },
+    Run {
+        name: "equivalence",
+        what: "from bytes on the line to pulses on the pins: iCE40 boards as Verilog and as bitstreams read back, Spartans as Verilog and as the EDIF of their cells; planted faults",
+        asks: &[("CARRYSTEP_BOARDS", "all")],
+        cargo: &["-p", "carrystep-tests", "--test", "a_board_is_its_verilog"],
     },
 ];
 
