@@ -125,7 +125,7 @@ fn talk(bench: &mut LinkBench) {
 fn meet_a_limit(bench: &mut LinkBench) {
     let mut write = writer();
     write(bench, CONTROL, &[1]);
-    let v: i64 = -(1 << 57);
+    let v: i64 = -(1 << 56);
     write(bench, of_axis(SEGMENT, 5), &[1 << 20, v as u32, (v >> 32) as u32, 0, 0, 0, 0, 1]);
     write(bench, START, &[0b10_0000]);
     bench.rest(30_000);

@@ -4,7 +4,7 @@
 use carrystep_spec::board::{Board, Family, board, boards};
 use carrystep_synthesis::ice40::{self, Part};
 use carrystep_tests::board_session::Session;
-use carrystep_tests::{effort, mutants};
+use carrystep_tests::{effort, jobs};
 
 const PLL: &str = "
 module bench_pll #(
@@ -80,7 +80,7 @@ fn bitstreams() {
     if !effort::is_every_board() {
         return from_verilog_to_bitstream(board("icestick").expect("a board"));
     }
-    mutants::each(&ice40s, |board| from_verilog_to_bitstream(board));
+    jobs::each(&ice40s, |board| from_verilog_to_bitstream(board));
     effort::figures(&format!(
         "{} iCE40 boards from Verilog to the bitstream, two crossed wires and a flipped bit seen on each",
         ice40s.len()

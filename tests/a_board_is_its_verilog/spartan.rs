@@ -4,7 +4,7 @@
 use carrystep_spec::board::{Toolchain, board};
 use carrystep_synthesis::xilinx;
 use carrystep_tests::board_session::Session;
-use carrystep_tests::{effort, mutants};
+use carrystep_tests::{effort, jobs};
 
 /// One board of each family, Spartan-3, 3E, 6 and 7.
 const BOARDS: [&str; 4] = ["s3board", "nexys2", "papilio-pro", "arty-s7"];
@@ -59,7 +59,7 @@ fn netlists() {
     if !effort::is_every_board() {
         return from_verilog_to_edif("papilio-pro");
     }
-    mutants::each(&BOARDS, |name| from_verilog_to_edif(name));
+    jobs::each(&BOARDS, |name| from_verilog_to_edif(name));
     effort::figures(&format!(
         "a board of each of {} Spartan families from Verilog to the EDIF of its cells, two crossed wires and a flipped bit seen on each",
         BOARDS.len()
