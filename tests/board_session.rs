@@ -10,7 +10,7 @@ use carrystep_spec::{AXES, Source};
 
 /// A board's gateware, and what its pins do in a talk.
 pub struct Session {
-    /// The shipped machine's, with nothing that takes milliseconds.
+    /// The shipped machine's, with nothing that takes milliseconds, and a line as fast as the clock makes it.
     pub gateware: Gateware<'static>,
     vectors: Vectors,
     /// All its Verilog.
@@ -26,7 +26,17 @@ impl Session {
         Self::with(board, talk)
     }
 
+    /// Power, a move that meets its limit, the ramp to rest, and on again: some times as long.
+    ///
+    /// # Panics
+    /// As [`Session::of`].
+    pub fn with_a_limit(board: &'static Board) -> Self {
+        Self::with(board, meet_a_limit)
+    }
+
     fn with(board: &'static Board, talk: impl Fn(&mut LinkBench)) -> Self {
+        // A level shifter in the line is none of the gateware's. A few boards are kept for as long as a test runs.
+        let board: &'static Board = Box::leak(Box::new(Board { max_baud: None, ..board.clone() }));
         let text = shipped_machine(board, &board.clocks[0]).expect("a machine");
         let quick = "[machine.guard]\nenable_ms = 0\ndebounce_us = 0\nwatchdog_ms = 0\n";
         let text = text.replace("[machine.guard]\n", quick);
@@ -81,13 +91,18 @@ fn ask(bench: &mut LinkBench, sequence: u8, address: u8, words: &[u32]) -> Said 
     Said::of(&unframe(&answer).expect("a frame"))
 }
 
-fn talk(bench: &mut LinkBench) {
+/// Words that are written one after the other, each executed.
+fn writer() -> impl FnMut(&mut LinkBench, u8, &[u32]) {
     let mut next = 0;
-    let mut write = |bench: &mut LinkBench, address: u8, words: &[u32]| {
+    move |bench, address, words| {
         let said = ask(bench, next, 0x80 | address, words);
         next += 1;
         assert_eq!(said.next, next, "{said:?}");
-    };
+    }
+}
+
+fn talk(bench: &mut LinkBench) {
+    let mut write = writer();
     write(bench, CONTROL, &[1]);
     let cruise = |v: i64| [149, v as u32, (v >> 32) as u32, 0, 0x0020_0000, 0xdbc0, 0, 1];
     write(bench, of_axis(SEGMENT, 0), &cruise(1 << 60));
@@ -105,4 +120,27 @@ fn talk(bench: &mut LinkBench) {
     write(bench, CLEAR, &[0]);
     assert_eq!(ask(bench, 9, POSITION, &[]).fault, None);
     assert!(bench.steps > 5, "{} steps", bench.steps);
+}
+
+fn meet_a_limit(bench: &mut LinkBench) {
+    let mut write = writer();
+    write(bench, CONTROL, &[1]);
+    let v: i64 = -(1 << 56);
+    write(bench, of_axis(SEGMENT, 5), &[1 << 20, v as u32, (v >> 32) as u32, 0, 0, 0, 0, 1]);
+    write(bench, START, &[0b10_0000]);
+    bench.rest(30_000);
+    bench.pins.limit_min = 1 << 5;
+    let polls = (0..100).map(|_| {
+        bench.rest(10_000);
+        ask(bench, 9, of_axis(POSITION, 5), &[])
+    });
+    let said = polls.into_iter().find(|said| said.halted).expect("the ramp is over");
+    assert_eq!((said.fault, said.culprits), (Some(Cause::Limit), 1 << 5), "{said:?}");
+    bench.pins.limit_min = 0;
+    bench.rest(3_000);
+    write(bench, CLEAR, &[0]);
+    // Without a fault, nothing is left of its cause.
+    let said = ask(bench, 9, of_axis(POSITION, 5), &[]);
+    assert_eq!((said.fault, said.culprits), (None, 0), "{said:?}");
+    assert!(said.data.cast_signed() < -3, "{said:?}");
 }

@@ -8,6 +8,7 @@ pub mod effort;
 pub mod engine_programs;
 pub mod engine_twins;
 pub mod golden;
+pub mod jobs;
 pub mod link_bench;
 pub mod lockstep;
 pub mod moves;

@@ -13,13 +13,10 @@ pub mod stimuli;
 pub mod survivors;
 
 use crate::effort;
+use crate::jobs::each;
 use carrystep_levels::engine::replay::difference_of_mutant;
 use draw::Sample;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use stimuli::Stimulus;
-
-/// Simulations at a time.
-const JOBS: usize = 2;
 
 /// For each mutant, the first recording that it differs from.
 ///
@@ -61,21 +58,6 @@ pub fn judge(sample: &Sample, places: &[usize]) -> Vec<Judgement> {
         effort::say(&format!("{}: {judgement:?}: {}", place + 1, mutant.name));
         judgement
     })
-}
-
-/// Does something with each, a few at a time, the results in order.
-pub fn each<T: Sync, R: Send>(all: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let job = || {
-        let take = || Some(next.fetch_add(1, Ordering::Relaxed)).filter(|place| *place < all.len());
-        std::iter::from_fn(take).map(|place| (place, work(&all[place]))).collect::<Vec<_>>()
-    };
-    let mut done = std::thread::scope(|scope| {
-        let jobs: Vec<_> = (0..JOBS).map(|_| scope.spawn(job)).collect();
-        jobs.into_iter().flat_map(|job| job.join().expect("the tools")).collect::<Vec<_>>()
-    });
-    done.sort_by_key(|(place, _)| *place);
-    done.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Whether a mutant (0: the engine as it is) is not the model.

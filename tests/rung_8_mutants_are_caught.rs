@@ -6,8 +6,8 @@ use carrystep_tests::mutants::draw::{Mutant, Sample, sample};
 use carrystep_tests::mutants::equal::{Scope, is_proved};
 use carrystep_tests::mutants::stimuli::{self, Stimulus};
 use carrystep_tests::mutants::survivors::{self, NO_REASON, PROVED, Survivors};
-use carrystep_tests::mutants::{self, Judgement, catchers, differs, judge};
-use carrystep_tests::{effort, moves};
+use carrystep_tests::mutants::{Judgement, catchers, differs, judge};
+use carrystep_tests::{effort, jobs, moves};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// In every test run: the first of all.
@@ -72,7 +72,7 @@ fn no_harm_is_proved_harmless(sample: &Sample, caught: &[Option<&str>]) {
     let mut modules = BTreeSet::new();
     let harmful = sample.mutants.iter().zip(caught).filter(|(_, caught)| caught.is_some()).map(|(mutant, _)| mutant);
     let first: Vec<&Mutant> = harmful.filter(|mutant| modules.insert(&mutant.module)).collect();
-    let wrong: Vec<&str> = mutants::each(&first, |mutant| (is_proved(sample, mutant, Scope::Module), &*mutant.name))
+    let wrong: Vec<&str> = jobs::each(&first, |mutant| (is_proved(sample, mutant, Scope::Module), &*mutant.name))
         .into_iter()
         .filter_map(|(proved, name)| proved.then_some(name))
         .collect();

@@ -76,7 +76,8 @@ fn the_long_runs_have_passed_on_this_gateware() {
             "dead-host",
             "verilog-board",
             "resources",
-            "boards"
+            "boards",
+            "equivalence"
         ]
     );
     for row in rows {

@@ -29,7 +29,7 @@ fn synthesis(family: &str, more: &str, top: &str) -> String {
 
 /// What a board's build script has yosys do for ISE, after it has read the Verilog.
 pub fn script_for_ise(family: &str, top: &str) -> String {
-    format!("{}; write_edif -pvector bra {top}.edif", synthesis(family, " -ise", top))
+    format!("{}; clean -purge; write_edif -pvector bra {top}.edif", synthesis(family, " -ise", top))
 }
 
 /// The EDIF that ISE gets. Other families than ISE's get the same.

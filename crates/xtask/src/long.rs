@@ -91,6 +91,12 @@ const RUNS: [Run; 10] = [
         asks: &[],
         cargo: &["-p", "carrystep-synthesis", "--", "boards"],
     },
+    Run {
+        name: "equivalence",
+        what: "from bytes on the line to pulses on the pins: iCE40 boards as Verilog and as bitstreams read back, Spartans as Verilog and as the EDIF of their cells; planted faults",
+        asks: &[("CARRYSTEP_BOARDS", "all")],
+        cargo: &["-p", "carrystep-tests", "--test", "a_board_is_its_verilog"],
+    },
 ];
 
 /// What stands for a run that has not been made.

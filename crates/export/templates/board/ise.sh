@@ -5,9 +5,12 @@ set -eu
 cd "$(dirname "$0")"
 
 if [ "${SYNTHESIS:-xst}" = yosys ]; then
-    # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing.
-    yosys -q -l yosys.log -p 'read_verilog {{ sources | join(" ") }}; synth_xilinx -family {{ yosys }} -ise -nowidelut -flatten -top {{ top }}; write_edif -pvector bra {{ top }}.edif'
-    ngdbuild -p {{ part.ordered }} -uc {{ top }}.ucf {{ top }}.edif {{ top }}.ngd
+    # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing; without clean -purge a
+    # pin's net may have another name than the pin, and the constraints do not find it.
+    yosys -q -l yosys.log -p 'read_verilog {{ sources | join(" ") }}; synth_xilinx -family {{ yosys }} -ise -nowidelut -flatten -top {{ top }}; clean -purge; write_edif -pvector bra {{ top }}.edif'
+    # yosys calls a bit of a bus [5], xst calls it <5>.
+    sed 's/<\([0-9]*\)>/[\1]/' {{ top }}.ucf > {{ top }}_yosys.ucf
+    ngdbuild -p {{ part.ordered }} -uc {{ top }}_yosys.ucf {{ top }}.edif {{ top }}.ngd
 else
     xst -ifn {{ top }}.xst -ofn {{ top }}.syr
     ngdbuild -p {{ part.ordered }} -uc {{ top }}.ucf {{ top }}.ngc {{ top }}.ngd

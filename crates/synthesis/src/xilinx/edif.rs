@@ -15,6 +15,10 @@ enum Node<'a> {
     Text(&'a str),
 }
 
+/// No bracket is deeper in any file of yosys', and no port wider.
+const DEEPEST: usize = 64;
+const WIDEST: u32 = 1024;
+
 fn unread(what: impl Into<String>) -> SynthesisError {
     SynthesisError::Unread { tool: "yosys' EDIF", what: what.into() }
 }
@@ -25,6 +29,7 @@ fn parsed(edif: &str) -> Result<Node<'_>, SynthesisError> {
     let mut rest = edif;
     while let Some(first) = rest.chars().next() {
         let length = match first {
+            '(' if open.len() > DEEPEST => return Err(unread("brackets so deep")),
             '(' => {
                 open.push(Vec::new());
                 1
@@ -115,9 +120,9 @@ impl Port {
         let (name, before) = what.second()?.name()?;
         let count: Option<u32> = what.list().get(2).and_then(|count| count.word()?.parse().ok());
         let range = before.strip_suffix(']').and_then(|text| text.rsplit_once('[')?.1.split_once(':'));
-        let range = range.and_then(|(left, right)| Some((left.parse().ok()?, right.parse().ok()?)));
+        let range: Option<(u32, u32)> = range.and_then(|(left, right)| Some((left.parse().ok()?, right.parse().ok()?)));
         match range {
-            Some((left, right)) if Some(u32::abs_diff(left, right) + 1) == count => {
+            Some((left, right)) if left.abs_diff(right) < WIDEST && Some(left.abs_diff(right) + 1) == count => {
                 Ok((name, Self { is_input, range: Some((left, right)) }))
             }
             _ => Err(unread(format!("which bits {before} has: it was not written with -pvector bra"))),
@@ -251,4 +256,42 @@ pub fn from_edif(edif: &str) -> Result<String, SynthesisError> {
     // One vector of all would be handed on whole by a simulator wherever one bit changes.
     let wires: Vec<String> = (0..nets.count).map(|net| format!("n{net}")).collect();
     Ok(format!("module {top} (\n{}\n);\nwire {};\n{body}endmodule\n", heads.join(",\n"), wires.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::from_edif;
+
+    const TWO_BUFFERS: &str = r#"(edif top (external LIB (cell BUF (view V (interface
+        (port (array (rename I "I[1:0]") 2) (direction INPUT)) (port O (direction OUTPUT))))))
+        (library DESIGN (cell top (view V (interface
+        (port (array (rename a "a[1:0]") 2) (direction INPUT)) (port b (direction OUTPUT)))
+        (contents (instance (rename id1 "x.y") (viewRef V (cellRef BUF (libraryRef LIB))) (property INIT (string "4'h8")))
+        (net (rename id2 "a[1]") (joined (portRef (member a 0)) (portRef (member I 1) (instanceRef id1))))
+        (net b (joined (portRef b) (portRef O (instanceRef id1)))))))))"#;
+
+    #[test]
+    fn bits_count_from_the_left() {
+        let verilog = from_edif(TWO_BUFFERS).unwrap();
+        // The right bit of I is on the left bit of a; nothing is on the other one, nor on the other of a.
+        assert!(verilog.contains("assign n0 = a[1];"), "{verilog}");
+        assert!(verilog.contains("BUF #(.INIT(4'h8)) id1 (.I({n3, n0}), .O({n1}));"), "{verilog}");
+    }
+
+    #[test]
+    fn buses_must_say_which_bits_they_have() {
+        // As `write_edif` has it without -pvector bra.
+        let error = from_edif(&TWO_BUFFERS.replace("I[1:0]", "I")).unwrap_err();
+        assert!(error.to_string().contains("-pvector bra"), "{error}");
+    }
+
+    #[test]
+    fn no_text_hangs_or_panics() {
+        for end in 0..TWO_BUFFERS.len() {
+            assert!(from_edif(&TWO_BUFFERS[..end]).is_err());
+        }
+        assert!(from_edif(&TWO_BUFFERS.replace("(member a 0)", "(member a 7)")).is_err());
+        assert!(from_edif(&TWO_BUFFERS.replace("I[1:0]", "I[4294967295:0]")).is_err());
+        assert!(from_edif(&"(".repeat(1_000_000)).is_err());
+    }
 }

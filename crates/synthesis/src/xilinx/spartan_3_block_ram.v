@@ -13,6 +13,7 @@ module NAME #(
     output [(1<<LOG_B)-1:0] DOB,
     output [3:0] DOPA, DOPB
 );
+    wire [14:0] address_a = ADDRA << LOG_A, address_b = ADDRB << LOG_B;
     wire [63:0] a, b;
     wire [7:0] pa, pb;
     bench_block_ram #(
@@ -20,7 +21,7 @@ module NAME #(
         .READ_A(WIDTH_A), .READ_B(WIDTH_B), .WRITE(WIDTH_A)
     ) ram (
         .clock(CLKA | CLKB), .writes(ENA), .reads({ENB, ENA}),
-        .address(ADDRA << LOG_A), .address_a(ADDRA << LOG_A), .address_b(ADDRB << LOG_B),
+        .address(address_a), .address_a(address_a), .address_b(address_b),
         .mask({8{WEA}}), .data(DIA), .parity(DIPA), .value_a(a), .value_b(b), .parity_a(pa), .parity_b(pb)
     );
     assign DOA = a, DOB = b, DOPA = pa, DOPB = pb;

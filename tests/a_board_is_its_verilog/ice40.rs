@@ -1,13 +1,10 @@
-//! A whole iCE40 board, clocked from its pins: bytes into the UART, pulses out. Its Verilog and its bitstream, read back, show on
-//! every pin in every cycle what link and engine show in Rust-HDL. The PLL is one model of the bench at both stages: it hands its
-//! reference on, locked. No other hard block than block RAM is in them.
-//!
-//! A test run does it for the iCEstick, `cargo xtask long equivalence` for every board.
+//! iCE40: the Verilog and the bitstream, read back. The PLL is one model of the bench at both stages: it hands its reference on,
+//! locked. No other hard block than block RAM is in them.
 
 use carrystep_spec::board::{Board, Family, board, boards};
 use carrystep_synthesis::ice40::{self, Part};
 use carrystep_tests::board_session::Session;
-use carrystep_tests::{effort, mutants};
+use carrystep_tests::{effort, jobs};
 
 const PLL: &str = "
 module bench_pll #(
@@ -69,15 +66,21 @@ fn from_verilog_to_bitstream(board: &'static Board) {
         assert!(compare(&flipped).is_some(), "{name}: a flipped bit of a block RAM is not seen");
     }
     effort::say(&format!("{name}: {} cycles on every pin", session.cycles()));
+    if effort::is_every_board() && name == "icestick" {
+        let longer = Session::with_a_limit(board);
+        assert_eq!(longer.difference(&simulated(&longer.verilog)), None, "{name}, a limit: the Verilog");
+        assert_eq!(longer.difference(&simulated(&read_back(&placed.asc))), None, "{name}, a limit: the bitstream");
+        effort::say(&format!("{name}: {} cycles with a limit and its ramp", longer.cycles()));
+    }
 }
 
 #[test]
-fn from_bytes_to_pulses() {
+fn bitstreams() {
     let ice40s: Vec<_> = boards().iter().filter(|board| board.family == Family::Ice40).collect();
     if !effort::is_every_board() {
         return from_verilog_to_bitstream(board("icestick").expect("a board"));
     }
-    mutants::each(&ice40s, |board| from_verilog_to_bitstream(board));
+    jobs::each(&ice40s, |board| from_verilog_to_bitstream(board));
     effort::figures(&format!(
         "{} iCE40 boards from Verilog to the bitstream, two crossed wires and a flipped bit seen on each",
         ice40s.len()
