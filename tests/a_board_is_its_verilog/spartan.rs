@@ -61,7 +61,7 @@ fn netlists() {
     }
     jobs::each(&BOARDS, |name| from_verilog_to_edif(name));
     effort::figures(&format!(
-        "a board of each of {} Spartan families from Verilog to the EDIF of its cells, two crossed wires and a flipped bit seen on each",
+        "{} Spartan boards, one of each family, from Verilog to the EDIF of its cells, two crossed wires and a flipped bit seen on each",
         BOARDS.len()
     ));
 }
