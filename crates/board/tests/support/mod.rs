@@ -130,6 +130,8 @@ pub struct World<B> {
     bytes: usize,
     /// The host dies in this cycle: from then on nothing goes out.
     pub dies: u64,
+    /// End of the last millisecond in which the board has heard a byte; a line may say some after its host's death.
+    pub heard: u64,
     /// The fewest segments that have waited for an axis in the middle of its move, looked at each millisecond until all of
     /// it is handed over.
     pub least_waiting: usize,
@@ -150,7 +152,11 @@ impl<B: Kind> World<B> {
         for byte in self.there.receive(self.milliseconds()) {
             self.board.say(byte);
         }
+        let hears = self.board.unsaid() > 0;
         self.board.reach(self.board.cycle() + MS, &mut self.edges);
+        if hears {
+            self.heard = self.board.cycle();
+        }
         (self.meanwhile)(&mut self.board);
         let waiting = self.board.least_waiting().filter(|_| !self.handed_over);
         self.least_waiting = waiting.unwrap_or(usize::MAX).min(self.least_waiting);
@@ -213,6 +219,7 @@ impl<B: Kind> End<B> {
             inbox: VecDeque::new(),
             bytes: (uart.baud() / 10_000) as usize,
             dies: u64::MAX,
+            heard: 0,
             least_waiting: usize::MAX,
             handed_over: false,
             came: 0,
