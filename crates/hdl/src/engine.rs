@@ -17,12 +17,14 @@
 //!
 //! All state of an axis is in block RAM but its pins' timers. In each tick every axis has its turn; what
 //! the turns have found takes effect at the strobe that ends the tick, for all axes at once.
+//!
+//! Here are its ports and its parts; `wiring` connects them.
 
 use crate::HdlError;
 use crate::constant::{Literal, Parameter};
 use crate::lanes::Lanes;
 use crate::register::{Input, Register};
-use crate::word::{Word, bit_cast};
+use crate::word::Word;
 use carrystep_spec::EngineBuild;
 use rust_hdl::prelude::*;
 
@@ -37,6 +39,7 @@ pub mod store;
 pub mod turn;
 pub mod watch;
 pub mod wheel;
+mod wiring;
 
 pub use sim::{AnyEngine, EngineSim, engine};
 
@@ -199,211 +202,6 @@ impl<const N: usize> Engine<N> {
             rest_2: Register::new(true),
             ..Self::default()
         })
-    }
-}
-
-impl<const N: usize> Logic for Engine<N> {
-    #[hdl_gen]
-    fn update(&mut self) {
-        dff_setup!(self, clock, waits, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2);
-        clock!(self, clock, turn, adder, queue, store, wheel, limits, homes, stops, watch);
-
-        self.strobe.next = self.wheel.strobe.val();
-        self.masked.next = self.mask.q.val().get_bit(0);
-
-        // The host's words.
-        self.nobody.next = bit_cast::<4, 3>(self.put_axis.val()) >= self.axes.val();
-        self.listens.next = self.turn.beat.val().get_bit(7) & (self.turn.axis.val() == self.put_axis.val());
-        self.put_ready.next =
-            !self.stops.fault.val() & (self.nobody.val() | (self.listens.val() & !self.queue.full.val()));
-        self.room.next = self.queue.room.val();
-        self.room_valid.next = self.listens.val();
-        self.take.next = self.put_valid.val() & self.put_ready.val() & !self.nobody.val();
-        self.taken.d.next = self.taken.q.val() & !self.turn.beat.val().get_bit(9);
-        if self.take.val() {
-            self.taken.d.next = self.put_word.val() != self.commit.val();
-        }
-        if self.turn.beat.val().get_bit(7) {
-            self.taken_word.d.next = self.put_word.val();
-        }
-
-        // Starts: armed at a strobe, then at the first strobe at which every axis of the mask rests and waits.
-        self.may_start.next = self.enable.val() & self.watch.warm.val();
-        self.start_ready.next =
-            self.strobe.val() & !self.waits.q.val() & !self.stops.fault.val() & self.may_start.val();
-        self.free.next = !self.stops.fault.val() & !self.stops.finds.val();
-        self.decides.next = self.strobe.val() & self.waits.q.val() & self.free.val();
-        self.go.next = self.decides.val() & !self.unfed.q.val() & !self.held.q.val();
-        if self.strobe.val() {
-            self.going.d.next = self.go.val();
-        }
-        if self.turn.beat.val().get_bit(12) {
-            self.mask.d.next = (self.mask.q.val() >> self.by_one.val()) | (self.mask.q.val() << self.to_top.val());
-        }
-        if self.start_ready.val() & self.start_valid.val() {
-            self.waits.d.next = true;
-            self.mask.d.next = self.start_mask.val();
-        }
-        if self.go.val() | self.stops.fault.val() {
-            self.waits.d.next = false;
-        }
-
-        // What the turns find.
-        if self.turn.beat.val().get_bit(12) {
-            self.unfed.d.next = self.unfed.q.val() | (self.masked.val() & self.queue.empty.val());
-            self.held.d.next =
-                self.held.q.val() | (self.masked.val() & (self.queue.goes_on.val() | self.homes.slows.val()));
-            self.active.d.next = self.active.q.val() | self.queue.running.val() | !self.queue.empty.val();
-        }
-        if self.strobe.val() {
-            self.unfed.d.next = false;
-            self.held.d.next = false;
-            self.active.d.next = false;
-            self.rest_1.d.next = !self.active.q.val();
-            self.rest_2.d.next = !self.active.q.val() & self.rest_1.q.val();
-        }
-        if self.take.val() {
-            self.rest_1.d.next = false;
-            self.rest_2.d.next = false;
-        }
-
-        // The pins.
-        self.counts.next = self.none.val();
-        self.pins_busy.next = false;
-        self.late.next = self.no_axes.val();
-        for i in 0..N {
-            self.pulser[i].clock.next = self.clock.val();
-            self.pulser[i].frozen.next = self.stops.frozen.val();
-            self.pulser[i].request.next = self.wheel.events.val().get_bit(i) & self.wheel.phase_start.val();
-            self.pulser[i].request_back.next = self.wheel.backward.val().get_bit(i);
-            self.pulser[i].has_sign.next = self.wheel.events.val().get_bit(i) & self.strobe.val();
-            self.pulser[i].sign_back.next = self.wheel.backward.val().get_bit(i);
-            self.counted[i].next = self.none.val();
-            if self.turn.lane.val().get_bit(i) {
-                self.counted[i].next = self.pulser[i].counts.val();
-            }
-            self.counts.next = self.counts.val() | self.counted[i].val();
-            self.late_bit[i].next = self.no_axes.val();
-            if self.pulser[i].overruns.val() {
-                self.late_bit[i].next = self.one_axis[i].val();
-            }
-            self.late.next = self.late.val() | self.late_bit[i].val();
-            self.pins_busy.next = self.pins_busy.val() | self.pulser[i].owed.val() | self.pulser[i].step.val();
-            self.step[i].next = self.pulser[i].step.val();
-            self.dir[i].next = self.pulser[i].dir.val();
-        }
-        self.rests.next = self.rest_2.q.val() & !self.waits.q.val() & !self.pins_busy.val();
-
-        // The modules.
-        self.turn.strobe.next = self.strobe.val();
-        self.queue.beat.next = self.turn.beat.val();
-        self.queue.axis.next = self.turn.axis.val();
-        self.queue.axis_next.next = self.turn.axis_next.val();
-        self.queue.starts.next = self.going.q.val() & self.masked.val();
-        self.queue.halted.next = self.stops.halted.val();
-        self.queue.ramp.next = self.stops.ramp.val() | self.homes.slows.val();
-        self.queue.empties.next = self.homes.slows.val() & !self.queue.goes_on.val();
-        self.queue.clear.next = self.stops.clearing.val();
-        self.queue.take.next = self.take.val();
-        self.queue.commit.next = self.put_word.val() == self.commit.val();
-        self.queue.last.next = self.put_data.val().get_bit(0);
-        self.queue.ended.next = self.adder.ended.val();
-        self.queue.overflow.next = self.adder.overflow.val();
-        self.queue.least.next = self.adder.least.val();
-        self.queue.turned.next = self.adder.turned.val();
-        self.queue.back.next = self.adder.back.val();
-        self.queue.pulses.next = self.counts.val().get_bits::<3>(0);
-        self.queue.losses.next = self.counts.val().get_bits::<3>(3);
-
-        self.adder.beat.next = self.turn.beat.val();
-        self.adder.word.next = self.store.word.val();
-        self.adder.put.next = self.put_data.val();
-        self.adder.counts.next = self.queue.running.val();
-        self.adder.lost.next = self.queue.lost.val();
-        self.adder.up.next = self.queue.up.val();
-        self.adder.down.next = self.queue.down.val();
-        self.adder.wipe.next = self.stops.clearing.val();
-
-        self.store.beat.next = self.turn.beat.val();
-        self.store.axis.next = self.turn.axis.val();
-        self.store.live.next = self.queue.live.val();
-        self.store.fresh.next = self.queue.fresh.val();
-        self.store.running.next = self.queue.running.val();
-        self.store.sound.next = self.queue.sound.val();
-        self.store.moves.next = self.queue.moves.val();
-        self.store.slows.next = self.queue.slows.val();
-        self.store.upward.next = self.queue.upward.val();
-        self.store.steady.next = self.queue.steady.val();
-        self.store.wipe.next = self.stops.clearing.val();
-        self.store.put.next = self.taken.q.val();
-        self.store.put_word.next = self.taken_word.q.val();
-        self.store.get_axis.next = self.get_axis.val();
-        self.store.get_item.next = self.get_item.val();
-        self.store.sum.next = self.adder.sum.val();
-
-        self.wheel.turn_ends.next = self.turn.beat.val().get_bit(12);
-        self.wheel.lane.next = self.turn.lane.val();
-        self.wheel.crosses.next = self.queue.moves.val() & self.adder.crosses.val();
-        self.wheel.has_sign.next = self.queue.moves.val() & !self.adder.still.val();
-        self.wheel.back.next = self.adder.back.val();
-        self.wheel.phase_known.next = self.turn.beat.val().get_bit(16);
-        self.wheel.q.next = self.adder.q.val();
-
-        self.get_data.next = self.store.word.val();
-        self.get_valid.next = self.turn.beat.val().get_bit(11);
-        self.latch.next = self.turn.beat.val().get_bit(6) & self.homes.waits.val();
-        self.latch_axis.next = self.turn.axis.val();
-        self.limits.turn_ends.next = self.turn.beat.val().get_bit(12);
-        self.limits.axis.next = self.turn.axis.val();
-        self.limits.axis_next.next = self.turn.axis_next.val();
-        self.limits.lane.next = self.turn.lane.val();
-        self.limits.tick_0.next = self.watch.tick_0.val();
-        self.limits.tick_1.next = self.watch.tick_1.val();
-        self.limits.limit_min.next = self.limit_min.val();
-        self.limits.limit_max.next = self.limit_max.val();
-        self.limits.goes.next = self.queue.moves.val() & !self.adder.still.val();
-        self.limits.back.next = self.adder.back.val();
-
-        self.homes.set.next = self.home_valid.val();
-        self.homes.mask.next = self.home_mask.val();
-        self.homes.turn_ends.next = self.turn.beat.val().get_bit(12);
-        self.homes.lane.next = self.turn.lane.val();
-        self.homes.hit.next = self.limits.hit.val();
-        self.homes.goes_on.next = self.queue.goes_on.val();
-
-        self.stops.strobe.next = self.strobe.val();
-        self.stops.turn_ends.next = self.turn.beat.val().get_bit(12);
-        self.stops.lane.next = self.turn.lane.val();
-        self.stops.runs.next = self.queue.running.val();
-        self.stops.too_fast.next = self.queue.too_fast.val();
-        self.stops.limit.next = self.limits.hit.val() & !self.homes.waits.val() & !self.homes.slows.val();
-        self.stops.dry.next = self.queue.dry.val();
-        self.stops.late.next = self.late.val();
-        self.stops.pressed.next = self.watch.pressed.val();
-        self.stops.breaks.next = (((self.put_valid.val() & self.nobody.val()) | self.broken.val())
-            & !self.stops.fault.val())
-            | (self.decides.val() & self.unfed.q.val());
-        self.stops.missed.next = self.watch.missed.val() & !self.rest_2.q.val();
-        self.stops.asked.next = self.stop.val();
-        self.stops.clear.next = self.clear.val();
-        self.stops.pins_busy.next = self.pins_busy.val();
-
-        self.watch.strobe.next = self.strobe.val();
-        self.watch.estop.next = self.estop.val();
-        self.watch.kick.next = self.kick.val();
-        self.watch.enable.next = self.enable.val();
-        self.watch.idle.next = self.rests.val();
-
-        self.enabled.next = self.watch.enabled.val();
-        self.idle.next = self.rests.val();
-        self.fault.next = self.stops.fault.val();
-        self.halted.next = self.stops.halted.val();
-        self.cause.next = self.stops.cause.val();
-        self.culprits.next = self.stops.culprits.val();
-        self.armed.next = self.waits.q.val();
-        self.ready.next = self.may_start.val();
-        self.homing.next = self.homes.axes.val();
-        self.started.next = self.go.val();
     }
 }
 
