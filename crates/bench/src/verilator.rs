@@ -1,6 +1,7 @@
 //! The exported Verilog in Verilator at its best: compiled outside the timing, its clock toggled.
 
 use carrystep_spec::AXES;
+use carrystep_spec::tool::VERILATOR;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -31,14 +32,13 @@ impl Verilated {
         write("core.v", verilog)?;
         write("toggle.cpp", HARNESS)?;
         let flags = format!("-O3 -march=native {NO_SLP}");
-        let mut command = Command::new("verilator");
+        let mut command = Command::new(VERILATOR.name);
         command.args(["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert"]);
         command.args(["-Wno-fatal", "--top-module", "carrystep_six_axis", "-o", "toggle"]);
         command.args(["-MAKEFLAGS", &format!("OPT_FAST='{flags}' OPT_SLOW='{flags}' OPT_GLOBAL='{flags}'")]);
         command.args(trace.then_some("--trace")).args(["core.v", "toggle.cpp"]).current_dir(folder.path());
-        let output = command.output().map_err(|_| {
-            "verilator is not installed: `sudo apt-get install verilator g++ make` installs it".to_owned()
-        })?;
+        let missing = |_| format!("{} is not installed: {} installs it", VERILATOR.name, VERILATOR.ways());
+        let output = command.output().map_err(missing)?;
         if !output.status.success() {
             return Err(format!("verilator failed: {}", String::from_utf8_lossy(&output.stderr).trim()));
         }

@@ -135,3 +135,20 @@ fn nothing_yet(done: io::Result<usize>) -> io::Result<usize> {
         other => other,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a port's driver says of a port that is there, but for the last.
+    #[test]
+    fn the_cause_of_a_refusal_is_named() {
+        let refused = |port: &str, kind| refusal(port, 9600, &serialport::Error::new(kind, "so it is"));
+        let denied = ErrorKind::Io(io::ErrorKind::PermissionDenied);
+        assert!(matches!(refused("/dev/null", denied), OpenError::NotPermitted { .. }));
+        assert!(matches!(refused("/dev/null", ErrorKind::NoDevice), OpenError::Busy { .. }));
+        assert!(matches!(refused("/dev/null", ErrorKind::Unknown), OpenError::Unusable { .. }));
+        assert!(matches!(refused("/dev/no-such-port", ErrorKind::NoDevice), OpenError::Absent { .. }));
+        assert!(matches!(refused("/dev", denied), OpenError::NoPort { .. }));
+    }
+}

@@ -35,7 +35,8 @@ pub fn page(rows: &[Measured], links: &[Size], families: &[Mapped]) -> String {
     }
     text += "\n## Xilinx\n\n\
          Cells by yosys (`synth_xilinx -nowidelut -flatten`), which calls these families experimental; not placed. The engine of the \
-         first row. A carry cell\nis one bit in xc3s, four in the others.\n\n\
+         first row. A carry cell\nis one bit in xc3s, four in the others. 12 of the 16 block RAMs in xc3s are the wheel's, which is written bit by \
+         bit: the boards of that family have it in LUTs\n(decision 38).\n\n\
          | family | LUTs (budget) | flip-flops | carry cells | block RAMs |\n|---|---|---|---|---|\n";
     for (family, found) in FAMILIES.iter().zip(families) {
         text += &cells_line(family, found);
