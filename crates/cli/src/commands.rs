@@ -10,6 +10,7 @@ pub mod profile;
 pub mod run;
 pub mod simulate;
 pub mod status;
+pub mod stop;
 pub mod sweep;
 pub mod table;
 pub mod verilog;

@@ -1,15 +1,16 @@
 //! A plan on a board: streamed with full queues, watched, stopped by Ctrl-C, and what came of it.
 
 use crate::connection::{self, Connection};
+use crate::control::StoppedBy;
 use crate::failure::Failure;
-use crate::interrupt;
-use carrystep_link::{Command, Ended, HostError, Program, Status, Wish, supply};
+use crate::found;
+use carrystep_link::{Command, Ended, HostError, Program, Status, supply};
 use carrystep_plan::Plan;
 use carrystep_spec::MoveFile;
+use carrystep_spec::engine::Cause;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::fmt;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// How a drive ended.
@@ -18,7 +19,7 @@ use std::time::Instant;
 pub enum How {
     /// All moves were made.
     Done,
-    /// Stopped as wished: by Ctrl-C.
+    /// Stopped as wished: by Ctrl-C or `carrystep stop`.
     Stopped,
     /// The machine stopped by itself.
     Fault,
@@ -35,14 +36,29 @@ pub struct Driven {
     pub build: String,
     /// How it ended.
     pub ended: How,
-    /// Why the machine stopped, where it did.
+    /// Who has stopped it, where it was stopped as wished.
+    pub stopped_by: Option<StoppedBy>,
+    /// Why the machine stopped by itself, where it did.
     pub cause: Option<&'static str>,
+    /// The axes that this stop came from.
+    pub culprits: Vec<Culprit>,
+    /// What to do about it.
+    pub remedy: Option<&'static str>,
     /// Seconds that the plan takes.
     pub planned_s: f64,
     /// Seconds that it took, power and questions included.
     pub run_s: f64,
     /// Each axis.
     pub axes: Vec<AxisDriven>,
+}
+
+/// An axis that a stop came from.
+#[derive(Debug, Serialize)]
+pub struct Culprit {
+    /// Its name.
+    pub axis: String,
+    /// Which way it moved when it was last seen moving: 1 or -1; 0: it was not seen moving.
+    pub direction: i8,
 }
 
 /// One axis.
@@ -72,12 +88,24 @@ impl fmt::Display for Driven {
         match (self.ended, self.passed) {
             (How::Done, true) => f.write_str("DONE\n"),
             (How::Done, false) => f.write_str("FAILED: the positions are not where the moves end\n"),
-            (How::Stopped, _) => f.write_str("STOPPED as asked for; the positions are true\n"),
-            (How::Fault, _) => writeln!(
-                f,
-                "STOPPED by the machine: {}; the positions are true, `carrystep stop --clear` resumes",
-                self.cause.unwrap_or("?")
-            ),
+            (How::Stopped, _) => {
+                let by = if self.stopped_by == Some(StoppedBy::Stop) { "`carrystep stop`" } else { "Ctrl-C" };
+                writeln!(f, "STOPPED by {by}; the positions are true")
+            }
+            (How::Fault, _) => {
+                let cause = self.cause.unwrap_or("?");
+                write!(f, "STOPPED by the machine: {cause}")?;
+                for (number, Culprit { axis, direction }) in self.culprits.iter().enumerate() {
+                    let way = match direction {
+                        0 => "",
+                        1.. => " moving forward",
+                        _ => " moving back",
+                    };
+                    write!(f, "{} {axis}{way}", if number == 0 { ", axis" } else { " and" })?;
+                }
+                f.write_str("; the positions are true\n")?;
+                self.remedy.map_or(Ok(()), |remedy| writeln!(f, "to do: {remedy}"))
+            }
         }
     }
 }
@@ -115,42 +143,68 @@ impl Streamed {
     }
 }
 
+/// Which way each axis was last seen moving.
+#[derive(Default)]
+struct Ways {
+    positions: Option<[i32; 8]>,
+    last: [i8; 8],
+}
+
+impl Ways {
+    fn see(&mut self, status: &Status) {
+        let before = self.positions.replace(status.positions).unwrap_or(status.positions);
+        for (last, (before, now)) in self.last.iter_mut().zip(before.iter().zip(status.positions)) {
+            match now.wrapping_sub(*before).signum() {
+                0 => {}
+                way => *last = way as i8,
+            }
+        }
+    }
+}
+
 /// Makes the moves; with `homing`, until these axes have met their limits.
-pub fn drive(connection: Connection, port: &str, streamed: &Streamed, homing: Option<u8>) -> Result<Driven, Failure> {
-    let Connection { mut board, axes } = connection;
+pub fn drive(connection: Connection, streamed: &Streamed, homing: Option<u8>) -> Result<Driven, Failure> {
+    // The port is closed before the control gives up its claim: what is bound first is dropped last.
+    let Connection { mut control, port, mut board, axes, .. } = connection;
     let begun = Instant::now();
+    let facts = *board.facts();
     let told = |error| connection::broken(&error, &axes);
     let start = *board.status();
     if start.answer.fault {
         return Err(told(HostError::Fault { cause: start.answer.cause, culprits: start.answer.culprits }));
     }
     let program = Program::new(&streamed.commands, axes.len() as u8).map_err(|error| told(error.into()))?;
-    board.enable().map_err(told)?;
-    let asked = interrupt::watch();
     let line = Line::new(&axes, streamed.seconds);
-    let mut stopped = false;
+    let mut ways = Ways::default();
+    let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
     let mut watch = |progress: &carrystep_link::Progress<'_>| {
         line.show(progress.status);
-        stopped = asked.load(Ordering::Relaxed);
-        if stopped { Wish::Stop } else { Wish::GoOn }
+        ways.see(progress.status);
+        control.wish(progress.status)
     };
-    let outcome = match homing {
-        None => board.stream(program, &mut watch).map(|ended| (ended, None)),
-        Some(mask) => board.home(mask, program, &mut watch).map(|latched| (Ended::Done, Some(latched))),
+    let outcome = match (powered, homing) {
+        (Ended::Stopped, _) => Ok((Ended::Stopped, None)),
+        (Ended::Done, None) => board.stream(program, &mut watch).map(|ended| (ended, None)),
+        (Ended::Done, Some(mask)) => board.home(mask, program, &mut watch).map(|latched| (Ended::Done, Some(latched))),
     };
     drop(line);
-    let (ended, cause, latched) = match outcome {
-        Ok((Ended::Done, latched)) => (How::Done, None, latched),
-        Err(HostError::NoLimit { .. }) if stopped => (How::Stopped, None, None),
-        Ok((Ended::Stopped, _)) => (How::Stopped, None, None),
-        Err(HostError::Fault { .. }) => (How::Fault, board.status().answer.cause_name(), None),
-        Err(error) => return Err(told(error)),
+    let (ended, latched) = match outcome {
+        Ok((Ended::Done, latched)) => (How::Done, latched),
+        Err(HostError::NoLimit { .. }) if control.stopped_by().is_some() => (How::Stopped, None),
+        Ok((Ended::Stopped, _)) => (How::Stopped, None),
+        Err(HostError::Fault { .. }) => (How::Fault, None),
+        Err(error) => return Err(connection::lost(&error, &axes, &facts)),
     };
+    let end = *board.status();
+    ways.see(&end);
+    let cause = found::cause(&end.answer).filter(|_| ended == How::Fault);
     if ended == How::Stopped {
         // It was our own stop, and nothing else: the next run need not be told.
         board.clear().map_err(told)?;
     }
-    let end = *board.status();
+    let culprit = |(number, axis): (usize, &String)| Culprit { axis: axis.clone(), direction: ways.last[number] };
+    let is_culprit = |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
+    let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
     let axis = |(number, name): (usize, String)| AxisDriven {
         axis: name,
         before: start.positions[number],
@@ -162,10 +216,13 @@ pub fn drive(connection: Connection, port: &str, streamed: &Streamed, homing: Op
     let moved = |axis: &AxisDriven| i64::from(axis.position.wrapping_sub(axis.before)) == axis.steps_planned;
     Ok(Driven {
         passed: ended == How::Done && (homing.is_some() || axes.iter().all(moved)),
-        port: port.to_owned(),
-        build: format!("{:016x}", board.facts().build),
+        port,
+        build: format!("{:016x}", facts.build),
         ended,
-        cause,
+        stopped_by: control.stopped_by().filter(|_| ended == How::Stopped),
+        cause: end.answer.cause_name().filter(|_| ended == How::Fault),
+        culprits,
+        remedy: cause.map(Cause::remedy),
         planned_s: streamed.seconds,
         run_s: begun.elapsed().as_secs_f64(),
         axes,

@@ -3,11 +3,13 @@
 mod arguments;
 mod commands;
 mod connection;
+mod control;
 #[cfg(unix)]
 mod desk;
 mod drive;
 mod failure;
 mod figures;
+mod found;
 mod gateware;
 mod interrupt;
 mod job;
@@ -37,7 +39,7 @@ fn main() -> ExitCode {
         Subcommand::Jog(jog) => commands::run::jog(jog),
         Subcommand::Home(home) => commands::run::home(home),
         Subcommand::Status(status) => commands::status::status(status),
-        Subcommand::Stop(stop) => commands::status::stop(stop),
+        Subcommand::Stop(stop) => commands::stop::stop(stop),
         #[cfg(unix)]
         Subcommand::VirtualBoard(board) => commands::virtual_board::run(board),
         Subcommand::Build(build) => commands::build::run(build),

@@ -73,6 +73,9 @@ pub enum ProgramError {
         /// The axis.
         axis: u8,
     },
+    /// A start while the drivers have no power: the gateware would refuse it for as long as they have none.
+    #[error("the drivers have no power: write CONTROL = 1 and wait for `ready` before the first START")]
+    NoPower,
     /// More segments than the queue holds, where all must wait in it.
     #[error("axis {axis} has {segments} segments, and all must wait in its queue, which holds {most}")]
     TooMany {

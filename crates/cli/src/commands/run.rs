@@ -14,7 +14,7 @@ use std::path::Path;
 pub fn run(arguments: &Run) -> Result<(), Failure> {
     let file = job::load(&arguments.file, arguments.fit_ns)?;
     let name = arguments.file.as_path();
-    told(&moved(&file, name, &arguments.port, false)?, arguments.json)
+    told(&moved(&file, name, &arguments.port, "run")?, arguments.json)
 }
 
 /// Moves one axis.
@@ -26,17 +26,18 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
     let time = time.map_or_else(String::new, |seconds| format!("time = {seconds:?}\n"));
     let text = format!("[[move]]\nprofile = \"trapezoid\"\n{time}to = {{ {axis} = {distance:?} }}\n");
     let file = MoveFile::of_moves(machine, Source { path: "jog".into(), text: text.into() })?;
-    told(&moved(&file, &arguments.machine, &arguments.port, false)?, arguments.json)
+    told(&moved(&file, &arguments.machine, &arguments.port, "jog")?, arguments.json)
 }
 
 /// Moves until the limits are met.
 pub fn home(arguments: &Home) -> Result<(), Failure> {
     let file = MoveFile::load(&arguments.file)?;
-    told(&moved(&file, &arguments.file, &arguments.port, true)?, arguments.json)
+    told(&moved(&file, &arguments.file, &arguments.port, "home")?, arguments.json)
 }
 
 /// Plans everything before the port is opened, and connects before anything moves.
-fn moved(file: &MoveFile, name: &Path, port: &Port, homing: bool) -> Result<Driven, Failure> {
+fn moved(file: &MoveFile, name: &Path, port: &Port, command: &'static str) -> Result<Driven, Failure> {
+    let homing = command == "home";
     let plan = plan::<f64>(file).map_err(|error| refused(file, &error))?;
     let streamed = Streamed::new(file, &plan, file.machine.baud)?;
     if homing && file.moves.len() > 1 {
@@ -48,8 +49,8 @@ fn moved(file: &MoveFile, name: &Path, port: &Port, homing: bool) -> Result<Driv
         let message = format!("homing takes what a queue holds, {QUEUE_SEGMENTS} segments: axis {name} has {segments}");
         return Err(file.move_error(0, message).help("a constant profile has one").into());
     }
-    let connection = connection::to_machine(port, &file.machine, name)?;
-    drive(connection, &port.name, &streamed, homing.then(|| streamed.moving()))
+    let connection = connection::to_machine(port, &file.machine, name, command)?;
+    drive(connection, &streamed, homing.then(|| streamed.moving()))
 }
 
 fn told(driven: &Driven, json: bool) -> Result<(), Failure> {
