@@ -26,7 +26,9 @@ pub fn status(arguments: &Status) -> Result<(), Failure> {
                     .map_err(|error| Failure::Run(format!("{} answers with {line:?}: {error}", caller.holder)))?;
                 return tell(&found, arguments.json);
             }
-            Reply::Silent => return Err(Failure::Run(connection::hangs(port, &caller.holder, "answer"))),
+            Reply::Silent => {
+                return Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Status, "answer")));
+            }
         }
     }
     let connection = connection::to_peer(&arguments.peer, "status")?;

@@ -41,7 +41,7 @@ pub fn stop(arguments: &Stop) -> Result<(), Failure> {
 /// Makes whoever drives the board stop and end, and takes the port; says whom it has stopped.
 fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
     let port = &arguments.peer.port.name;
-    let mut stopped = None;
+    let mut stopped: Option<Holder> = None;
     let begin = Instant::now();
     loop {
         if let Some(mut caller) = control::call(port)
@@ -49,7 +49,9 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
         {
             stopped = Some(caller.holder);
         }
-        match connection::try_peer(&arguments.peer, "stop") {
+        // At the baud rate at which the other command has spoken, where there was one.
+        let baud = stopped.as_ref().map_or(arguments.peer.baud, |holder| holder.baud);
+        match connection::try_peer(&arguments.peer, baud, "stop") {
             Ok(connection) => return Ok((connection, stopped)),
             Err(refused) if refused.busy && begin.elapsed() < BUSY + ENDED => {
                 if stopped.is_none() && begin.elapsed() > BUSY {
@@ -57,7 +59,14 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
                 }
                 std::thread::sleep(Duration::from_millis(5));
             }
-            Err(refused) => return Err(refused.failure),
+            Err(refused) => {
+                return Err(match stopped {
+                    Some(holder) => {
+                        Failure::Run(format!("{holder} was stopped; but then {}", refused.failure.message()))
+                    }
+                    None => refused.failure,
+                });
+            }
         }
     }
 }
@@ -66,8 +75,8 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
 fn ask(port: &str, caller: &mut Caller) -> Result<bool, Failure> {
     match caller.ask(Request::Stop, TAKEN) {
         Reply::Line(_) if caller.ends(ENDED) => Ok(true),
-        Reply::Line(_) => Err(Failure::Run(connection::hangs(port, &caller.holder, "end"))),
-        Reply::Silent => Err(Failure::Run(connection::hangs(port, &caller.holder, "answer"))),
+        Reply::Line(_) => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Stop, "end"))),
+        Reply::Silent => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Stop, "answer"))),
         Reply::Ended => Ok(false),
     }
 }

@@ -19,8 +19,8 @@ pub struct Claim {
 ///
 /// # Errors
 /// The system gives no folder or no file for the lock.
-pub fn claim(port: &str, command: &'static str, listens: bool) -> io::Result<Option<Claim>> {
-    let holder = Holder { pid: std::process::id(), command: command.to_owned(), listens, watchdog: None };
+pub fn claim(port: &str, baud: u32, command: &'static str, listens: bool) -> io::Result<Option<Claim>> {
+    let holder = Holder { pid: std::process::id(), command: command.to_owned(), baud, listens, watchdog: None };
     let Some(name) = device(port) else { return Ok(Some(Claim { lock: None, holder })) };
     let path = folder::folder()?.join(name).with_extension("lock");
     loop {
