@@ -1,14 +1,16 @@
 //! The line to a board: opened, known, and what went wrong with it.
 
 use crate::arguments::{Peer, Port};
+use crate::control::{self, Control, Holder};
 use crate::failure::Failure;
+use crate::found::{Known, names};
 use crate::interrupt;
 use carrystep_link::host::SystemClock;
 use carrystep_link::line::serial::{OpenError, SerialLine};
-use carrystep_link::registers::CAUSES;
-use carrystep_link::{Host, HostError, Patience};
-use carrystep_spec::Machine;
+use carrystep_link::{Facts, Host, HostError, Patience};
+use carrystep_spec::engine::CAUSES;
 use carrystep_spec::link::{BuildId, Line, Uart};
+use carrystep_spec::{Axis, Machine};
 use std::io;
 use std::path::Path;
 
@@ -18,12 +20,32 @@ pub type Board = Host<SerialLine, SystemClock>;
 /// What goes wrong between it and us.
 pub type BoardError = HostError<io::Error>;
 
-/// A connected board, and the names of its axes.
+/// A connected board, the names of its axes, and the hold on its port.
 pub struct Connection {
     /// The board.
     pub board: Board,
     /// A name for each axis of the build.
     pub axes: Vec<String>,
+    /// Steps in a unit of each axis; empty where no machine is known.
+    pub steps_per_unit: Vec<f64>,
+    /// The port's name.
+    pub port: String,
+    /// The hold on the port: other commands find out who drives the board, and reach that one.
+    pub control: Control,
+}
+
+/// Why there is no connection.
+pub struct Refused {
+    /// Another program has the port.
+    pub busy: bool,
+    /// What to tell.
+    pub failure: Failure,
+}
+
+impl From<Refused> for Failure {
+    fn from(refused: Refused) -> Self {
+        refused.failure
+    }
 }
 
 /// The machine's UART and the id of its engine on it; `name` is the file that says so.
@@ -37,30 +59,80 @@ pub fn wanted(machine: &Machine, name: &Path) -> Result<(Uart, BuildId), Failure
     }
 }
 
-/// Connects to the board of a machine; any other is refused. Nothing is written.
-pub fn to_machine(port: &Port, machine: &Machine, name: &Path) -> Result<Connection, Failure> {
-    let (uart, id) = wanted(machine, name)?;
-    let board = connect(&port.name, uart.baud(), Some(id))?;
-    Ok(Connection { board, axes: machine.axes.iter().map(|axis| axis.name.clone()).collect() })
+/// Connects to the board of a machine, to drive it by a command of this name; any other board is refused. Nothing is
+/// written. From now on `carrystep stop` reaches this command through [`Connection::control`].
+pub fn to_machine(port: &Port, machine: &Machine, name: &Path, command: &'static str) -> Result<Connection, Failure> {
+    Ok(machines(port, machine, name, command, true)?)
 }
 
-/// Connects to whatever carrystep board there is, or to the one of a machine.
-pub fn to_peer(peer: &Peer) -> Result<Connection, Failure> {
+/// Connects to whatever carrystep board there is, or to the one of a machine, only to look or to stop.
+pub fn to_peer(peer: &Peer, command: &'static str) -> Result<Connection, Failure> {
+    Ok(try_peer(peer, command)?)
+}
+
+/// The same; the caller sees whether the port is busy.
+pub fn try_peer(peer: &Peer, command: &'static str) -> Result<Connection, Refused> {
+    let fine = |failure| Refused { busy: false, failure };
     if let Some(path) = &peer.machine {
-        return to_machine(&peer.port, &Machine::load(path)?, path);
+        let machine = Machine::load(path).map_err(|error| fine(error.into()))?;
+        return machines(&peer.port, &machine, path, command, false);
     }
-    let board = connect(&peer.port.name, peer.baud, None)?;
+    let (board, control) = connect(&peer.port.name, peer.baud, None, command, false)?;
     let axes = (0..board.facts().axes).map(|axis| axis.to_string()).collect();
-    Ok(Connection { board, axes })
+    Ok(known(Connection { board, axes, steps_per_unit: Vec::new(), port: peer.port.name.clone(), control }))
 }
 
-fn connect(port: &str, baud: u32, id: Option<BuildId>) -> Result<Board, Failure> {
+fn machines(
+    port: &Port,
+    machine: &Machine,
+    name: &Path,
+    command: &'static str,
+    drives: bool,
+) -> Result<Connection, Refused> {
+    let (uart, id) = wanted(machine, name).map_err(|failure| Refused { busy: false, failure })?;
+    let (board, control) = connect(&port.name, uart.baud(), Some(id), command, drives)?;
+    let axes = machine.axes.iter().map(|axis| axis.name.clone()).collect();
+    // For the eye only: a float decides nothing here.
+    let steps = |axis: &Axis| axis.steps_per_unit.to_string().parse().unwrap_or(1.0);
+    let steps_per_unit = machine.axes.iter().map(steps).collect();
+    Ok(known(Connection { board, axes, steps_per_unit, port: port.name.clone(), control }))
+}
+
+/// The control knows the board now.
+fn known(mut connection: Connection) -> Connection {
+    let Connection { board, axes, steps_per_unit, port, control } = &mut connection;
+    let facts = *board.facts();
+    let known = Known { port: port.clone(), facts, axes: axes.clone(), steps_per_unit: steps_per_unit.clone() };
+    control.connected(&facts, known);
+    connection
+}
+
+fn connect(
+    port: &str,
+    baud: u32,
+    id: Option<BuildId>,
+    command: &'static str,
+    drives: bool,
+) -> Result<(Board, Control), Refused> {
+    let fine = |message: String| Refused { busy: false, failure: Failure::input(message) };
+    let busy = |message: String| Refused { busy: true, failure: Failure::input(message) };
     // From here on Ctrl-C is a stop that is waited for.
     interrupt::watch();
-    let line = SerialLine::open(port, baud).map_err(|error| Failure::input(opening(port, &error)))?;
+    let unclaimed = |error: io::Error| fine(format!("no lock for the serial port {port} can be made: {error}"));
+    let Some(claim) = control::claim(port, command, drives).map_err(unclaimed)? else {
+        let by = control::holder(port).map_or_else(|| "another carrystep command".to_owned(), |by| by.to_string());
+        let help = "wait for its end, or stop it with `carrystep stop`";
+        return Err(busy(format!("serial port {port} is in use by {by}: {help}")));
+    };
+    let line = SerialLine::open(port, baud).map_err(|error| match error {
+        OpenError::Busy { .. } => busy(opening(port, &error)),
+        _ => fine(opening(port, &error)),
+    })?;
+    let control = Control::new(claim, drives).map_err(unclaimed)?;
     // Whoever is there but is not who was meant is wrong input: nothing was moved.
-    Board::connect(line, SystemClock::default(), id.map(|id| id.0), Patience::default())
-        .map_err(|error| Failure::input(format!("{port}: {error}")))
+    let board = Board::connect(line, SystemClock::default(), id.map(|id| id.0), Patience::default())
+        .map_err(|error| fine(format!("{port}: {error}")))?;
+    Ok((board, control))
 }
 
 /// The doctor knows more of why a port may not be used.
@@ -74,23 +146,61 @@ fn opening(port: &str, error: &OpenError) -> String {
 
 /// What went wrong with a board that was driven already; its axes have these names.
 pub fn broken(error: &BoardError, axes: &[String]) -> Failure {
-    let of = |mask: u8| {
-        let is_of = |number: usize| mask.checked_shr(number as u32).is_some_and(|bits| bits & 1 == 1);
-        let names: Vec<&str> = (0..).zip(axes).filter(|&(number, _)| is_of(number)).map(|(_, name)| &**name).collect();
-        names.join(", ")
-    };
     match *error {
         HostError::Program(error) => Failure::input(error.to_string()),
         HostError::Line(ref why) => Failure::Run(format!("{error}: {why}; what moves stops by its watchdog")),
         HostError::NotIdle => Failure::Run(format!("{error}: `carrystep stop --clear` does that")),
         HostError::Fault { cause, culprits } => {
-            let cause = CAUSES.get(usize::from(cause)).unwrap_or(&"?");
-            let from = if culprits == 0 { String::new() } else { format!(", from {}", of(culprits)) };
-            Failure::Run(format!("the machine has stopped: {cause}{from}; `carrystep stop --clear` resumes"))
-        }
-        HostError::NoLimit { axes } => {
-            Failure::Run(format!("the homing move is over, and no limit was met by {}", of(axes)))
+            let remedy = CAUSES.get(usize::from(cause)).map_or("`carrystep stop --clear`", |cause| cause.remedy());
+            let name = CAUSES.get(usize::from(cause)).map_or_else(|| "?".to_owned(), ToString::to_string);
+            let from = if culprits == 0 { String::new() } else { format!(", from {}", names(axes, culprits)) };
+            Failure::Run(format!("the machine has stopped: {name}{from}; {remedy}"))
         }
         _ => Failure::Run(error.to_string()),
     }
+}
+
+/// The same in the middle of a run: where the line is lost, what the axes do now.
+pub fn lost(error: &BoardError, axes: &[String], facts: &Facts) -> Failure {
+    let why = match error {
+        HostError::Line(why) => format!("{error}: {why}"),
+        HostError::Lost { .. } | HostError::OutOfStep(_) | HostError::Foreign(_) => error.to_string(),
+        _ => return broken(error, axes),
+    };
+    let watchdog = watchdog((facts.watchdog_ticks, facts.tick_ns));
+    Failure::Run(format!("{why}; {watchdog}. Then `carrystep status` says where they are"))
+}
+
+/// What stops the axes of a board that hears nothing more, and when; ticks of its watchdog, and ns of a tick.
+fn watchdog((ticks, tick_ns): (u32, u32)) -> String {
+    if ticks == 0 {
+        return "this board has no watchdog: its axes go on until their queues are empty. Press the e-stop".to_owned();
+    }
+    let ms = (u64::from(ticks) * u64::from(tick_ns)).div_ceil(1_000_000);
+    format!(
+        "the board's watchdog ramps the axes down {ms} ms after the last request that the board has heard, or a queue \
+         that runs dry does so before"
+    )
+}
+
+/// What to tell where the command that drives the board does not `answer`, or does not `end`.
+pub fn hangs(port: &str, holder: &Holder, what: &str) -> String {
+    let pid = holder.pid;
+    let asleep = if suspended(pid) {
+        format!("; it is suspended, and `kill -CONT {pid}` wakes it: then it stops the axes as it was asked to")
+    } else {
+        String::new()
+    };
+    let now = match holder.watchdog {
+        Some(known) => format!("As the board said when that command connected: {}", watchdog(known)),
+        None => "It had not connected to the board, so it has moved nothing".to_owned(),
+    };
+    format!("{holder} holds {port} and does not {what}{asleep}. {now}. If anything still moves, press the e-stop")
+}
+
+/// Whether the system has suspended a process: by Ctrl-Z, for one.
+fn suspended(pid: u32) -> bool {
+    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
+    // Its name stands in parentheses, and may have any characters; the state is the letter behind it.
+    stat.rsplit_once(')').is_some_and(|(_, rest)| rest.trim_start().starts_with(['T', 't']))
 }

@@ -1,15 +1,17 @@
 //! A plan on a board: streamed with full queues, watched, stopped by Ctrl-C, and what came of it.
 
 use crate::connection::{self, Connection};
+use crate::control::StoppedBy;
 use crate::failure::Failure;
-use crate::interrupt;
-use carrystep_link::{Command, Ended, HostError, Program, Status, Wish, supply};
+use crate::found;
+use crate::memory::{self, Limit, Memory};
+use carrystep_link::{Command, Ended, HostError, Program, Status, supply};
 use carrystep_plan::Plan;
-use carrystep_spec::MoveFile;
+use carrystep_spec::engine::{Cause, Guard};
+use carrystep_spec::{Axis, MoveFile};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::fmt;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// How a drive ended.
@@ -18,7 +20,7 @@ use std::time::Instant;
 pub enum How {
     /// All moves were made.
     Done,
-    /// Stopped as wished: by Ctrl-C.
+    /// Stopped as wished: by Ctrl-C or `carrystep stop`.
     Stopped,
     /// The machine stopped by itself.
     Fault,
@@ -35,14 +37,29 @@ pub struct Driven {
     pub build: String,
     /// How it ended.
     pub ended: How,
-    /// Why the machine stopped, where it did.
+    /// Who has stopped it, where it was stopped as wished.
+    pub stopped_by: Option<StoppedBy>,
+    /// Why the machine stopped by itself, where it did.
     pub cause: Option<&'static str>,
+    /// The axes that this stop came from.
+    pub culprits: Vec<Culprit>,
+    /// What to do about it.
+    pub remedy: Option<&'static str>,
     /// Seconds that the plan takes.
     pub planned_s: f64,
     /// Seconds that it took, power and questions included.
     pub run_s: f64,
     /// Each axis.
     pub axes: Vec<AxisDriven>,
+}
+
+/// An axis that a stop came from.
+#[derive(Debug, Serialize)]
+pub struct Culprit {
+    /// Its name.
+    pub axis: String,
+    /// Which way it moved when it was last seen moving: 1 or -1; 0: it was not seen moving.
+    pub direction: i8,
 }
 
 /// One axis.
@@ -56,28 +73,36 @@ pub struct AxisDriven {
     pub position: i32,
     /// Steps of the plan.
     pub steps_planned: i64,
-    /// Position at the limit, where the axis was sent home.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub latched: Option<i32>,
 }
 
 impl fmt::Display for Driven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: build {}", self.port, self.build)?;
         writeln!(f, "{:<6}  {:>11}  {:>11}  {:>11}", "axis", "before", "planned", "position")?;
-        for AxisDriven { axis, before, position, steps_planned, latched } in &self.axes {
-            let limit = latched.map_or_else(String::new, |at| format!("  limit at {at}"));
-            writeln!(f, "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}{limit}")?;
+        for AxisDriven { axis, before, position, steps_planned } in &self.axes {
+            writeln!(f, "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}")?;
         }
         match (self.ended, self.passed) {
             (How::Done, true) => f.write_str("DONE\n"),
             (How::Done, false) => f.write_str("FAILED: the positions are not where the moves end\n"),
-            (How::Stopped, _) => f.write_str("STOPPED as asked for; the positions are true\n"),
-            (How::Fault, _) => writeln!(
-                f,
-                "STOPPED by the machine: {}; the positions are true, `carrystep stop --clear` resumes",
-                self.cause.unwrap_or("?")
-            ),
+            (How::Stopped, _) => {
+                let by = if self.stopped_by == Some(StoppedBy::Stop) { "`carrystep stop`" } else { "Ctrl-C" };
+                writeln!(f, "STOPPED by {by}; the positions are true")
+            }
+            (How::Fault, _) => {
+                let cause = self.cause.unwrap_or("?");
+                write!(f, "STOPPED by the machine: {cause}")?;
+                for (number, Culprit { axis, direction }) in self.culprits.iter().enumerate() {
+                    let way = match direction {
+                        0 => "",
+                        1.. => " moving forward",
+                        _ => " moving back",
+                    };
+                    write!(f, "{} {axis}{way}", if number == 0 { ", axis" } else { " and" })?;
+                }
+                f.write_str("; the positions are true\n")?;
+                self.remedy.map_or(Ok(()), |remedy| writeln!(f, "to do: {remedy}"))
+            }
         }
     }
 }
@@ -87,6 +112,16 @@ pub struct Streamed {
     commands: Vec<Command>,
     steps: Vec<i64>,
     seconds: f64,
+    near: Vec<Near>,
+    guard: Guard,
+}
+
+/// What an axis does beside a limit that it has met.
+struct Near {
+    /// Which way it goes first: 1, -1, or 0 where it stays.
+    first: i8,
+    /// How far it must move away until the switch is open, steps.
+    clear: u32,
 }
 
 impl Streamed {
@@ -97,75 +132,125 @@ impl Streamed {
         supply::check(&commands, axes as u8, plan.build.timebase.tick_ns(), baud)
             .map_err(|error| Failure::input(format!("{}: {error}", file.source.path.display())))?;
         let steps = (0..axes).map(|axis| plan.moves.iter().map(|planned| planned.axes[axis].steps).sum()).collect();
-        Ok(Self { commands, steps, seconds: plan.total_ticks() as f64 * plan.build.timebase.tick_seconds() })
-    }
-
-    /// Segments of the axis that has most, and which it is.
-    pub fn most_segments(&self) -> (usize, usize) {
-        let of = |axis: usize| {
-            let own = |command: &&Command| matches!(command, Command::Segment { axis: other, .. } if usize::from(*other) == axis);
-            self.commands.iter().filter(own).count()
+        let near = |(number, axis): (usize, &Axis)| {
+            let mut steps = plan.moves.iter().map(|planned| planned.axes[number].steps);
+            Near {
+                first: steps.find(|&steps| steps != 0).map_or(0, |steps| steps.signum() as i8),
+                clear: axis.move_off(&file.machine),
+            }
         };
-        (0..self.steps.len()).map(|axis| (of(axis), axis)).max().unwrap_or_default()
+        let near = file.machine.axes.iter().enumerate().map(near).collect();
+        let seconds = plan.total_ticks() as f64 * plan.build.timebase.tick_seconds();
+        Ok(Self { commands, steps, seconds, near, guard: file.machine.guard.clone() })
     }
 
-    /// The axes that it moves, a bit each.
-    pub fn moving(&self) -> u8 {
-        (0..).zip(&self.steps).fold(0, |mask, (axis, &steps)| mask | u8::from(steps != 0) << axis)
+    /// Refuses a program that takes an axis further toward a limit that it has met and not left.
+    fn check_limits(&self, memory: &Memory, status: &Status, axes: &[String]) -> Result<(), Failure> {
+        for (number, Near { first, .. }) in self.near.iter().enumerate() {
+            let Some(limit) = memory.limit(number).filter(|limit| limit.direction == *first) else { continue };
+            let (axis, steps) = (&axes[number], limit.to_go(status.positions[number]));
+            let (way, back) = if *first > 0 { ("forward", "back") } else { ("back", "forward") };
+            return Err(Failure::input(format!(
+                "axis {axis} has met its limit going {way}, and today's gateware may not see a switch that is closed already: \
+                 jog it {back} by {steps} steps or more, or home it; --into-limit moves it {way} all the same"
+            )));
+        }
+        Ok(())
     }
 }
 
-/// Makes the moves; with `homing`, until these axes have met their limits.
-pub fn drive(connection: Connection, port: &str, streamed: &Streamed, homing: Option<u8>) -> Result<Driven, Failure> {
-    let Connection { mut board, axes } = connection;
+/// Which way each axis was last seen moving.
+#[derive(Default)]
+struct Ways {
+    positions: Option<[i32; 8]>,
+    last: [i8; 8],
+}
+
+impl Ways {
+    fn see(&mut self, status: &Status) {
+        let before = self.positions.replace(status.positions).unwrap_or(status.positions);
+        for (last, (before, now)) in self.last.iter_mut().zip(before.iter().zip(status.positions)) {
+            match now.wrapping_sub(*before).signum() {
+                0 => {}
+                way => *last = way as i8,
+            }
+        }
+    }
+}
+
+/// Makes the moves; further toward a limit that an axis has met only where `into_limit` says so.
+pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> Result<Driven, Failure> {
+    let mut memory = Memory::recall(&connection);
+    // The port is closed before the control gives up its claim: what is bound first is dropped last.
+    let Connection { mut control, port, mut board, axes, .. } = connection;
     let begun = Instant::now();
+    let facts = *board.facts();
     let told = |error| connection::broken(&error, &axes);
     let start = *board.status();
     if start.answer.fault {
         return Err(told(HostError::Fault { cause: start.answer.cause, culprits: start.answer.culprits }));
     }
+    if !into_limit {
+        streamed.check_limits(&memory, &start, &axes)?;
+    }
     let program = Program::new(&streamed.commands, axes.len() as u8).map_err(|error| told(error.into()))?;
-    board.enable().map_err(told)?;
-    let asked = interrupt::watch();
     let line = Line::new(&axes, streamed.seconds);
-    let mut stopped = false;
+    let mut ways = Ways::default();
+    let powered = board.enable_while(|progress| control.wish(progress.status)).map_err(told)?;
     let mut watch = |progress: &carrystep_link::Progress<'_>| {
         line.show(progress.status);
-        stopped = asked.load(Ordering::Relaxed);
-        if stopped { Wish::Stop } else { Wish::GoOn }
+        ways.see(progress.status);
+        control.wish(progress.status)
     };
-    let outcome = match homing {
-        None => board.stream(program, &mut watch).map(|ended| (ended, None)),
-        Some(mask) => board.home(mask, program, &mut watch).map(|latched| (Ended::Done, Some(latched))),
+    let outcome = match powered {
+        Ended::Stopped => Ok(Ended::Stopped),
+        Ended::Done => board.stream(program, &mut watch),
     };
     drop(line);
-    let (ended, cause, latched) = match outcome {
-        Ok((Ended::Done, latched)) => (How::Done, None, latched),
-        Err(HostError::NoLimit { .. }) if stopped => (How::Stopped, None, None),
-        Ok((Ended::Stopped, _)) => (How::Stopped, None, None),
-        Err(HostError::Fault { .. }) => (How::Fault, board.status().answer.cause_name(), None),
-        Err(error) => return Err(told(error)),
+    let ended = match outcome {
+        Ok(Ended::Done) => How::Done,
+        Ok(Ended::Stopped) => How::Stopped,
+        Err(HostError::Fault { .. }) => How::Fault,
+        Err(error) => return Err(connection::lost(&error, &axes, &facts)),
     };
+    let end = *board.status();
+    ways.see(&end);
+    let cause = found::cause(&end.answer).filter(|_| ended == How::Fault);
     if ended == How::Stopped {
         // It was our own stop, and nothing else: the next run need not be told.
         board.clear().map_err(told)?;
     }
-    let end = *board.status();
+    if ended == How::Fault && memory::freezes(end.answer.cause, &streamed.guard) {
+        memory.forget_places();
+    }
+    if cause == Some(Cause::Limit) {
+        for (number, near) in streamed.near.iter().enumerate().filter(|(number, _)| end.answer.culprits >> number & 1 == 1) {
+            let direction = if ways.last[number] == 0 { near.first } else { ways.last[number] };
+            memory.set_limit(number, Some(Limit { direction, at: end.positions[number], clear: near.clear }));
+        }
+    }
+    // What cannot be written does not match the board, and counts for nothing.
+    let _ = memory.keep(&mut board);
+    let culprit = |(number, axis): (usize, &String)| Culprit { axis: axis.clone(), direction: ways.last[number] };
+    let is_culprit = |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
+    let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
     let axis = |(number, name): (usize, String)| AxisDriven {
         axis: name,
         before: start.positions[number],
         position: end.positions[number],
         steps_planned: streamed.steps[number],
-        latched: latched.filter(|_| homing.is_some_and(|mask| mask >> number & 1 == 1)).map(|at| at[number]),
     };
     let axes: Vec<AxisDriven> = axes.iter().cloned().enumerate().map(axis).collect();
     let moved = |axis: &AxisDriven| i64::from(axis.position.wrapping_sub(axis.before)) == axis.steps_planned;
     Ok(Driven {
-        passed: ended == How::Done && (homing.is_some() || axes.iter().all(moved)),
-        port: port.to_owned(),
-        build: format!("{:016x}", board.facts().build),
+        passed: ended == How::Done && axes.iter().all(moved),
+        port,
+        build: format!("{:016x}", facts.build),
         ended,
-        cause,
+        stopped_by: control.stopped_by().filter(|_| ended == How::Stopped),
+        cause: end.answer.cause_name().filter(|_| ended == How::Fault),
+        culprits,
+        remedy: cause.map(Cause::remedy),
         planned_s: streamed.seconds,
         run_s: begun.elapsed().as_secs_f64(),
         axes,

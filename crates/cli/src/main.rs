@@ -3,14 +3,17 @@
 mod arguments;
 mod commands;
 mod connection;
+mod control;
 #[cfg(unix)]
 mod desk;
 mod drive;
 mod failure;
 mod figures;
+mod found;
 mod gateware;
 mod interrupt;
 mod job;
+mod memory;
 mod output;
 mod progress;
 #[cfg(unix)]
@@ -35,9 +38,9 @@ fn main() -> ExitCode {
         Subcommand::Sweep(sweep) => commands::sweep::run(sweep),
         Subcommand::Run(run) => commands::run::run(run),
         Subcommand::Jog(jog) => commands::run::jog(jog),
-        Subcommand::Home(home) => commands::run::home(home),
+        Subcommand::Home(home) => commands::home::run(home),
         Subcommand::Status(status) => commands::status::status(status),
-        Subcommand::Stop(stop) => commands::status::stop(stop),
+        Subcommand::Stop(stop) => commands::stop::stop(stop),
         #[cfg(unix)]
         Subcommand::VirtualBoard(board) => commands::virtual_board::run(board),
         Subcommand::Build(build) => commands::build::run(build),

@@ -73,6 +73,9 @@ pub enum ProgramError {
         /// The axis.
         axis: u8,
     },
+    /// A start while the drivers have no power: the gateware would refuse it for as long as they have none.
+    #[error("the drivers have no power: write CONTROL = 1 and wait for `ready` before the first START")]
+    NoPower,
 }
 
 /// Segments and starts in order, as a [`Source`]: each axis takes its own.

@@ -102,6 +102,12 @@ impl<S: Source> Feeder<S> {
         self.axes.get(usize::from(axis)).is_some_and(|axis| axis.ahead.is_some())
     }
 
+    /// Whether the next start has the first segments of all its axes, so that only the gateware keeps it back.
+    pub fn start_is_due(&self) -> bool {
+        let fed = |mask: u8| (0..).zip(&self.axes).all(|(number, axis)| mask >> number & 1 == 0 || axis.waiting > 0);
+        self.start.is_some_and(fed)
+    }
+
     /// Whether a start is still to be sent.
     pub const fn wants_start(&self) -> bool {
         self.start.is_some()

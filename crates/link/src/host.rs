@@ -17,8 +17,13 @@ use crate::frame::{Answer, Body, of_axis};
 use crate::line::Line;
 use crate::registers as map;
 use crate::registers::{LONGEST_REQUEST, MOST_AXES};
-use crate::session::Session;
+use crate::session::{Session, SessionError, WriteError};
 use crate::slip;
+
+/// The e-stop's place in [`map::CAUSES`].
+const ESTOP: u8 = 0;
+/// For so long after its release an e-stop may bounce, ms.
+const RELEASED_MS: u32 = 50;
 
 /// What a machine does, as of the last answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -145,8 +150,12 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     pub fn write(&mut self, address: u8, word: u32) -> Result<(), HostError<L::Error>> {
         self.listen();
         let body = Body::Write { address, word };
-        while self.session.write(body).is_err() {
-            self.pump(|_| ())?;
+        loop {
+            match self.session.write(body) {
+                Ok(()) => break,
+                Err(WriteError::Full(_)) => self.pump(|_| ())?,
+                Err(WriteError::NoPower(error)) => return Err(error.into()),
+            }
         }
         while self.session.writing() {
             self.pump(|_| ())?;
@@ -159,10 +168,30 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// # Errors
     /// [`HostError::TooLong`] where that does not come; others.
     pub fn enable(&mut self) -> Result<(), HostError<L::Error>> {
+        self.enable_while(|_| Wish::GoOn).map(drop)
+    }
+
+    /// The same; `watch` is called after each exchange with the line, and may have it stopped.
+    ///
+    /// # Errors
+    /// As [`Self::enable`].
+    pub fn enable_while(&mut self, mut watch: impl FnMut(&Progress<'_>) -> Wish) -> Result<Ended, HostError<L::Error>> {
         self.write(map::CONTROL, map::CONTROL_ENABLE)?;
-        self.wait("the drivers' power", |answer| answer.ready)?;
+        let mut asked = Wish::GoOn;
+        self.wait_while(
+            "the drivers' power",
+            |answer| answer.ready,
+            |status| {
+                asked = watch(&Progress { status, handed_over: false });
+                asked
+            },
+        )?;
+        if asked == Wish::Stop {
+            self.stop()?;
+            return Ok(Ended::Stopped);
+        }
         self.powered = true;
-        Ok(())
+        Ok(Ended::Done)
     }
 
     /// Takes the drivers' power away, as soon as all axes are done.
@@ -179,16 +208,31 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// # Errors
     /// [`HostError`].
     pub fn stop(&mut self) -> Result<Status, HostError<L::Error>> {
+        self.stop_while(|_| ())
+    }
+
+    /// The same; `watch` sees the machine ramp down.
+    ///
+    /// # Errors
+    /// [`HostError`].
+    pub fn stop_while(&mut self, mut watch: impl FnMut(&Status)) -> Result<Status, HostError<L::Error>> {
         self.session.withdraw();
         self.write(map::CONTROL, self.power() | map::CONTROL_STOP)?;
-        self.wait("the stop", |answer| answer.fault && answer.halted)?;
+        self.wait_while(
+            "the stop",
+            |answer| answer.fault && answer.halted,
+            |status| {
+                watch(status);
+                Wish::GoOn
+            },
+        )?;
         self.look()
     }
 
     /// Resumes after a stop of any cause; queues are empty then. Does nothing where there was none.
     ///
     /// # Errors
-    /// [`HostError::TooLong`] where the cause is still there, an e-stop still pressed for one.
+    /// [`HostError::StillPressed`], within 50 ms; [`HostError::TooLong`] where the fault stays for another reason.
     pub fn clear(&mut self) -> Result<(), HostError<L::Error>> {
         let begin = self.clock.milliseconds();
         self.look()?;
@@ -196,9 +240,17 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             self.write(map::CONTROL, self.power())?;
             self.wait("the stop", |answer| answer.halted)?;
         }
+        let first = self.clock.milliseconds();
         while self.status.answer.fault {
             self.write(map::CLEAR, 0)?;
             self.look()?;
+            let Answer { fault, cause, .. } = self.status.answer;
+            // A CLEAR forgets every cause that is over: an e-stop that is there again at once is pressed. A released
+            // one may bounce for some milliseconds.
+            let tried = self.clock.milliseconds().wrapping_sub(first);
+            if fault && cause == ESTOP && tried > RELEASED_MS {
+                return Err(HostError::StillPressed);
+            }
             if self.clock.milliseconds().wrapping_sub(begin) > self.patience.change {
                 let cause = self.status.answer.cause_name();
                 return Err(HostError::TooLong { what: "the clear", cause, ms: self.patience.change });
@@ -226,9 +278,22 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
 
     /// Looks at the machine until it is as wished.
     fn wait(&mut self, what: &'static str, wish: impl Fn(&Answer) -> bool) -> Result<(), HostError<L::Error>> {
+        self.wait_while(what, wish, |_| Wish::GoOn)
+    }
+
+    /// The same, or until `watch`, which is called after each exchange, does not want to wait any longer.
+    fn wait_while(
+        &mut self,
+        what: &'static str,
+        wish: impl Fn(&Answer) -> bool,
+        mut watch: impl FnMut(&Status) -> Wish,
+    ) -> Result<(), HostError<L::Error>> {
         let begin = self.clock.milliseconds();
         while !wish(&self.status.answer) {
             self.register(of_axis(map::POSITION, 0))?;
+            if watch(&self.status) == Wish::Stop {
+                return Ok(());
+            }
             if self.clock.milliseconds().wrapping_sub(begin) > self.patience.change {
                 let cause = self.status.answer.cause_name();
                 return Err(HostError::TooLong { what, cause, ms: self.patience.change });
@@ -263,7 +328,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         now = self.clock.milliseconds();
         for &byte in came.iter().take(done.received) {
             self.noise += u32::from(byte != map::END);
-            let Some(answer) = self.session.receive(byte, now)? else { continue };
+            let answer = self.session.receive(byte, now).map_err(|error| match error {
+                SessionError::OutOfStep(error) => HostError::OutOfStep(error),
+                SessionError::Foreign(error) => HostError::Foreign(error),
+            })?;
+            let Some(answer) = answer else { continue };
             (self.heard, self.noise) = (now, 0);
             if self.powered && !answer.ready && !answer.fault {
                 return Err(HostError::Restarted);
@@ -279,6 +348,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let silence = now.wrapping_sub(self.heard);
         match (self.session.waiting() && silence > self.patience.silence, self.noise) {
             (false, _) => Ok(()),
+            (true, bytes) if self.session.axes() > 0 => Err(HostError::Lost { ms: silence, bytes }),
             (true, 0) => Err(HostError::Silence { ms: silence }),
             (true, bytes) => Err(HostError::Noise { bytes }),
         }

@@ -39,8 +39,8 @@ pub use frame::{Answer, Body, FrameError, Request};
 pub use host::{AxisHoming, Homed, Homing, HomingFault, Stage, Wiring};
 pub use host::{Clock, Ended, Host, HostError, Patience, Progress, Status, Wish};
 pub use line::{Exchanged, Line};
-pub use session::{Session, Timing};
-pub use window::OutOfStep;
+pub use session::{Session, SessionError, Timing, WriteError};
+pub use window::{Foreign, OutOfStep};
 
 /// The files of the C library: name and text. They go together into any project.
 pub const C_LIBRARY: [(&str, &str); 7] = [

@@ -4,9 +4,32 @@ use crate::command::ProgramError;
 use crate::feeder::{Feeder, Source};
 use crate::frame::{Answer, Body, Request, axis_of, of_axis};
 use crate::reads::Reads;
-use crate::registers::{ANSWER_BYTES, MOST_AXES, POSITION, START};
+use crate::registers::{ANSWER_BYTES, CONTROL, CONTROL_ENABLE, MOST_AXES, POSITION, START};
 use crate::slip::{Decoder, Received};
-use crate::window::{Full, OutOfStep, Window};
+use crate::window::{Foreign, Full, OutOfStep, Window};
+use thiserror::Error;
+
+/// Why a write is not taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum WriteError {
+    /// There is no room, or nothing was adopted yet.
+    #[error(transparent)]
+    Full(#[from] Full),
+    /// A START, and the drivers have no power.
+    #[error(transparent)]
+    NoPower(ProgramError),
+}
+
+/// Why this host cannot go on with this gateware.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum SessionError {
+    /// It counts writes that were never sent.
+    #[error(transparent)]
+    OutOfStep(#[from] OutOfStep),
+    /// It answers someone else.
+    #[error(transparent)]
+    Foreign(#[from] Foreign),
+}
 
 /// How long to wait, in milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +62,9 @@ pub struct Session<const N: usize> {
     /// A start is on its way, or waits in the gateware.
     starting: bool,
     armed: bool,
+    /// The last answer came from drivers without power; this host has asked for power.
+    unpowered: bool,
+    powering: bool,
     broken: u32,
 }
 
@@ -55,6 +81,8 @@ impl<const N: usize> Session<N> {
             room: [0; MOST_AXES as usize],
             starting: false,
             armed: false,
+            unpowered: false,
+            powering: false,
             broken: 0,
         }
     }
@@ -66,6 +94,7 @@ impl<const N: usize> Session<N> {
         self.under_way = [0; MOST_AXES as usize];
         self.room = [0; MOST_AXES as usize];
         self.starting = false;
+        self.powering = false;
     }
 
     /// Axes of the build.
@@ -99,10 +128,14 @@ impl<const N: usize> Session<N> {
     /// Writes, in order, once; not before [`Self::adopt`].
     ///
     /// # Errors
-    /// [`Full`].
-    pub fn write(&mut self, body: Body) -> Result<(), Full> {
+    /// [`WriteError::Full`]; [`WriteError::NoPower`] for a START that would be refused for ever, and everything behind
+    /// it, because the last answer says that the drivers have no power and this host has not asked for it.
+    pub fn write(&mut self, body: Body) -> Result<(), WriteError> {
         if self.axes == 0 {
-            return Err(Full);
+            return Err(Full.into());
+        }
+        if matches!(body, Body::Write { address: START, .. }) && !self.may_start() {
+            return Err(WriteError::NoPower(ProgramError::NoPower));
         }
         self.window.push(body)?;
         match body {
@@ -112,9 +145,15 @@ impl<const N: usize> Session<N> {
                 self.room.get_mut(axis).into_iter().for_each(|room| *room = room.saturating_sub(1));
             }
             Body::Write { address: START, .. } => self.starting = true,
+            Body::Write { address: CONTROL, word } => self.powering = word & CONTROL_ENABLE != 0,
             Body::Write { .. } | Body::Read { .. } => {}
         }
         Ok(())
+    }
+
+    /// Whether a START is taken, at once or after a while.
+    const fn may_start(&self) -> bool {
+        self.powering || !self.unpowered
     }
 
     /// Takes back the writes that were never sent, so that the next one goes out at once.
@@ -126,10 +165,16 @@ impl<const N: usize> Session<N> {
     /// Hands over as much of a program as there is room for; asks axes that have none. Whether it is all handed over.
     ///
     /// # Errors
-    /// [`ProgramError`].
+    /// [`ProgramError`]; after [`ProgramError::NoPower`] the program may go on once CONTROL = 1 was written.
     pub fn feed<S: Source>(&mut self, feeder: &mut Feeder<S>) -> Result<bool, ProgramError> {
         while self.window.room() > 0 {
-            let Some(body) = feeder.next(self.axes, &self.room, !self.starting && !self.armed)? else { break };
+            let may_start = !self.starting && !self.armed && self.may_start();
+            let Some(body) = feeder.next(self.axes, &self.room, may_start)? else {
+                if !self.may_start() && feeder.start_is_due() {
+                    return Err(ProgramError::NoPower);
+                }
+                break;
+            };
             if self.write(body).is_err() {
                 break;
             }
@@ -156,8 +201,8 @@ impl<const N: usize> Session<N> {
     /// A byte from the line, at this time, ms; the answer that it completes, where it answers this session.
     ///
     /// # Errors
-    /// [`OutOfStep`].
-    pub fn receive(&mut self, byte: u8, now: u32) -> Result<Option<Answer>, OutOfStep> {
+    /// [`SessionError`].
+    pub fn receive(&mut self, byte: u8, now: u32) -> Result<Option<Answer>, SessionError> {
         let answer = match self.decoder.push(byte) {
             Received::Nothing => return Ok(None),
             Received::Frame(frame) => Answer::from_bytes(frame).ok(),
@@ -170,11 +215,13 @@ impl<const N: usize> Session<N> {
         if self.axes > 0 {
             self.count(&answer, now)?;
         }
+        self.unpowered = !answer.ready && !answer.fault;
         self.reads.answer(&answer);
         Ok(Some(answer))
     }
 
-    fn count(&mut self, answer: &Answer, now: u32) -> Result<(), OutOfStep> {
+    fn count(&mut self, answer: &Answer, now: u32) -> Result<(), SessionError> {
+        self.window.own(answer)?;
         let (under_way, starting) = (&mut self.under_way, &mut self.starting);
         self.window.answer(answer, now, |body| settle(body, under_way, starting))?;
         self.armed = answer.armed;

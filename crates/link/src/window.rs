@@ -1,7 +1,7 @@
 //! Writes on their way: in order, each executed once, sent again from the first that is missing.
 
 use crate::frame::{Answer, Body, Request};
-use crate::registers::WINDOW;
+use crate::registers::{WINDOW, WRITE};
 use thiserror::Error;
 
 /// The gateware's count of writes is none that this host can have caused: it was restarted, or someone else writes.
@@ -16,6 +16,18 @@ pub struct OutOfStep {
     pub first: u8,
     /// So many were sent from there on.
     pub sent: u8,
+}
+
+/// An answer to a write that this host has not sent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error(
+    "an answer came to write {sequence} at {address:#04x}, which this host has not sent: another host writes to this board at the same time; end one of the two, then stop and clear"
+)]
+pub struct Foreign {
+    /// The number in the answer.
+    pub sequence: u8,
+    /// The address in the answer.
+    pub address: u8,
 }
 
 /// There is no more room: first some answers must come.
@@ -110,6 +122,21 @@ impl<const N: usize> Window<N> {
         self.sent += 1;
         self.reached = self.reached.max(self.sent);
         Some(request)
+    }
+
+    /// Whether this answers a write that was sent from here, as far as that can be known: of writes that were executed
+    /// already only the number is left, so a late answer to one of them is believed.
+    ///
+    /// # Errors
+    /// [`Foreign`]: its number was never sent from here, or with another address.
+    pub fn own(&self, answer: &Answer) -> Result<(), Foreign> {
+        let behind = answer.sequence.wrapping_sub(self.first);
+        if answer.address & WRITE == 0 || behind > WINDOW {
+            return Ok(());
+        }
+        let slot = self.slots.get((self.at + usize::from(behind)) % N);
+        let sent = usize::from(behind) < self.reached && slot.is_some_and(|body| body.address() == answer.address);
+        if sent { Ok(()) } else { Err(Foreign { sequence: answer.sequence, address: answer.address }) }
     }
 
     /// Takes what an answer says of the writes before `next`; `executed` sees each, once, in order.

@@ -9,13 +9,14 @@
 //! ```
 
 use crate::build::{MAX_CLOCKS, PinTiming, Timebase};
-use std::fmt;
 
 mod build;
+mod cause;
 mod error;
 mod figures;
 
 pub use build::{EngineBuild, Guard, Limits};
+pub use cause::{CAUSES, Cause};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
 
@@ -129,54 +130,6 @@ pub struct EngineInputs {
     /// The limit pins at the high ends, as they are wired.
     pub limit_max: u8,
 }
-
-/// Why the engine has stopped; the number is the port's.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Cause {
-    /// The e-stop was pressed.
-    EStop = 0,
-    /// A second step was owed (promise 6).
-    Overrun = 1,
-    /// The host broke the segment protocol.
-    Protocol = 2,
-    /// The host was silent for too long.
-    Watchdog = 3,
-    /// V would have left (-2^63, 2^63).
-    Overspeed = 4,
-    /// A limit switch was reached.
-    Limit = 5,
-    /// A queue was dry after a segment not marked LAST.
-    Underrun = 6,
-    /// The host asked for it.
-    Stop = 7,
-}
-
-impl fmt::Display for Cause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::EStop => "e-stop",
-            Self::Overrun => "overrun",
-            Self::Protocol => "segment protocol broken",
-            Self::Watchdog => "watchdog",
-            Self::Overspeed => "overspeed",
-            Self::Limit => "limit",
-            Self::Underrun => "underrun",
-            Self::Stop => "stop",
-        })
-    }
-}
-
-/// All causes, in the order of their numbers.
-pub const CAUSES: [Cause; 8] = [
-    Cause::EStop,
-    Cause::Overrun,
-    Cause::Protocol,
-    Cause::Watchdog,
-    Cause::Overspeed,
-    Cause::Limit,
-    Cause::Underrun,
-    Cause::Stop,
-];
 
 /// What the engine shows in one clock cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -4,7 +4,7 @@ use crate::command::ProgramError;
 use super::homing::HomingFault;
 use crate::facts::Refusal;
 use crate::registers::CAUSES;
-use crate::window::OutOfStep;
+use crate::window::{Foreign, OutOfStep};
 use core::fmt;
 use thiserror::Error;
 
@@ -28,12 +28,26 @@ pub enum HostError<E> {
         /// So many.
         bytes: u32,
     },
+    /// The board has answered before, and does so no more.
+    #[error(
+        "the line to the board is dead: it has answered until now, and nothing that could be understood has come for {ms} ms ({}); look at its cable and power",
+        Bytes(*bytes)
+    )]
+    Lost {
+        /// For so long.
+        ms: u32,
+        /// Bytes that came meanwhile, of no frame.
+        bytes: u32,
+    },
     /// Someone answers whom this driver was not made for.
     #[error(transparent)]
     Refused(#[from] Refusal),
     /// The gateware lost count.
     #[error(transparent)]
     OutOfStep(#[from] OutOfStep),
+    /// Another host is answered on this line.
+    #[error(transparent)]
+    Foreign(#[from] Foreign),
     /// The gateware has forgotten that the drivers are powered.
     #[error("the gateware was restarted: power, position and queue are lost; connect again, and home")]
     Restarted,
@@ -51,6 +65,9 @@ pub enum HostError<E> {
         /// The axes that it came from, a bit each.
         culprits: u8,
     },
+    /// A clear while the e-stop is pressed.
+    #[error("the e-stop is still pressed, so nothing can be cleared: release it")]
+    StillPressed,
     /// What was waited for did not come.
     #[error("{what} has not come in {ms} ms{}{}", if cause.is_some() { "; the machine stands because of: " } else { "" }, cause.unwrap_or(""))]
     TooLong {
@@ -69,6 +86,18 @@ pub enum HostError<E> {
         /// What was wrong.
         why: HomingFault,
     },
+}
+
+/// How many bytes came, in words.
+struct Bytes(u32);
+
+impl fmt::Display for Bytes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            0 => f.write_str("not a byte"),
+            count => write!(f, "{count} bytes, of no frame"),
+        }
+    }
 }
 
 /// Axes by their numbers, a bit each, behind a word; nothing where there are none.

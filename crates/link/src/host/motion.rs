@@ -55,15 +55,19 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// Streams a program to a machine at rest and waits for its end. `watch` is called after each exchange with the line.
     ///
     /// # Errors
-    /// [`HostError::Fault`] where the machine stops by itself: all axes rest by then, and the positions are true. Others.
+    /// [`HostError::Fault`] where the machine stops by itself: all axes rest by then, and the positions are true.
+    /// [`ProgramError::NoPower`] before [`Self::enable`]: nothing was sent. Others.
     pub fn stream(
         &mut self,
         source: impl Source,
         mut watch: impl FnMut(&Progress<'_>) -> Wish,
     ) -> Result<Ended, HostError<L::Error>> {
-        let Answer { idle, fault, .. } = self.look()?.answer;
+        let Answer { idle, fault, ready, .. } = self.look()?.answer;
         if !idle && !fault {
             return Err(HostError::NotIdle);
+        }
+        if !ready && !fault {
+            return Err(ProgramError::NoPower.into());
         }
         let mut feeder = Feeder::new(source);
         let mut looked = self.clock.milliseconds();
@@ -92,7 +96,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 return Ok(Ended::Done);
             }
             if watch(&Progress { status: &self.status, handed_over }) == Wish::Stop {
-                self.stop()?;
+                self.stop_while(|status| {
+                    // Whoever watches sees the ramps too; more than a stop there is not to be wished.
+                    let _ = watch(&Progress { status, handed_over });
+                })?;
                 return Ok(Ended::Stopped);
             }
             let now = self.clock.milliseconds();

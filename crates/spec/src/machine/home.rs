@@ -2,7 +2,7 @@
 //!
 //! Speeds and accelerations are rounded down to 2^-64 step per tick (and tick^2), distances to the nearest step.
 
-use super::{Axis, stop};
+use super::{Axis, Machine, stop};
 use crate::build::Timebase;
 use crate::decimal;
 use crate::engine::{Guard, Limits};
@@ -12,6 +12,10 @@ use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use toml::Spanned;
+
+mod order;
+
+pub(super) use order::RawOrder;
 
 /// Most steps of a distance or of a machine coordinate: what a position register counts.
 const MOST_STEPS: i64 = i32::MAX as i64;
@@ -59,6 +63,23 @@ pub fn overrun(speed: u64, stop: u64, guard: &Guard) -> u64 {
     steps_up(ramp.saturating_add(accepted(speed, guard)))
 }
 
+impl Axis {
+    /// How far this axis has to move away from a switch, in steps, until that is open: `move_off` where the axis homes, else
+    /// what a limit stop at full speed runs over the switch.
+    pub fn move_off(&self, machine: &Machine) -> u32 {
+        let full = || overrun(per_tick(&self.speed_limit, &machine.timebase), self.stop, &machine.guard);
+        self.home.map_or_else(|| u32::try_from(full()).unwrap_or(u32::MAX), |home| home.move_off)
+    }
+}
+
+/// Steps/s in 2^-64 step per tick, rounded down.
+fn per_tick(speed: &BigDecimal, timebase: &Timebase) -> u64 {
+    let per_tick = speed * BigDecimal::from(timebase.tick_ns()) * BigDecimal::new(1.into(), 9);
+    let units = (per_tick * BigDecimal::from(1_u128 << 64)).with_scale_round(0, RoundingMode::Down);
+    // Speeds are under half a step per tick.
+    units.to_u64().unwrap_or(u64::MAX >> 1)
+}
+
 /// How far an axis of this speed goes while the guard accepts a level, 2^-64 step.
 fn accepted(speed: u64, guard: &Guard) -> u128 {
     // The ramp begins a tick later, its first tick finds the direction, and a step is on the pin two ticks later.
@@ -90,9 +111,6 @@ pub(super) struct RawPlace {
     pub(super) home: Option<Spanned<RawHome>>,
 }
 
-/// Names of axes, in the order in which they home.
-pub(super) type RawOrder = Spanned<Vec<Vec<Spanned<String>>>>;
-
 /// Gives the axes their travel and their homing, and returns the order in which they home, by their numbers.
 pub(super) fn check(
     source: &Source,
@@ -115,8 +133,8 @@ pub(super) fn check(
         axis.home = Some(checked.home(&home.into_inner())?);
     }
     match order {
-        Some(order) => order_of(source, axes, order),
-        None => Ok(usual_order(axes)),
+        Some(order) => order::of(source, axes, order),
+        None => Ok(order::usual(axes)),
     }
 }
 
@@ -156,7 +174,7 @@ struct Checked<'a> {
 impl Checked<'_> {
     fn home(&self, raw: &RawHome) -> Result<Home, InputError> {
         let accel = stop::at_the_limit(&self.axis.accel_limit, self.timebase);
-        let start = self.per_tick(&self.axis.start_speed);
+        let start = per_tick(&self.axis.start_speed, self.timebase);
         let seek = self.speed(&raw.seek_speed, "seek_speed", &self.axis.speed_limit, "speed_limit")?;
         let limit = positive(self.source, &raw.seek_speed, "seek_speed")? * &self.axis.steps_per_unit;
         let slow = self.speed(&raw.slow_speed, "slow_speed", &limit, "seek_speed")?;
@@ -207,14 +225,6 @@ impl Checked<'_> {
         format!("at least {:.6} units ({steps} steps) are needed", self.units(steps))
     }
 
-    /// Steps/s in 2^-64 step per tick, rounded down.
-    fn per_tick(&self, speed: &BigDecimal) -> u64 {
-        let per_tick = speed * BigDecimal::from(self.timebase.tick_ns()) * BigDecimal::new(1.into(), 9);
-        let units = (per_tick * BigDecimal::from(1_u128 << 64)).with_scale_round(0, RoundingMode::Down);
-        // Speeds are under half a step per tick.
-        units.to_u64().unwrap_or(u64::MAX >> 1)
-    }
-
     /// A speed of the file, at most another one in steps/s.
     fn speed(&self, value: &Spanned<f64>, key: &str, most: &BigDecimal, of: &str) -> Result<u64, InputError> {
         let steps = positive(self.source, value, key)? * &self.axis.steps_per_unit;
@@ -222,7 +232,7 @@ impl Checked<'_> {
             let units = decimal::to_f64(most) / decimal::to_f64(&self.axis.steps_per_unit);
             return Err(self.at(value, format!("{key} is over {of}")).help(format!("at most {units} units/s")));
         }
-        let speed = self.per_tick(&steps);
+        let speed = per_tick(&steps, self.timebase);
         if speed == 0 {
             return Err(self.at(value, format!("{key} is under 2^-64 step per tick")));
         }
@@ -250,7 +260,7 @@ impl Checked<'_> {
     /// What a limit stop at full speed runs over its switch, and a hundredth of the travel.
     fn usual_move_off(&self) -> Result<u32, InputError> {
         let Some([low, high]) = self.axis.travel else { return Err(self.missing("move_off")) };
-        let full = overrun(self.per_tick(&self.axis.speed_limit), self.axis.stop, self.guard);
+        let full = overrun(per_tick(&self.axis.speed_limit, self.timebase), self.axis.stop, self.guard);
         let steps = full.saturating_add((high - low).unsigned_abs().div_ceil(100));
         match u32::try_from(steps) {
             Ok(steps) if i64::from(steps) <= (high - low) / 2 => Ok(steps),
@@ -322,44 +332,4 @@ impl Checked<'_> {
         }
         Err(self.at(&raw.pull_off, "pull_off ends outside of travel"))
     }
-}
-
-/// The order of a file: every axis that homes, once.
-fn order_of(source: &Source, axes: &[Axis], order: RawOrder) -> Result<Vec<Vec<usize>>, InputError> {
-    let span = order.span();
-    let mut seen = vec![false; axes.len()];
-    let mut groups = Vec::new();
-    for names in order.into_inner() {
-        let mut group = Vec::new();
-        for name in names {
-            let at = |message: String| InputError::at(source, name.span(), message);
-            let Some(axis) = axes.iter().position(|axis| axis.name == *name.as_ref()) else {
-                let known: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
-                let message = format!("home_order names '{}', which is no axis", name.as_ref());
-                return Err(at(message).help(format!("the axes are {}", known.join(", "))));
-            };
-            if axes[axis].home.is_none() {
-                return Err(at(format!("home_order names axis '{}', which has no home table", name.as_ref())));
-            }
-            if std::mem::replace(&mut seen[axis], true) {
-                return Err(at(format!("home_order names axis '{}' twice", name.as_ref())));
-            }
-            group.push(axis);
-        }
-        if !group.is_empty() {
-            groups.push(group);
-        }
-    }
-    if let Some((axis, _)) = axes.iter().zip(seen).find(|(axis, seen)| axis.home.is_some() && !seen) {
-        let message = format!("home_order leaves out axis '{}', which has a home table", axis.name);
-        return Err(InputError::at(source, span, message).help("name every axis that homes"));
-    }
-    Ok(groups)
-}
-
-/// As grbl has it: z first, for the tool must be up before the table moves; then all others together.
-fn usual_order(axes: &[Axis]) -> Vec<Vec<usize>> {
-    let homes = (0..axes.len()).filter(|&axis| axes[axis].home.is_some());
-    let (first, rest): (Vec<usize>, Vec<usize>) = homes.partition(|&axis| axes[axis].name.eq_ignore_ascii_case("z"));
-    [first, rest].into_iter().filter(|group| !group.is_empty()).collect()
 }

@@ -1,0 +1,70 @@
+//! The other end of the socket: a command that wants something of the one that drives the board.
+
+use super::{Holder, Request, claim, folder};
+use std::io::{self, BufRead as _, BufReader, Write as _};
+use std::os::unix::net::UnixStream;
+use std::time::{Duration, Instant};
+
+/// A command that drives a board, called.
+pub struct Caller {
+    stream: BufReader<UnixStream>,
+    /// Who that is.
+    pub holder: Holder,
+}
+
+/// What became of a request.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Reply {
+    /// This was answered.
+    Line(String),
+    /// The command has ended, and with it its hold on the port.
+    Ended,
+    /// Nothing was answered in that time. The request stays: should the command wake up, it reads it.
+    Silent,
+}
+
+/// Calls the command that drives the board at this port; nothing where none of this user does.
+pub fn call(port: &str) -> Option<Caller> {
+    let holder = claim::holder(port).filter(|holder| holder.listens)?;
+    let name = claim::device(port)?;
+    let sockets = folder::all().into_iter().map(|folder| folder.join(&name).with_extension("socket"));
+    let stream = sockets.into_iter().find_map(|path| UnixStream::connect(path).ok())?;
+    Some(Caller { stream: BufReader::new(stream), holder })
+}
+
+impl Caller {
+    /// Asks for something, and waits so long for the answer.
+    pub fn ask(&mut self, request: Request, wait: Duration) -> Reply {
+        match writeln!(self.stream.get_mut(), "{}", request.word()) {
+            Ok(()) => self.line(wait),
+            Err(_) => Reply::Ended,
+        }
+    }
+
+    /// Waits so long for the end of the command; whether it has come.
+    pub fn ends(&mut self, wait: Duration) -> bool {
+        let begin = Instant::now();
+        loop {
+            let left = wait.saturating_sub(begin.elapsed());
+            match self.line(left) {
+                Reply::Ended => return true,
+                Reply::Silent => return false,
+                Reply::Line(_) => {}
+            }
+        }
+    }
+
+    fn line(&mut self, wait: Duration) -> Reply {
+        // A time-out of zero would be none.
+        let wait = wait.max(Duration::from_millis(1));
+        let mut line = String::new();
+        if self.stream.get_ref().set_read_timeout(Some(wait)).is_err() {
+            return Reply::Ended;
+        }
+        match self.stream.read_line(&mut line) {
+            Ok(1..) => Reply::Line(line.trim_end().to_owned()),
+            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => Reply::Silent,
+            Ok(0) | Err(_) => Reply::Ended,
+        }
+    }
+}
