@@ -1,6 +1,7 @@
 //! What goes wrong between a host and a gateware, by its cause.
 
 use crate::command::ProgramError;
+use super::homing::HomingFault;
 use crate::facts::Refusal;
 use crate::registers::CAUSES;
 use crate::window::{Foreign, OutOfStep};
@@ -77,11 +78,13 @@ pub enum HostError<E> {
         /// For so long.
         ms: u32,
     },
-    /// A homing move ended before its limits came.
-    #[error("the homing move is over, and no limit was met{}", Axes(" by", *axes))]
-    NoLimit {
+    /// Homing ended before the axes were at their places.
+    #[error("homing{}: {why}", Axes(" of", *axes))]
+    Homing {
         /// The axes, a bit each.
         axes: u8,
+        /// What was wrong.
+        why: HomingFault,
     },
 }
 
