@@ -105,7 +105,7 @@ impl<F: Real> Corridor<'_, F> {
     /// Steps from `done` to where the profile is `t` ticks into the piece: by way of the slower end of the piece,
     /// so that near rest no two long distances are subtracted.
     pub fn ahead(&self, done: i128, t: f64) -> f64 {
-        let Piece { first, ticks, start, units } = self.piece;
+        let Piece { first, ticks, start, units, .. } = self.piece;
         let now = self.seconds(t);
         let travelled = |from: F, to: F| wide(self.profile.mean_speed(from, to) * (to - from));
         if self.rises {

@@ -36,8 +36,12 @@ pub(crate) fn float<F: Real>(n: u64) -> F {
     F::from(n).unwrap_or_else(F::nan)
 }
 
-/// The common time of all axes and their profiles.
-pub(crate) fn demand<F: Real>(file: &MoveFile, index: usize) -> Result<(Clock<F>, Vec<SharedProfile<F>>), PlanError> {
+/// The common time of all axes and their profiles, in a given time or, without one, as fast as the limits allow.
+pub(crate) fn demand<F: Real>(
+    file: &MoveFile,
+    index: usize,
+    time: Option<&BigDecimal>,
+) -> Result<(Clock<F>, Vec<SharedProfile<F>>), PlanError> {
     let timebase = file.machine.timebase;
     let moved = &file.moves[index];
     let own: Vec<(F, Limits<F>)> = (file.machine.axes.iter().zip(&moved.steps))
@@ -58,7 +62,7 @@ pub(crate) fn demand<F: Real>(file: &MoveFile, index: usize) -> Result<(Clock<F>
         let time = least_time(moved.profile, *steps, limits).map_err(|refusal| refused(axis, refusal, None))?;
         least = least.max(time);
     }
-    let clock = match &moved.time {
+    let clock = match time {
         Some(time) => given(time, &timebase, file.machine.phase, index)?,
         None => whole(least, &timebase, index)?,
     };

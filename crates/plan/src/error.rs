@@ -47,6 +47,20 @@ pub enum PlanError {
         /// Tick, ns.
         tick_ns: u64,
     },
+    /// So slow that segments of 64 bits cannot do it, or the gateware cannot place its edges.
+    #[error("move {}, axis {axis}: {}", index + 1, too_slow(*broken, *least_speed, *longest))]
+    TooSlow {
+        /// Which move.
+        index: usize,
+        /// Which axis.
+        axis: String,
+        /// [`Broken::Slow`] or [`Broken::Segments`].
+        broken: Broken,
+        /// The least speed limit with which slow edges can be placed, units/s.
+        least_speed: f64,
+        /// The longest time that works, whole ticks, seconds; `None`: not even the least time does.
+        longest: Option<f64>,
+    },
     /// The integers do not keep a promise: the plan is not given out.
     #[error("move {}, axis {axis}: the plan breaks its own rule: {broken}; please report this move", index + 1)]
     Broken {
@@ -83,6 +97,12 @@ pub enum Broken {
     /// Not the commanded distance, or not the ticks of the move.
     #[error("it does not land exactly")]
     Landing,
+    /// The speed limit is so low that edges of slow pulses cannot be placed.
+    #[error("pulses come too slowly")]
+    Slow,
+    /// Over 2^17 segments.
+    #[error("more than 131072 segments are needed")]
+    Segments,
     /// A number that should fit does not.
     #[error("a number is out of range")]
     Range,
@@ -96,6 +116,7 @@ impl PlanError {
             Self::Refused { index, .. }
             | Self::NotWholeTicks { index, .. }
             | Self::TooLong { index, .. }
+            | Self::TooSlow { index, .. }
             | Self::Broken { index, .. } => Some(*index),
         }
     }
@@ -110,5 +131,21 @@ fn refused(refusal: &Refusal, least_time: Option<f64>) -> String {
             format!("needs {wanted:.1} {unit}, over {limit} {available}; at least {least} s would do")
         }
         Some(least) => format!("no {unit} would do, {limit} is {available}; at least {least} s would do"),
+    }
+}
+
+fn too_slow(broken: Broken, least_speed: f64, longest: Option<f64>) -> String {
+    match (broken, longest) {
+        (Broken::Segments, Some(longest)) => {
+            format!("so slow that it needs over 131072 segments; at most {longest} s would do")
+        }
+        (Broken::Segments, None) => {
+            "so slow that it needs over 131072 segments; raise the limits that make it slow".to_owned()
+        }
+        (_, Some(longest)) => format!("too slow to place its edges; at most {longest} s would do"),
+        (_, None) => format!(
+            "too slow to place its edges: that needs a speed_limit of {least_speed:.3} units/s, or one just over the \
+             speed of the move"
+        ),
     }
 }

@@ -16,11 +16,14 @@ mod fit;
 mod landing;
 mod limits;
 mod line;
+mod longest;
 mod peaks;
+mod placed;
 mod plan;
 mod planner;
 mod run;
 mod share;
+mod slow;
 mod units;
 
 pub use error::{Broken, PlanError};

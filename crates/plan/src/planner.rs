@@ -8,11 +8,14 @@ use crate::edges;
 use crate::error::{Broken, PlanError};
 use crate::fit::Fitter;
 use crate::limits::ExactLimits;
+use crate::longest::longest_time;
 use crate::peaks::Peaks;
 use crate::plan::{Plan, PlannedAxis, PlannedMove};
 use crate::run::Writer;
 use crate::share::{Breakpoints, Piece, share};
+use crate::slow::{self, Pulses};
 use crate::units;
+use bigdecimal::{BigDecimal, ToPrimitive as _};
 use carrystep_profile::{Profile, Real, SharedProfile, Widened};
 use carrystep_spec::{Axis, Build, Move, MoveFile, ProfileKind, Segment, fixed::ONE_STEP};
 use std::sync::Arc;
@@ -75,12 +78,9 @@ impl<'a> Planner<'a> {
     }
 
     fn plan_move<F: Real>(&mut self, index: usize) -> Result<PlannedMove, PlanError> {
-        let (clock, profiles) = demand::<F>(self.file, index)?;
+        let time = self.file.moves[index].time.as_ref();
+        let (clock, drafts) = self.drafts::<F>(index, time).map_err(|error| self.explained::<F>(index, error))?;
         let axes = &self.file.machine.axes;
-        let drafts = profiles.into_iter().enumerate().map(|(axis, profile)| {
-            self.draft(Place { index, axis }, profile, &clock).map_err(|b| broken(index, &axes[axis], b))
-        });
-        let drafts = drafts.collect::<Result<Vec<_>, _>>()?;
         let rest = drafts.iter().map(|draft| draft.rest).max().unwrap_or(0);
         let planned = drafts.into_iter().enumerate().map(|(axis, draft)| {
             self.finish(Place { index, axis }, draft, rest, &clock).map_err(|b| broken(index, &axes[axis], b))
@@ -92,6 +92,36 @@ impl<'a> Planner<'a> {
         let Move { profile, path, fit_ns, .. } = self.file.moves[index];
         let fit_seconds = if profile.is_fitted() { fit_ns as f64 * 1e-9 } else { 0.0 };
         Ok(PlannedMove { start_tick, rest_ticks: rest, ticks: clock.ticks, seconds, fit_seconds, path, axes: planned })
+    }
+
+    /// All axes of a move, in a given time or as fast as the limits allow.
+    fn drafts<F: Real>(
+        &self,
+        index: usize,
+        time: Option<&BigDecimal>,
+    ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
+        let (clock, profiles) = demand::<F>(self.file, index, time)?;
+        let axes = &self.file.machine.axes;
+        let drafts = profiles.into_iter().enumerate().map(|(axis, profile)| {
+            self.draft(Place { index, axis }, profile, &clock).map_err(|b| broken(index, &axes[axis], b))
+        });
+        Ok((clock, drafts.collect::<Result<_, _>>()?))
+    }
+
+    /// A move that is too slow, with the longest time that would do.
+    fn explained<F: Real>(&self, index: usize, error: PlanError) -> PlanError {
+        let PlanError::Broken { axis, broken: broken @ (Broken::Slow | Broken::Segments), .. } = error else {
+            return error;
+        };
+        let timebase = &self.build.timebase;
+        let shortest = self.drafts::<F>(index, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
+        let given = self.file.moves[index].time.as_ref().and_then(BigDecimal::to_f64);
+        let works = |time: &BigDecimal| self.drafts::<F>(index, Some(time)).is_ok();
+        let longest = shortest.zip(given).and_then(|(least, given)| longest_time(least, given, timebase, works));
+        let named = self.file.machine.axes.iter().find(|one| one.name == axis);
+        let per_unit = named.and_then(|axis| axis.steps_per_unit.to_f64()).unwrap_or(1.0);
+        let least_speed = slow::least_speed(timebase) / per_unit;
+        PlanError::TooSlow { index, axis, broken, least_speed, longest }
     }
 
     fn draft<F: Real>(&self, place: Place, profile: SharedProfile<F>, clock: &Clock<F>) -> Result<Draft<F>, Broken> {
@@ -135,12 +165,23 @@ impl<'a> Planner<'a> {
         } else {
             Breakpoints::Kept
         };
-        let pieces = share(profile, clock, total, breakpoints).ok_or(Broken::Range)?;
+        let pulses = Pulses {
+            profile,
+            clock: *clock,
+            phase,
+            backward,
+            count: steps.unsigned_abs(),
+            phases: self.build.timebase.phases(),
+            borrowed,
+        };
+        let pieces = share(profile, clock, total, breakpoints, &pulses.care()?, limits.fastest())?;
         let (mut rows, mut risen) = (Vec::new(), Vec::new());
         for (index, &piece) in pieces.iter().enumerate() {
             let last = index + 1 == pieces.len();
-            if kind.is_fitted() && !is_straight(profile, clock, piece) {
-                let pulses = steps.unsigned_abs();
+            if piece.by_pulse {
+                writer.placed(piece, &pulses)?;
+            } else if kind.is_fitted() && !is_straight(profile, clock, piece) {
+                let pulses = pulses.count;
                 let tolerance = tolerance.min(piece.ticks as f64 / LEAST_RATIO);
                 let [begin, end] = [piece.first, piece.first + piece.ticks].map(|tick| profile.speed(clock.at(tick)));
                 let rises = begin <= end;

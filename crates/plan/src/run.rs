@@ -12,11 +12,12 @@ use crate::units;
 use carrystep_profile::{Profile, Real};
 use carrystep_spec::{Segment, StartPhase};
 
-/// How far the rounding of A, J and V may move an edge, seconds; the rest of 2 ns is for the 32-bit bisection.
+/// How far the rounding of A, J and V may move an edge, seconds; the rest of 2 ns is for the 32-bit bisection, and for
+/// the floats of the profile, which are good to 0.3 ns after 10^6 s.
 const EDGE_SHIFT: f64 = 0.5e-9;
 
-/// Speeds below this, steps/s, are held to [`EDGE_SHIFT`] as if they were this fast.
-const SLOWEST: f64 = 1.0;
+/// Most segments of one axis in one move: what needs more is refused.
+pub(crate) const MOST_SEGMENTS: usize = 1 << 17;
 
 /// Writes the segments of one axis in one move.
 pub(crate) struct Writer<'a, F> {
@@ -39,6 +40,15 @@ struct Rate {
     lost: f64,
 }
 
+/// What becomes of the units by which V, rounded, is ahead at the end of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Fine {
+    /// The next run makes them good.
+    Carried,
+    /// They would move an edge of the next run: this one lands exactly.
+    Landed,
+}
+
 impl<F: Real> Writer<'_, F> {
     /// Writes the segments of a piece of constant jerk; where it `ends`, what they travel adds up exactly.
     pub fn piece(&mut self, piece: Piece, ends: bool) -> Result<(), Broken> {
@@ -46,14 +56,19 @@ impl<F: Real> Writer<'_, F> {
         self.divide(piece, jerk, ends)
     }
 
+    /// 1 forward, -1 backward.
+    pub const fn sign(&self) -> i128 {
+        if self.backward { -1 } else { 1 }
+    }
+
     /// Where the axis is when a piece begins, in the direction of travel, given what is carried into it.
     pub fn position(&self, piece: Piece) -> i128 {
-        piece.start + if self.backward { -self.ahead } else { self.ahead }
+        piece.start + self.sign() * self.ahead
     }
 
     /// Writes the segments of a fitted piece, and carries on what they are off.
     pub fn fitted(&mut self, piece: Piece, segments: &[Fitted], ends: bool) -> Result<(), Broken> {
-        let sign = if self.backward { -1 } else { 1 };
+        let sign = self.sign();
         let mut done = self.position(piece);
         self.ahead = 0;
         for (index, &Fitted { ticks, bend, distance }) in segments.iter().enumerate() {
@@ -72,7 +87,7 @@ impl<F: Real> Writer<'_, F> {
     fn land(&mut self, segments: &[Fitted], distance: i128) -> Result<bool, Broken> {
         let Some((last, others)) = segments.split_last() else { return Ok(false) };
         let laid = self.segments.len();
-        let sign = if self.backward { -1 } else { 1 };
+        let sign = self.sign();
         let n = i128::from(last.ticks);
         self.lay(n, distance, last.bend, false)?;
         let rest = -sign * self.ahead;
@@ -120,30 +135,48 @@ impl<F: Real> Writer<'_, F> {
     /// The slower half gets its distance from the profile, the faster one what remains: float rounding
     /// is relative to a distance, so this keeps it small where edges are far apart.
     fn divide(&mut self, piece: Piece, jerk: Rate, ends: bool) -> Result<(), Broken> {
-        let Piece { first, ticks, start, units } = piece;
+        let Piece { first, ticks, units, .. } = piece;
         let (doubled, lost) = if ticks == 1 { (0, 0.0) } else { self.acceleration(piece, jerk)? };
-        if ticks < 4 || self.fine(piece, lost, jerk.lost) {
-            return self.run(piece, doubled, jerk.units, ends);
+        let fine = if ticks < 4 { Some(Fine::Carried) } else { self.fine(piece, lost, jerk.lost) };
+        if let Some(fine) = fine {
+            return self.run(piece, doubled, jerk.units, ends || fine == Fine::Landed);
         }
         let half = ticks / 2;
+        if doubled == 0 && jerk.units == 0 && self.is_level(piece) {
+            let (whole, rest) = (units / i128::from(ticks), units % i128::from(ticks));
+            let head = whole * i128::from(half) + rest * i128::from(half) / i128::from(ticks);
+            return self.halves(piece, half, head, jerk, ends);
+        }
         let local = |first, ticks| {
             let local = share::distance(self.profile, &self.clock, first, ticks);
             local.map(|local| local.min(units)).ok_or(Broken::Range)
         };
         let rises = self.profile.speed(self.clock.at(first)) <= self.profile.speed(self.clock.at(first + ticks));
         let head = if rises { local(first, half)? } else { units - local(first + half, ticks - half)? };
-        self.divide(Piece { ticks: half, units: head, ..piece }, jerk, false)?;
-        let (first, start) = (first + half, start + head);
-        self.divide(Piece { first, ticks: ticks - half, start, units: units - head }, jerk, ends)
+        self.halves(piece, half, head, jerk, ends)
     }
 
-    /// Whether a run may be as long as this, given what rounding leaves out of A and J.
-    fn fine(&self, Piece { first, ticks, .. }: Piece, acceleration: f64, jerk: f64) -> bool {
+    /// The first `half` ticks of a piece, which travel `head` units, then the others.
+    fn halves(&mut self, piece: Piece, half: u64, head: i128, jerk: Rate, ends: bool) -> Result<(), Broken> {
+        let Piece { first, ticks, start, units, .. } = piece;
+        self.divide(Piece { ticks: half, units: head, ..piece }, jerk, false)?;
+        let (first, start) = (first + half, start + head);
+        self.divide(Piece { first, ticks: ticks - half, start, units: units - head, ..piece }, jerk, ends)
+    }
+
+    /// Whether a piece has one speed: integers then share its distance out.
+    pub fn is_level(&self, piece: Piece) -> bool {
+        let middle = self.middle(piece);
+        self.profile.acceleration(middle).is_zero() && self.profile.jerk(middle).is_zero()
+    }
+
+    /// How a run may be as long as this, if it may, given what rounding leaves out of A and J.
+    fn fine(&self, Piece { first, ticks, .. }: Piece, acceleration: f64, jerk: f64) -> Option<Fine> {
         let length = ticks as f64;
         // V makes up for A and J, so that a long first run would start too fast by half of this.
         let late = (acceleration + jerk * length / 3.0) * length;
         if first == 0 && late > self.limits.tolerance as f64 {
-            return false;
+            return None;
         }
         let [begin, end] = [first, first + ticks].map(|tick| self.clock.at(tick));
         let wide = |x: F| x.to_f64().unwrap_or(f64::NAN);
@@ -151,12 +184,19 @@ impl<F: Real> Writer<'_, F> {
         // From rest, the first edge comes half a step later, at speed sqrt(a) or over cbrt(j).
         let by_acceleration = wide(self.profile.acceleration(begin).abs().sqrt());
         let by_jerk = wide(self.profile.jerk(begin).abs().cbrt());
-        let at_edge = slowest.max(by_acceleration).max(by_jerk).max(SLOWEST);
+        let at_edge = slowest.max(by_acceleration).max(by_jerk).max(f64::MIN_POSITIVE);
         // A parabola t(n-t)/2 per unit of A, at most a cubic t^2 (n-t)/6 per unit of J; and V is ahead by up to
         // a unit a tick.
         let lost = (jerk * length / 40.0 + acceleration / 8.0) * length + 1.0;
         let shift = lost * length * 2_f64.powi(-64) / at_edge;
-        shift <= EDGE_SHIFT || !self.has_edge(wide(self.profile.position(begin)), wide(self.profile.position(end)))
+        if shift <= EDGE_SHIFT {
+            return Some(Fine::Carried);
+        }
+        let [from, to] = [begin, end].map(|t| wide(self.profile.position(t)));
+        // What V is ahead by would move the next edge.
+        let by_v = length * 2_f64.powi(-64) / at_edge;
+        let still = if by_v <= EDGE_SHIFT { Fine::Carried } else { Fine::Landed };
+        (!self.has_edge(from, to)).then_some(still)
     }
 
     /// Whether a pulse is due between two positions, or near them.
@@ -171,7 +211,7 @@ impl<F: Real> Writer<'_, F> {
     /// One run of constant jerk.
     fn run(&mut self, piece: Piece, doubled_middle: i128, jerk: i128, ends: bool) -> Result<(), Broken> {
         let n = i128::from(piece.ticks);
-        let sign = if self.backward { -1 } else { 1 };
+        let sign = self.sign();
         let distance = sign * piece.units - self.ahead;
         let (ticks, first) = (n, piece.first == 0);
         let wanted = Wanted { ticks, distance: sign * distance, doubled_middle, jerk, one_way: true, least: 0, first };
@@ -180,8 +220,8 @@ impl<F: Real> Writer<'_, F> {
 
     /// A run over a signed distance. What V cannot share evenly goes to the first ticks, one unit each, where the
     /// piece ends; before that it is carried into the next run.
-    fn lay(&mut self, n: i128, distance: i128, Bend { a, j }: Bend, ends: bool) -> Result<(), Broken> {
-        let sign = if self.backward { -1 } else { 1 };
+    pub fn lay(&mut self, n: i128, distance: i128, Bend { a, j }: Bend, ends: bool) -> Result<(), Broken> {
+        let sign = self.sign();
         let level = sign * distance - n * (n - 1) / 2 * a - jerk_distance(n, j).ok_or(Broken::Range)?;
         let (level, a, j) = (sign * level, sign * a, sign * j);
         let v = level.div_euclid(n);
@@ -204,6 +244,9 @@ impl<F: Real> Writer<'_, F> {
     /// Ticks of one cubic, in as many segments as their counters need.
     fn push(&mut self, mut ticks: i128, mut now: Registers) -> Result<(), Broken> {
         while ticks > 0 {
+            if self.segments.len() >= MOST_SEGMENTS {
+                return Err(Broken::Segments);
+            }
             let length = ticks.min(u32::MAX.into());
             let register = |value: i128| i64::try_from(value).map_err(|_| Broken::Range);
             let (v, a, j) = (register(now.v)?, register(now.a)?, register(now.j)?);

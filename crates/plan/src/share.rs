@@ -1,6 +1,8 @@
 //! A move's distance, shared out over its ticks: the pieces add up to it exactly.
 
 use crate::demand::{Clock, float};
+use crate::error::Broken;
+use crate::slow::Care;
 use crate::units;
 use carrystep_profile::{Profile, Real};
 
@@ -15,6 +17,8 @@ pub(crate) struct Piece {
     pub start: i128,
     /// Distance in the direction of travel, 2^-64 step.
     pub units: i128,
+    /// Whether each of its pulses is placed by a tick of its own; it may then follow several formulas.
+    pub by_pulse: bool,
 }
 
 /// What happens to a breakpoint inside a tick.
@@ -26,34 +30,71 @@ pub(crate) enum Breakpoints<F> {
     Rounded(F),
 }
 
-/// Splits the move at its breakpoints.
+/// Splits the move at its breakpoints, and where a slow move needs care; `fastest` is what the axis may travel in a tick.
 ///
 /// Floats share the distance out; the greatest piece takes what their rounding leaves, so that the sum is
-/// `total`. `None` if a float is out of range.
+/// `total`.
+///
+/// # Errors
+/// [`Broken::Range`] if a float is out of range, [`Broken::Slow`] if the axis cannot catch up where it is behind.
 pub(crate) fn share<F: Real>(
     profile: &dyn Profile<F>,
     clock: &Clock<F>,
     total: i128,
     breakpoints: Breakpoints<F>,
-) -> Option<Vec<Piece>> {
-    let cuts = cuts(profile, clock, breakpoints);
-    let mut pieces = Vec::with_capacity(cuts.len());
-    for ends in cuts.windows(2) {
-        let (first, ticks) = (ends[0], ends[1] - ends[0]);
-        pieces.push(Piece { first, ticks, start: 0, units: distance(profile, clock, first, ticks)? });
+    care: &Care<F>,
+    fastest: i128,
+) -> Result<Vec<Piece>, Broken> {
+    let tick_at = |x: F| (profile.crossing(x) / clock.tick).round().to_u64().unwrap_or(0).min(clock.ticks);
+    let zones: Vec<[u64; 2]> = care.by_pulse.iter().map(|zone| zone.map(tick_at)).collect();
+    let behind = care.behind.map(|(ends, units)| (ends.map(tick_at), units));
+    let mut cuts = cuts(profile, clock, breakpoints);
+    cuts.extend(zones.iter().chain(behind.as_ref().map(|(ends, _)| ends)).flatten());
+    cuts.sort_unstable();
+    cuts.dedup();
+    let mut pieces = pieces(profile, clock, total, &cuts).ok_or(Broken::Range)?;
+    if let Some((ends, units)) = behind {
+        fall_behind(&mut pieces, ends, units, fastest).ok_or(Broken::Slow)?;
     }
-    let sum: i128 = pieces.iter().map(|piece| piece.units).sum();
-    let greatest = pieces.iter_mut().max_by_key(|piece| piece.units)?;
-    greatest.units += total - sum;
-    if greatest.units < 0 {
-        return None;
+    for [begin, end] in zones {
+        let inside = |piece: &Piece| (begin..end).contains(&piece.first);
+        let (ticks, units) = (end - begin, pieces.iter().filter(|piece| inside(piece)).map(|piece| piece.units).sum());
+        pieces.retain(|piece| piece.first == begin || !inside(piece));
+        if let Some(zone) = pieces.iter_mut().find(|piece| piece.first == begin) {
+            *zone = Piece { ticks, units, by_pulse: true, ..*zone };
+        }
     }
     let mut start = 0;
     for piece in &mut pieces {
         piece.start = start;
         start += piece.units;
     }
-    Some(pieces)
+    Ok(pieces)
+}
+
+/// Takes units from a piece before the first of these ticks, and gives them to one after the second that has most room
+/// below the speed limit.
+fn fall_behind(pieces: &mut [Piece], [first, last]: [u64; 2], units: i128, fastest: i128) -> Option<()> {
+    let early = pieces.iter_mut().filter(|piece| piece.first < first).max_by_key(|piece| piece.units)?;
+    early.units -= units;
+    let room = |piece: &Piece| i128::from(piece.ticks) * fastest - piece.units;
+    let late = pieces.iter_mut().filter(|piece| piece.first >= last).max_by_key(|piece| room(piece))?;
+    late.units += units;
+    (room(late) >= 0).then_some(())
+}
+
+/// The pieces between the cuts, which travel `total` together; where they start is left open.
+fn pieces<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, total: i128, cuts: &[u64]) -> Option<Vec<Piece>> {
+    let mut pieces = Vec::with_capacity(cuts.len());
+    for ends in cuts.windows(2) {
+        let (first, ticks) = (ends[0], ends[1] - ends[0]);
+        let units = distance(profile, clock, first, ticks)?;
+        pieces.push(Piece { first, ticks, start: 0, units, by_pulse: false });
+    }
+    let sum: i128 = pieces.iter().map(|piece| piece.units).sum();
+    let greatest = pieces.iter_mut().max_by_key(|piece| piece.units)?;
+    greatest.units += total - sum;
+    (greatest.units >= 0).then_some(pieces)
 }
 
 /// Distance over whole ticks, as a mean speed: no difference of two positions, so that it is relatively
@@ -97,7 +138,5 @@ fn cuts<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, breakpoints: Breakp
             cuts.push((before + 1).min(clock.ticks));
         }
     }
-    cuts.sort_unstable();
-    cuts.dedup();
     cuts
 }

@@ -1,9 +1,10 @@
 //! P of one axis over a stretch of plain ticks, in closed form.
 //!
-//! Nothing here wraps, although all of it says so: numbers of ticks are at most 2^16, binomials therefore
-//! under 2^48, and each of the products under 2^112. Checks would cost as much as the sums.
+//! These sums use wrapping arithmetic, because checks would cost as much as the sums. Nothing wraps: numbers of ticks
+//! are at most 2^16, binomials therefore under 2^48, and each of the products under 2^112. Where A and J are 0, stretches
+//! may have up to 2^31 ticks: the binomials, which may then wrap, are multiplied by 0.
 
-/// Most ticks in a stretch.
+/// Most ticks in a stretch with an acceleration or a jerk.
 pub(super) const MOST_TICKS: u32 = 1 << 16;
 
 /// V, A and J before the first tick of a stretch.
