@@ -7,13 +7,14 @@ use carrystep_link::{Command, Ended, HostError, Program, Status, Wish, supply};
 use carrystep_plan::Plan;
 use carrystep_spec::MoveFile;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// How a drive ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum How {
     /// All moves were made.
@@ -25,7 +26,7 @@ pub enum How {
 }
 
 /// What came of it; `--json` prints it as it is.
-#[derive(Debug, Serialize)]
+#[derive(Debug, JsonSchema, Serialize)]
 pub struct Driven {
     /// All moves were made, and the machine is where they end.
     pub passed: bool,
@@ -46,7 +47,7 @@ pub struct Driven {
 }
 
 /// One axis.
-#[derive(Debug, Serialize)]
+#[derive(Debug, JsonSchema, Serialize)]
 pub struct AxisDriven {
     /// Its name.
     pub axis: String,

@@ -6,6 +6,7 @@ mod connection;
 #[cfg(unix)]
 mod desk;
 mod drive;
+mod excerpt;
 mod failure;
 mod figures;
 mod gateware;

@@ -6,11 +6,12 @@ use crate::failure::Failure;
 use crate::output;
 use carrystep_link::registers::{DISCARDED, MOST_AXES};
 use carrystep_link::{Answer, frame};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
 
 /// What `--json` prints.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Found {
     passed: bool,
     port: String,
@@ -33,7 +34,7 @@ struct Found {
     axes: Vec<AxisFound>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct AxisFound {
     axis: String,
     position: i32,
