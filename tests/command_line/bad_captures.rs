@@ -29,7 +29,7 @@ fn captures_that_are_none() {
     folder
         .run("check c.vcd move.toml --map x.step=la.D0 --map x.dir=la.D1")
         .refuses("c.vcd: line 9 of the capture: time goes back from 9 to 8");
-    folder.run("check . move.toml").refuses(".: cannot read the capture: Is a directory");
+    folder.run("check . move.toml").refuses("cannot read .: it is a folder");
 }
 
 #[test]

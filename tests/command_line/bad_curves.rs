@@ -73,7 +73,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("profile sine --steps 10.5 --accel 1", "10.5 steps is no whole number of steps: 10 or 11 steps would do"),
     ("profile sine --deg 361 --accel 1", "361 degrees is no whole number of steps: 360 or 361.8 degrees would do"),
     ("profile sine sine --speed 5 --accel 1", "sine is named twice"),
-    ("profile sine --speed 5 --accel 1 --csv a --plot a", "--plot would write over --csv: give them two names"),
+    ("profile sine --speed 5 --accel 1 --csv a --plot a", "cannot write a: it is also the output a"),
     (
         "profile sine --speed 5 --accel 1 --csv - --json",
         "--csv - and --json would both go to standard output: give --csv a file",

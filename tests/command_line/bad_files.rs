@@ -20,7 +20,7 @@ fn move_files_that_are_no_text() {
         folder.run(&format!("check capture.vcd {name}")).refuses(says);
     };
     every("nowhere.toml", "cannot read nowhere.toml: No such file");
-    every(".", "cannot read .: Is a directory");
+    every(".", "cannot read .: it is a folder, and an input must be a regular file");
     folder.write("empty.toml", "");
     every("empty.toml", "empty.toml:1:1: no machine");
     folder.write("latin.toml", b"[machine]\n# caf\xe9\n");
@@ -39,7 +39,7 @@ fn machines_in_files_of_their_own() {
         folder.run("plan move.toml").refuses_at("move.toml", (1, column), says);
     };
     refused("machine_file = \"nowhere.toml\"\n", 16, "there is no machine file nowhere.toml");
-    refused("machine_file = \".\"\n", 16, "there is no machine file .");
+    refused("machine_file = \".\"\n", 16, "cannot read .: it is a folder");
     refused("machine_file = 3\n", 16, "expected path string");
     refused(&format!("machine_file = \"m.toml\"\n{}", machine()), 16, "both machine_file and [machine] are given");
 

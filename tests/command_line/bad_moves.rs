@@ -23,7 +23,7 @@ fn moves_that_cannot_be_read() {
         ("{ x = 2 }", "{ x = 2, ^q = 1 }", "its axes are x"),
         ("{ x = 2 }", "{ x = ^nan }", "x = nan: not a usable number"),
         ("{ x = 2 }", "{ x = ^-inf }", "x = -inf: not a usable number"),
-        ("{ x = 2 }", "{ x = ^1e999999999 }", "a number too great"),
+        ("{ x = 2 }", "{ x = ^1e999999999 }", "the number is too great"),
         ("{ x = 2 }", "{ x = ^1e-999999999 }", "not a usable number"),
         ("time = 0.05", "time = ^nan", "time = nan: not a usable number"),
         ("time = 0.05", "time = ^0", "time = 0: must be over zero"),

@@ -19,14 +19,16 @@ fn paths_that_no_file_can_have() {
             assert_eq!(folder.files(), before, "{option} {path}");
         };
         refused("out", "cannot write out: is a directory");
-        refused("out/kept/a", "cannot write out/kept/a: not a directory");
+        refused("out/kept/a", "cannot write out/kept/a: Not a directory");
         refused("/proc/none/a", "cannot write /proc/none/a: ");
-        refused("move.toml", &format!("{option} would write over the move file: move.toml"));
+        refused("move.toml", "cannot write move.toml: it is the input move.toml");
     }
-    folder.run("simulate move.toml --vcd out/a --csv ./out/a").refuses("--csv would write over --vcd: ./out/a");
+    folder
+        .run("simulate move.toml --vcd out/a --csv ./out/a")
+        .refuses("cannot write ./out/a: it is also the output out/a");
     folder.run("demo --out out/kept").refuses("cannot write out/kept/six-axis.toml: ");
-    folder.run("verilog --out out/kept").refuses("cannot write out/kept: not a directory");
-    folder.run("verilog --out /proc/none").refuses("cannot write /proc/none: ");
+    folder.run("verilog --out out/kept").refuses("cannot write out/kept/carrystep_six_axis.v: ");
+    folder.run("verilog --out /proc/none").refuses("cannot write /proc/none/carrystep_six_axis.v: ");
     assert_eq!(folder.files(), before);
     assert_eq!(folder.run("simulate move.toml --save out/a.gtkw").status, 2);
     assert_eq!(std::fs::read_to_string(folder.path("move.toml")).unwrap(), GOOD);

@@ -1,7 +1,7 @@
 //! The command in a folder of its own.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command};
 use tempfile::TempDir;
 
 /// Two short moves of one axis. No line of it is twice there, so that a test can replace one.
@@ -77,6 +77,14 @@ impl Folder {
         walk(self.0.path(), self.0.path(), &mut found);
         found.sort();
         found
+    }
+
+    /// The length of the longest file in here that a process has open: an output that it has begun has no name yet.
+    #[cfg(target_os = "linux")]
+    pub fn begun_by(&self, child: &Child) -> Option<u64> {
+        let files = std::fs::read_dir(format!("/proc/{}/fd", child.id())).ok()?.flatten();
+        let inside = files.filter(|file| std::fs::read_link(file.path()).is_ok_and(|to| to.starts_with(self.0.path())));
+        inside.filter_map(|file| file.path().metadata().ok()).map(|there| there.len()).max()
     }
 
     /// Runs `carrystep` with these arguments, separated by spaces.

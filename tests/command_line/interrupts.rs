@@ -15,11 +15,10 @@ fn endless() -> String {
 
 /// Begins a run, and waits until it has begun the file that it writes into.
 fn begin(folder: &Folder, arguments: &str) -> Child {
-    let before = folder.files().len();
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(arguments.split(' ')).current_dir(folder.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
-    while folder.files().len() == before && child.try_wait().unwrap().is_none() {
+    while folder.begun_by(&child).is_none() && child.try_wait().unwrap().is_none() {
         std::thread::sleep(Duration::from_millis(5));
     }
     child
@@ -32,7 +31,25 @@ fn end(child: Child) -> Ran {
     Ran { status, stdout: text(output.stdout), stderr: text(output.stderr) }
 }
 
-#[cfg(unix)]
+/// SIGKILL cannot be handled: that nothing stays behind is the system's doing, because the file has no name yet.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_killed_run_leaves_nothing() {
+    let folder = Folder::with_move(endless());
+    folder.write("old.vcd", "as it was");
+    for output in
+        ["--vcd a.vcd", "--fst a.fst", "--csv a.csv", "--vcd old.vcd", "--vcd a.vcd --save a.gtkw --plot a.svg"]
+    {
+        let mut child = begin(&folder, &format!("simulate move.toml {output}"));
+        assert!(folder.begun_by(&child).is_some(), "{output}");
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert_eq!(folder.files(), ["move.toml", "old.vcd"], "{output}");
+        assert_eq!(std::fs::read_to_string(folder.path("old.vcd")).unwrap(), "as it was");
+    }
+}
+
+#[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_run_says_so_and_leaves_nothing() {
     let folder = Folder::with_move(endless());

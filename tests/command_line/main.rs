@@ -9,14 +9,21 @@ mod bad_machines;
 mod bad_moves;
 mod bad_outputs;
 mod boards;
+#[cfg(unix)]
+mod cache;
 mod command;
 mod curves;
 #[path = "../../crates/link/tests/support/device.rs"]
 #[allow(dead_code, reason = "the link's own tests use the rest")]
 mod device;
 mod engine;
+#[cfg(unix)]
+mod inputs;
+#[cfg(target_os = "linux")]
 mod interrupts;
 mod json_names;
+#[cfg(unix)]
+mod outputs;
 mod profile;
 mod sweeps;
 mod table;

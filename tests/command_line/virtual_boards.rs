@@ -105,12 +105,8 @@ fn begin(folder: &Folder, board: &Board, file: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(["run", file, "--port", &board.port, "--json"]).current_dir(folder.path(""));
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let has_begun = |name: &String| {
-        let known = ["home.toml", "long.toml", "machine.toml", "move.toml"].contains(&name.as_str());
-        !known && folder.path(name).metadata().is_ok_and(|file| file.len() > 0)
-    };
     // Nobody else can ask the board while that one has the port.
-    while !folder.files().iter().any(has_begun) {
+    while folder.begun_by(&board.child).is_none_or(|written| written == 0) {
         assert_eq!(child.try_wait().unwrap(), None, "it has ended");
         std::thread::sleep(Duration::from_millis(10));
     }

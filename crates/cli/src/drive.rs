@@ -10,12 +10,13 @@ use carrystep_plan::Plan;
 use carrystep_spec::engine::{Cause, Guard};
 use carrystep_spec::{Axis, MoveFile};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 use std::time::Instant;
 
 /// How a drive ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum How {
     /// All moves were made.
@@ -27,7 +28,7 @@ pub enum How {
 }
 
 /// What came of it; `--json` prints it as it is.
-#[derive(Debug, Serialize)]
+#[derive(Debug, JsonSchema, Serialize)]
 pub struct Driven {
     /// All moves were made, and the machine is where they end.
     pub passed: bool,
@@ -63,7 +64,7 @@ pub struct Culprit {
 }
 
 /// One axis.
-#[derive(Debug, Serialize)]
+#[derive(Debug, JsonSchema, Serialize)]
 pub struct AxisDriven {
     /// Its name.
     pub axis: String,

@@ -1,5 +1,6 @@
 //! How the command fails: what is told, and the exit status that goes with it.
 
+use crate::excerpt::Excerpt;
 use carrystep_export::ExportError;
 use carrystep_levels::LevelError;
 use carrystep_plan::PlanError;
@@ -7,9 +8,8 @@ use carrystep_spec::board::BoardError;
 use carrystep_spec::{InputError, MoveFile};
 use carrystep_synthesis::SynthesisError;
 use carrystep_trace::TraceError;
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report};
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, Report};
 use std::io::{IsTerminal as _, Write as _};
-use std::ops::Range;
 use std::process::ExitCode;
 
 /// Why the command did not do what was asked.
@@ -65,13 +65,12 @@ fn render(error: &InputError, terminal: bool) -> String {
     };
     let mut diagnostic = MietteDiagnostic::new(harmless(&error.message));
     diagnostic.help = error.help.as_deref().map(harmless);
-    let label = LabeledSpan::underline(shorten(&source.text, span.clone()));
-    let code = NamedSource::new(source.path.display().to_string(), harmless(&source.text));
-    format!("error:\n{}", drawn(diagnostic.with_label(label), code, terminal))
+    let code = Excerpt::new(source.path.display().to_string(), &harmless(&source.text), span);
+    format!("error:\n{}", drawn(diagnostic.with_label(LabeledSpan::underline(code.span())), code, terminal))
 }
 
 /// Colours and lines on a terminal; elsewhere plain ASCII, and no message broken into lines.
-fn drawn(diagnostic: MietteDiagnostic, code: NamedSource<String>, terminal: bool) -> String {
+fn drawn(diagnostic: MietteDiagnostic, code: Excerpt, terminal: bool) -> String {
     let report = Report::new(diagnostic).with_source_code(code);
     if terminal {
         return format!("{report:?}");
@@ -94,12 +93,6 @@ fn harmless(text: &str) -> String {
         }
     }
     safe
-}
-
-/// Only the first line of a long span: a whole [[move]] table underlined says nothing.
-fn shorten(text: &str, span: Range<usize>) -> Range<usize> {
-    let end = text.get(span.clone()).and_then(|s| s.find('\n')).map_or(span.end, |newline| span.start + newline);
-    span.start..end
 }
 
 impl From<InputError> for Failure {
@@ -136,6 +129,7 @@ impl From<LevelError> for Failure {
     fn from(error: LevelError) -> Self {
         match error {
             LevelError::Missing(_) => Self::Tool(error.to_string()),
+            LevelError::Cache { .. } => Self::input(error.to_string()),
             _ => Self::Run(error.to_string()),
         }
     }

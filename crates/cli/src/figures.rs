@@ -1,11 +1,12 @@
 //! What a user has to know before trusting a curve, as a table with a column for each kind.
 
 use carrystep_reference::{Drive, Length, Reference};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
 
 /// The figures of a curve under their names in `--json`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, JsonSchema, Serialize)]
 pub struct FiguresJson {
     steps: f64,
     whole_steps: f64,

@@ -17,6 +17,7 @@ use carrystep_trace::{
     AxisSetup, AxisWaves, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee,
     VcdWriter, Waves, save_file,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -27,7 +28,7 @@ use std::time::Instant;
 const LONGEST_S: u64 = 4_000_000;
 
 /// What a run came to; `--json` prints it as it is.
-#[derive(Debug, Serialize)]
+#[derive(Debug, JsonSchema, Serialize)]
 pub struct Done {
     /// Everything below holds.
     pub passed: bool,
@@ -126,7 +127,7 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
     let engine = engine(file, core)?;
     carrystep_levels::available(level)?;
     fits_a_capture(plan)?;
-    let mut files = wanted.begin(&file.source.path)?;
+    let mut files = wanted.begin()?;
     let program = plan.program();
     // Nobody waits for the end of a run whose output cannot be written.
     let deaf = AtomicBool::new(false);

@@ -7,6 +7,7 @@ mod control;
 #[cfg(unix)]
 mod desk;
 mod drive;
+mod excerpt;
 mod failure;
 mod figures;
 mod found;

@@ -3,11 +3,12 @@
 
 use carrystep_plan::Plan;
 use carrystep_spec::{Axis, MoveFile, Segment, decimal};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
 /// The limits of all axes.
-#[derive(Debug, Serialize)]
+#[derive(Debug, JsonSchema, Serialize)]
 pub struct Limits {
     /// Whole ticks of all moves, rests included.
     pub total_ticks: u64,
@@ -18,7 +19,7 @@ pub struct Limits {
 }
 
 /// The greatest values of one axis over all moves, from the exact integers of its segments.
-#[derive(Debug, Serialize)]
+#[derive(Debug, JsonSchema, Serialize)]
 pub struct AxisLimits {
     pub axis: String,
     /// Segments sent to it.

@@ -3,7 +3,7 @@
 
 use crate::failure::Failure;
 use crate::output::OutputFile;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What is asked for.
 #[derive(Debug, Default)]
@@ -25,31 +25,12 @@ pub struct Files {
 }
 
 impl Wanted {
-    /// Begins all files. None of them may be the move file, or another of them.
-    pub fn begin(&self, move_file: &Path) -> Result<Files, Failure> {
-        let mut taken = vec![("the move file", absolute(move_file))];
-        let named = [
-            ("--vcd", &self.vcd),
-            ("--fst", &self.fst),
-            ("--save", &self.save),
-            ("--csv", &self.csv),
-            ("--plot", &self.plot),
-        ];
-        for (name, path) in named {
-            let Some(path) = path else { continue };
-            if let Some((other, _)) = taken.iter().find(|(_, there)| *there == absolute(path)) {
-                return Err(Failure::input(format!("{name} would write over {other}: {}", path.display())));
-            }
-            taken.push((name, absolute(path)));
-        }
-        let begin = |path: &Option<PathBuf>| path.as_deref().map(OutputFile::create).transpose();
-        Ok(Files {
-            vcd: begin(&self.vcd)?,
-            fst: begin(&self.fst)?,
-            save: begin(&self.save)?,
-            csv: begin(&self.csv)?,
-            plot: begin(&self.plot)?,
-        })
+    /// Begins all files, or none where one of them is an input, another of them, or cannot be written.
+    pub fn begin(&self) -> Result<Files, Failure> {
+        let claim = |path: &Option<PathBuf>| path.as_deref().map(OutputFile::claim).transpose();
+        let claims = [claim(&self.vcd)?, claim(&self.fst)?, claim(&self.save)?, claim(&self.csv)?, claim(&self.plot)?];
+        let [vcd, fst, save, csv, plot] = claims.map(|claim| claim.map(OutputFile::begin).transpose());
+        Ok(Files { vcd: vcd?, fst: fst?, save: save?, csv: csv?, plot: plot? })
     }
 }
 
@@ -61,8 +42,4 @@ impl Files {
         files.iter_mut().try_for_each(OutputFile::whole)?;
         files.into_iter().map(OutputFile::keep).collect()
     }
-}
-
-fn absolute(path: &Path) -> PathBuf {
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }

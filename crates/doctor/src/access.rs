@@ -1,13 +1,14 @@
 //! Whether a device may be used, and if not, the real cause.
 
 use crate::Host;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 use std::fs;
 use std::path::Path;
 
 /// Whether a device may be used.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Access {
     /// It may.
@@ -24,7 +25,7 @@ pub enum Access {
 }
 
 /// Why the system forbids it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case", tag = "reason")]
 pub enum Refusal {
     /// Its group may use it, and the user is not in that.

@@ -13,10 +13,11 @@ pub use ports::{SerialPort, UsbDevice, serial_ports, usb_devices};
 pub use tools::{Found, tools};
 
 use carrystep_spec::board::Board;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What was found.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Report {
     /// Tools that are wanted, whether they are there or not.
     pub tools: Vec<Found>,

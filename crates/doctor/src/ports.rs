@@ -3,12 +3,13 @@
 use crate::Host;
 use crate::access::{Access, access};
 use carrystep_spec::board::boards;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A serial port.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct SerialPort {
     /// `/dev/ttyUSB0`.
     pub path: PathBuf,
@@ -21,7 +22,7 @@ pub struct SerialPort {
 }
 
 /// A USB device with the vendor and product of a board.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct UsbDevice {
     /// `/dev/bus/usb/001/004`.
     pub path: PathBuf,

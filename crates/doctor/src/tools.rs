@@ -5,12 +5,13 @@ use carrystep_spec::board::{Board, Toolchain};
 use carrystep_spec::tool::{
     ICARUS, ICEBOX_VLOG, ICEPACK, ICETIME, NEXTPNR, PROGRAMMERS, Tool, VERILATOR, VIVADO, XST, YOSYS, Z3,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// A tool, there or not.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Found {
     /// What one types.
     pub name: &'static str,

@@ -1,7 +1,8 @@
 //! Files that appear whole or not at all.
 
 use crate::ExportError;
-use std::io::{ErrorKind, Write};
+use carrystep_files::{Claim, NewFile, OutputFailure};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// A file that has been made, but not written.
@@ -22,40 +23,25 @@ impl TextFile {
     }
 }
 
-/// Writes files under `dir`; none appears before all have been written.
+/// Writes files under `dir`; none appears before all have been written, and none is made where one of them would
+/// replace an input.
 ///
 /// # Errors
 /// [`ExportError::Io`] names what cannot be written.
 pub fn write(dir: &Path, files: &[TextFile]) -> Result<Vec<PathBuf>, ExportError> {
-    let failed = |path: &Path| {
-        let path = path.to_owned();
-        |source| ExportError::Io { path, source }
+    let claims = files.iter().map(|file| Claim::new(&dir.join(&file.name))).collect::<Result<Vec<_>, _>>()?;
+    let made = |(claim, file): (Claim, &TextFile)| {
+        let mut new = claim.begin(file.executable)?;
+        let written = new.write_all(file.text.as_bytes());
+        written.map_err(|source| OutputFailure { path: new.path().to_owned(), source })?;
+        Ok(new)
     };
-    let made = |file: &TextFile| {
-        let path = dir.join(&file.name);
-        let folder = path.parent().unwrap_or(dir);
-        std::fs::create_dir_all(folder).map_err(|source| failed(folder)(told(source)))?;
-        let made =
-            new_file(folder, file.executable).and_then(|mut new| new.write_all(file.text.as_bytes()).map(|()| new));
-        made.map_err(failed(&path)).map(|new| (path, new))
-    };
-    let made: Vec<_> = files.iter().map(made).collect::<Result<_, _>>()?;
-    let appear = |(path, file): (PathBuf, tempfile::NamedTempFile)| {
-        file.persist(&path).map_err(|error| failed(&path)(error.error))?;
-        Ok(path)
-    };
-    made.into_iter().map(appear).collect()
+    let made: Vec<NewFile> = claims.into_iter().zip(files).map(made).collect::<Result<_, OutputFailure>>()?;
+    Ok(made.into_iter().map(NewFile::appear).collect::<Result<_, _>>()?)
 }
 
-/// A file in the folder's place is told as what it is; the system says only that something exists.
-fn told(error: std::io::Error) -> std::io::Error {
-    if error.kind() == ErrorKind::AlreadyExists { ErrorKind::NotADirectory.into() } else { error }
-}
-
-/// A file without a name yet, with the permissions of any other new file (a temporary one is its owner's only).
-fn new_file(dir: &Path, executable: bool) -> std::io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(if executable { 0o777 } else { 0o666 }));
-    builder.tempfile_in(dir)
+impl From<OutputFailure> for ExportError {
+    fn from(OutputFailure { path, source }: OutputFailure) -> Self {
+        Self::Io { path, source }
+    }
 }

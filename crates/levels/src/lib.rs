@@ -5,6 +5,7 @@
 //! every clock.
 
 pub mod board;
+mod cache;
 pub mod engine;
 mod external;
 pub mod fast;
@@ -20,6 +21,7 @@ use carrystep_spec::ports::Outputs;
 use carrystep_spec::tool::Tool;
 use carrystep_spec::{Build, Program};
 use std::fmt;
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use thiserror::Error;
@@ -135,6 +137,14 @@ pub enum LevelError {
     /// The gateware for these build parameters cannot be made.
     #[error("{0}")]
     Gateware(String),
+    /// What is kept of a simulation would be executed, and may be somebody else's.
+    #[error("{}: {why}; compiled simulations are executed from there (CARRYSTEP_CACHE names another folder)", .path.display())]
+    Cache {
+        /// The folder, or a simulation in it.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: &'static str,
+    },
     /// A file could not be read or written.
     #[error("{context}: {source}")]
     Io {

@@ -1,8 +1,8 @@
-//! The exported Verilog in Verilator. A compiled simulation is kept, by the hash of all that went into
-//! it, because compiling takes far longer than most runs.
+//! The exported Verilog in Verilator. A compiled simulation is kept in the user's cache folder, by the hash of all
+//! that went into it, because compiling takes far longer than most runs.
 
 use crate::tool::{self, VERILATOR};
-use crate::{Job, LevelError, Observer, Outcome, external};
+use crate::{Job, LevelError, Observer, Outcome, cache, external};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
 use std::process::Command;
@@ -46,21 +46,21 @@ impl Simulation<'_> {
     pub fn compiled(&self, verilog: &str) -> Result<PathBuf, LevelError> {
         let Self { name, top, bench, options } = *self;
         tool::find(&VERILATOR)?;
-        let cache = std::env::temp_dir().join("carrystep-verilator");
-        std::fs::create_dir_all(&cache).map_err(tool::io("cannot make the cache folder"))?;
+        let cache = cache::folder()?;
         let mut hash = DefaultHasher::new();
         (verilog, bench, top, options, OPTIONS, env!("CARGO_PKG_VERSION")).hash(&mut hash);
         let binary = cache.join(format!("{name}_{:016x}", hash.finish()));
         let _one_at_a_time = COMPILER.lock();
-        if !binary.is_file() {
+        if !cache::holds(&binary)? {
             let folder = tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;
             tool::put(folder.path(), &[("core.v", verilog), ("bench.cpp", bench)])?;
             let mut command = Command::new(VERILATOR.name);
             command.args(OPTIONS).args(options).args(["--top-module", top, "-o", "bench", "core.v", "bench.cpp"]);
             tool::complete(&VERILATOR, command.current_dir(folder.path()))?;
+            let made = folder.path().join("obj_dir").join("bench");
+            cache::only_ours(&made)?;
             // Whole or not at all: another run may be looking for it.
-            std::fs::rename(folder.path().join("obj_dir").join("bench"), &binary)
-                .map_err(tool::io("cannot keep the compiled simulation"))?;
+            std::fs::rename(made, &binary).map_err(tool::io("cannot keep the compiled simulation"))?;
         }
         Ok(binary)
     }

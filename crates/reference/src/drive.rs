@@ -2,10 +2,11 @@
 
 use crate::error::ReferenceError;
 use crate::quantity::Length;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A motor, its driver, and what it moves. A step is always one microstep.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct Drive {
     /// Angle of a full step, degrees; over 0, at most 180.
     pub step_angle_deg: f64,

@@ -1,6 +1,7 @@
 //! One step of a list, and what is listed.
 
 use carrystep_spec::StartPhase;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Most steps in a list.
@@ -30,7 +31,7 @@ impl Listing {
 }
 
 /// Step n: when it is reached, how fast it is passed, and how long the next one takes.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct Row {
     /// n, from 0; from 1 where pulses are in the middle of their step.
     pub step: u32,

@@ -4,6 +4,7 @@ use crate::clock::ClockManager;
 use crate::engine::Limits;
 use crate::error::{InputError, Source};
 use crate::link::{BaudError, Uart};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -41,7 +42,7 @@ const DATA: [&str; 14] = [
 ];
 
 /// A board whose every fact has been checked against the others.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Board {
     /// As on the command line.
     pub name: String,
@@ -91,7 +92,7 @@ pub struct Board {
 }
 
 /// An FPGA.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Part {
     /// `hx1k`, `xc3s400`.
     pub name: String,
@@ -108,7 +109,7 @@ pub struct Part {
 }
 
 /// The clock that comes from outside.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Oscillator {
     /// Pin of the package.
     pub pin: String,
@@ -119,7 +120,7 @@ pub struct Oscillator {
 }
 
 /// A clock of a board, and the tick and phases that go with it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Clocking {
     /// Hz.
     pub clock_hz: u64,
@@ -134,7 +135,7 @@ pub struct Clocking {
 }
 
 /// Where a bit of a port goes.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Wire {
     /// `uart_rx`, `step[0]`.
     pub port: String,
@@ -146,7 +147,7 @@ pub struct Wire {
 }
 
 /// A place that a person can see.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Place {
     /// The connector.
     pub connector: String,
@@ -155,7 +156,7 @@ pub struct Place {
 }
 
 /// A pin that is driven to one level for ever.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Tie {
     /// Its port of the top level.
     pub port: String,

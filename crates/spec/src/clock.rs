@@ -8,6 +8,7 @@
 //!
 //! A clock is exact or refused: a tick that is a thousandth off makes every speed a thousandth wrong.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -20,7 +21,7 @@ pub use ice40::Ice40Pll;
 pub use mmcm::Mmcm;
 
 /// What makes a clock of another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClockManager {
     /// Nothing: the oscillator is the clock.

@@ -1,5 +1,7 @@
 //! What is wrong with an input file, and where.
 
+use carrystep_files::{nearest, read_text};
+
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -28,18 +30,18 @@ pub struct InputError {
 impl InputError {
     /// An error without a place.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { message: message.into(), help: None, place: None }
+        Self { message: bounded(message.into()), help: None, place: None }
     }
 
     /// An error at a span of bytes in a file.
     pub fn at(source: &Source, span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { message: message.into(), help: None, place: Some((source.clone(), span)) }
+        Self { place: Some((source.clone(), span)), ..Self::new(message) }
     }
 
     /// The same error with advice.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        self.help = Some(bounded(help.into()));
         self
     }
 
@@ -66,13 +68,13 @@ impl fmt::Display for InputError {
 impl std::error::Error for InputError {}
 
 impl Source {
-    /// Reads a text file.
+    /// Reads a text file. No output of this process can replace it from then on.
     ///
     /// # Errors
-    /// The file cannot be read or is not UTF-8.
+    /// The file cannot be read, is no regular file, is too long, or is not UTF-8.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let shown = path.display();
-        let bytes = std::fs::read(path).map_err(|error| InputError::new(format!("cannot read {shown}: {error}")))?;
+        let bytes = read_text(path).map_err(|error| InputError::new(error.to_string()))?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             let (line, column) = line_column(&String::from_utf8_lossy(good));
@@ -85,9 +87,15 @@ impl Source {
     ///
     /// # Errors
     /// Syntax errors, unknown keys, missing fields, wrong types.
-    pub(crate) fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, InputError> {
-        toml::from_str(&self.text)
-            .map_err(|error| InputError::at(self, error.span().unwrap_or(0..0), in_plain_words(error.message())))
+    pub fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, InputError> {
+        toml::from_str(&self.text).map_err(|error| {
+            let message = error.message();
+            let told = InputError::at(self, error.span().unwrap_or(0..0), in_plain_words(message));
+            match meant(message) {
+                Some(name) => told.help(format!("did you mean `{name}`?")),
+                None => told,
+            }
+        })
     }
 }
 
@@ -96,6 +104,35 @@ fn line_column(before: &str) -> (usize, usize) {
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
     (line, column)
+}
+
+/// The known key or value that was meant, where the parser's message names one that is unknown and those that
+/// it knows: "unknown field `a`, expected one of `b`, `c`".
+fn meant(message: &str) -> Option<&str> {
+    let (wrong, known) = message.strip_prefix("unknown ")?.split_once("`, expected ")?;
+    let (_, wrong) = wrong.split_once('`')?;
+    nearest(wrong, known.split('`').skip(1).step_by(2))
+}
+
+/// A message that quotes a file stays readable, whatever stands in the file.
+fn bounded(message: String) -> String {
+    const MOST: usize = 1000;
+    const KEPT: usize = 400;
+    if message.len() <= MOST {
+        return message;
+    }
+    let head = message.char_indices().nth(KEPT).map_or(message.len(), |(at, _)| at);
+    let tail = message.char_indices().nth_back(KEPT).map_or(0, |(at, _)| at);
+    if tail <= head { message } else { format!("{} ... {}", &message[..head], &message[tail..]) }
+}
+
+/// A text of a file as messages quote it: its beginning, where it is long.
+pub(crate) fn quoted(text: &str) -> String {
+    const MOST: usize = 40;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
 }
 
 /// What the parser says in the words of its language, for who writes the file.
@@ -108,7 +145,7 @@ fn in_plain_words(message: &str) -> String {
         ("expected a sequence", "expected tables in double brackets, as in [[move]] and [[machine.axis]], or a list in brackets, as in [0, 300]"),
         ("expected a map", "expected distances, as in { x = 1.5 }"),
         ("integer number overflowed", "a number of too many digits: at most 38, or 60 with a point, are expected"),
-        ("floating-point number overflowed", "a number too great: a finite one of at most 60 digits is expected"),
+        ("floating-point number overflowed", "the number is too great: it must be under 10^30"),
     ];
     WORDS.iter().fold(message.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))
 }

@@ -2,6 +2,7 @@
 //!
 //! Everything that counts or lands is one of these integers; a float never decides either.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Bits behind the point of a position: one step is 2^64 units.
@@ -20,7 +21,7 @@ pub const POSITION_BITS: u32 = 32;
 ///
 /// `Half` puts every pulse of a move in the middle of a step, so that the last pulse of a move which
 /// ends at rest is well conditioned. `Zero` is Table 1 of Ranade (2009).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StartPhase {
     /// P starts at 2^63, half a step.

@@ -5,10 +5,12 @@
 
 use crate::build::AXES;
 use crate::decimal;
-use crate::error::{InputError, Source};
+use crate::error::{InputError, Source, quoted};
 use crate::machine::{Machine, RawMachine};
 use crate::number::{exact, positive};
 use bigdecimal::{BigDecimal, Zero};
+use carrystep_files::did_you_mean;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -17,7 +19,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 /// The speed profiles of the literature that a move can ask for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ProfileKind {
     /// Ranade (2009): triangle whenever possible, else trapezoid at the speed limit.
@@ -59,7 +61,7 @@ impl fmt::Display for ProfileKind {
 }
 
 /// Which way a move of several axes takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PathKind {
     /// Each axis as its own limits allow, in the common time.
@@ -148,7 +150,7 @@ impl MoveFile {
         let machine = match (raw.machine_file, raw.machine) {
             (Some(file), None) => {
                 let path = source.path.parent().unwrap_or(Path::new("")).join(file.as_ref());
-                if !path.is_file() {
+                if !path.exists() {
                     return Err(InputError::at(
                         &source,
                         file.span(),
@@ -156,7 +158,9 @@ impl MoveFile {
                     )
                     .help("the path is relative to the move file"));
                 }
-                Machine::load(&path)?
+                // What cannot be read at all is wrong where it is named.
+                let named = |error: InputError| InputError::at(&source, file.span(), error.message);
+                Machine::from_source(&Source::read(&path).map_err(named)?)?
             }
             (None, Some(machine)) => machine.check(&source)?,
             (Some(file), Some(_)) => {
@@ -218,8 +222,9 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
         let before = positions.clone();
         for (name, distance) in &to {
             let axis = machine.axis_index(name.as_ref()).ok_or_else(|| {
-                InputError::at(source, name.span(), format!("the machine has no axis {:?}", name.as_ref()))
-                    .help(format!("its axes are {}", machine.axis_names()))
+                let meant = did_you_mean(name.as_ref(), machine.axes.iter().map(|axis| &*axis.name));
+                let message = format!("the machine has no axis {:?}{meant}", quoted(name.as_ref()));
+                InputError::at(source, name.span(), message).help(format!("its axes are {}", machine.axis_names()))
             })?;
             if *profile.as_ref() == ProfileKind::Scurve && machine.axes[axis].jerk_limit.is_none() {
                 let message = format!("profile = \"scurve\": axis {:?} has no jerk_limit", name.as_ref());

@@ -1,18 +1,25 @@
 //! Numbers of a file, exact, each refused where it stands.
 
 use crate::decimal;
-use crate::error::{InputError, Source};
+use crate::error::{InputError, Source, quoted};
 use bigdecimal::{BigDecimal, Signed};
 use toml::Spanned;
 
 /// The exact value of a number in the file, which must be finite.
 pub(crate) fn exact(source: &Source, value: &Spanned<f64>, key: &str) -> Result<BigDecimal, InputError> {
+    const GREATEST: f64 = 1e30;
     let literal = source.text.get(value.span()).unwrap_or("");
-    let exact = if value.as_ref().is_finite() { decimal::parse(literal) } else { None };
-    exact.filter(|v| decimal::to_f64(v).abs() < 1e30).ok_or_else(|| {
-        InputError::at(source, value.span(), format!("{key} = {literal}: not a usable number"))
-            .help("a finite decimal number of at most 60 digits is expected")
-    })
+    let refused = |wrong: &str, help: &str| {
+        let message = format!("{} = {}: not a usable number: it {wrong}", quoted(key), quoted(literal));
+        InputError::at(source, value.span(), message).help(help)
+    };
+    if !value.as_ref().is_finite() {
+        return Err(refused("is not finite", "give a finite decimal number"));
+    }
+    if value.as_ref().abs() >= GREATEST {
+        return Err(refused("is too great", "a number must be under 10^30"));
+    }
+    decimal::parse(literal).ok_or_else(|| refused("needs more than 60 digits before or behind its point", "round it"))
 }
 
 /// A number over zero.

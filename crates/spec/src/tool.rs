@@ -1,9 +1,10 @@
 //! Programs of others that are run: what one types, how they say their version, what they are wanted for, how to get them.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A program.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Tool {
     /// What one types; those of `yowasp-*` packages have that before it.
     pub name: &'static str,

@@ -136,7 +136,7 @@ fn what_cannot_be_is_refused_where_it_stands() {
         ("watchdog_ms = -nan", 15, "not a usable number"),
         ("enable_ms = inf", 13, "not a usable number"),
         ("debounce_us = 1e31", 15, "not a usable number"),
-        ("watchdog_ms = 1e999999", 15, "a number too great"),
+        ("watchdog_ms = 1e999999", 15, "the number is too great"),
         ("watchdog_ms = \"100\"", 15, "expected a number"),
         ("watchdog_ms = \"NaN\"", 15, "expected a number"),
         ("enable_ms = true", 13, "expected a number"),

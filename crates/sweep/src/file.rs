@@ -2,6 +2,7 @@
 
 use carrystep_spec::{InputError, MoveFile, Source};
 use minijinja::{Environment, UndefinedBehavior};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,7 +12,7 @@ use thiserror::Error;
 pub type Values = BTreeMap<String, Value>;
 
 /// Something that stands in a move file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
     /// `phases = 16`
@@ -86,7 +87,7 @@ impl SweepFile {
     pub fn load(path: &Path, sample: Option<u64>, seed: u64) -> Result<Self, SweepError> {
         let source = Source::read(path)?;
         let wrong = |message: String| SweepError::Format { path: path.display().to_string(), message };
-        let raw: Raw = toml::from_str(&source.text).map_err(|error| wrong(error.to_string()))?;
+        let raw: Raw = source.parse()?;
         for (name, choice) in &raw.vary {
             match choice {
                 Choice::List(list) if list.is_empty() => return Err(wrong(format!("{name}: an empty list"))),

@@ -2,6 +2,7 @@
 
 use crate::file::{SweepError, SweepFile, Values};
 use crate::shard::Shard;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -21,7 +22,7 @@ pub enum Verdict {
 }
 
 /// The worst of one figure, and the case that has it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Worst {
     /// The figure.
     pub value: f64,
@@ -32,7 +33,7 @@ pub struct Worst {
 }
 
 /// A case that failed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Failed {
     /// The case's number.
     pub case: u64,
@@ -43,7 +44,7 @@ pub struct Failed {
 }
 
 /// A sweep, or some shards of it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Report {
     /// All cases of all shards that are in here passed or were refused.
     pub passed: bool,

@@ -1,11 +1,12 @@
 //! A part of a sweep, for one machine of many.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
 /// Shard `number` of `count`: every `count`-th case, so that each has easy and hard ones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, JsonSchema, Serialize, Deserialize)]
 pub struct Shard {
     /// From 1.
     pub number: u64,

@@ -2,10 +2,11 @@
 
 use crate::groups::Group;
 use crate::request::TableRequest;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Figures of a table; those called real are of the rounded counts that the timer plays.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct Figures {
     /// Counts per second.
     pub timer_hz: f64,

@@ -5,10 +5,11 @@
 
 use crate::error::TableError;
 use crate::request::{MAX_ENTRIES, Pulses};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A run of entries that all last the same number of pulses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Group {
     /// The first entry behind it.
     pub end: u16,

@@ -2,6 +2,7 @@
 
 use crate::error::{TableError, positive};
 use crate::timer::Timer;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Most steps in a ramp; a table with one pulse per entry is limited to 65 535 entries besides.
@@ -14,7 +15,7 @@ pub(crate) const MAX_ENTRIES: u32 = u16::MAX as u32;
 const SPEEDS: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
 
 /// Everything that a table is made from.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct TableRequest {
     /// The timer that will play it.
     pub timer: Timer,
@@ -32,7 +33,7 @@ pub struct TableRequest {
 }
 
 /// Step angle and microsteps.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct Motor {
     /// Angle of a full step, degrees; over 0, at most 180.
     pub step_angle_deg: f64,
@@ -41,7 +42,7 @@ pub struct Motor {
 }
 
 /// A speed, in the terms of the source.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Speed {
     /// Revolutions per minute of the motor shaft.
@@ -51,7 +52,7 @@ pub enum Speed {
 }
 
 /// The curve of a ramp, over the index of its entries or steps.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Kind {
     /// [`crate::logistic`]: frequency logistic in the entry index.
@@ -80,7 +81,7 @@ pub enum Kind {
 }
 
 /// How the recurrence is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Arithmetic {
     /// In f64; rounded to counts at the end.
@@ -93,7 +94,7 @@ pub enum Arithmetic {
 ///
 /// Logistic entries are stretched: their number stays and the ramp has more pulses. In the other kinds the steps of the
 /// ramp stay, and an entry takes the mean delay of the steps that it covers.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Pulses {
     /// One pulse per entry.

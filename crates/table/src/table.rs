@@ -8,10 +8,11 @@ use crate::inverse_table::InverseTable;
 use crate::logistic::Logistic;
 use crate::request::{Arithmetic, Kind, TableRequest};
 use crate::sine::Sine;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A ramp in compare values, ready for the player.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct Table {
     request: TableRequest,
     figures: Figures,

@@ -1,13 +1,14 @@
 //! The timer: what it counts, how long it can wait, and which prescaler would do.
 
 use crate::error::TableError;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The prescalers of timers 0 and 1 of an AVR.
 pub const AVR_PRESCALERS: [u32; 5] = [1, 8, 64, 256, 1024];
 
 /// A compare timer.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Timer {
     /// Clock in front of the prescaler, Hz; 1 to 10^10.
     pub clock_hz: u64,
@@ -24,7 +25,7 @@ pub struct Timer {
 }
 
 /// Width of a counter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Width {
     /// 8 bits.
@@ -34,7 +35,7 @@ pub enum Width {
 }
 
 /// What the counter does at a match, and so what a compare value means.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mode {
     /// Clear timer on compare: a period is the compare value plus one.

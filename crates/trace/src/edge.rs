@@ -1,11 +1,12 @@
 //! What every consumer of a capture sees: pins that change, in time order.
 
 use crate::error::TraceError;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
 /// A pin of an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pin {
     /// A rising edge is one step.

@@ -1,10 +1,11 @@
 //! What the checker found: figures with stable names, sentences, and a table for a terminal.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
 /// Where the times of a capture are counted from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum OriginKind {
     /// Our own capture: the load of the first move plus the latency L.
@@ -16,7 +17,7 @@ pub enum OriginKind {
 }
 
 /// The check of one capture.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct Report {
     /// Whether every axis passed.
     pub passed: bool,
@@ -33,7 +34,7 @@ pub struct Report {
 }
 
 /// The check of one axis.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct AxisReport {
     /// The axis' name.
     pub axis: String,

@@ -4,25 +4,27 @@ use crate::shell::{self, Done};
 use std::collections::BTreeSet;
 
 /// Each crate and all crates of the house that it may reach, directly or through others.
-const ALLOWED: [(&str, &[&str]); 18] = [
-    ("spec", &[]),
-    ("profile", &["spec"]),
-    ("table", &["spec", "profile"]),
-    ("reference", &["spec", "profile"]),
-    ("plan", &["spec", "profile"]),
-    ("model", &["spec"]),
-    ("hdl", &["spec"]),
-    ("export", &["spec", "hdl"]),
-    ("trace", &["spec", "profile"]),
-    ("link", &["spec"]),
-    ("levels", &["spec", "profile", "model", "hdl", "export", "trace"]),
-    ("board", &["spec", "profile", "model", "hdl", "export", "trace", "levels"]),
-    ("sweep", &["spec"]),
-    ("synthesis", &["spec", "hdl", "export"]),
-    ("doctor", &["spec"]),
+const ALLOWED: [(&str, &[&str]); 19] = [
+    ("files", &[]),
+    ("spec", &["files"]),
+    ("profile", &["files", "spec"]),
+    ("table", &["files", "spec", "profile"]),
+    ("reference", &["files", "spec", "profile"]),
+    ("plan", &["files", "spec", "profile"]),
+    ("model", &["files", "spec"]),
+    ("hdl", &["files", "spec"]),
+    ("export", &["files", "spec", "hdl"]),
+    ("trace", &["files", "spec", "profile"]),
+    ("link", &["files", "spec"]),
+    ("levels", &["files", "spec", "profile", "model", "hdl", "export", "trace"]),
+    ("board", &["files", "spec", "profile", "model", "hdl", "export", "trace", "levels"]),
+    ("sweep", &["files", "spec"]),
+    ("synthesis", &["files", "spec", "hdl", "export"]),
+    ("doctor", &["files", "spec"]),
     (
         "cli",
         &[
+            "files",
             "spec",
             "profile",
             "table",
@@ -40,7 +42,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
             "doctor",
         ],
     ),
-    ("bench", &["spec", "profile", "plan", "model", "hdl", "export", "trace", "levels"]),
+    ("bench", &["files", "spec", "profile", "plan", "model", "hdl", "export", "trace", "levels"]),
     ("xtask", &[]),
 ];
 

@@ -7,6 +7,7 @@ use carrystep_export::Gateware;
 use carrystep_spec::Source;
 use carrystep_spec::board::{Board, BoardError, Mapped, Measured, Part, Place, Placed, board, boards};
 use carrystep_spec::clock::mhz;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -16,7 +17,7 @@ use std::path::Path;
 const UNTRIED: &str = "None of these boards was at hand: nothing of carrystep was ever run on one.\n";
 
 /// What `--json` prints.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Shown<'a> {
     passed: bool,
     /// Whether carrystep was ever run on a real one.
@@ -24,7 +25,7 @@ struct Shown<'a> {
     boards: Vec<ShownBoard<'a>>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct ShownBoard<'a> {
     #[serde(flatten)]
     board: &'a Board,

@@ -10,12 +10,13 @@ use carrystep_spec::board::{Board, Toolchain};
 use carrystep_spec::clock::mhz;
 use carrystep_synthesis::board::{Built, Job, build};
 use carrystep_synthesis::ice40;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// What `--json` prints.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Report {
     /// Whether the clock is reached.
     passed: bool,
@@ -38,7 +39,7 @@ struct Report {
 }
 
 /// So many of so many.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Use {
     used: u32,
     of: Option<u32>,
@@ -84,13 +85,13 @@ fn bitstream(
         part: ice40::Part { device: &part.name, package: &part.package },
         clock_hz,
     };
+    let file = out.join(format!("{top}.{}", board.bitstream));
+    let mut whole = output::OutputFile::create(&file)?;
     let mut stages = Stages::new();
     let built = build(&job, &mut |stage| stages.next(stage))?;
     drop(stages);
     let passed = built.reaches(clock_hz);
-    let file = out.join(format!("{top}.{}", board.bitstream));
     if passed {
-        let mut whole = output::OutputFile::create(&file)?;
         whole
             .write_all(&built.bitstream)
             .map_err(|error| Failure::input(format!("cannot write {}: {error}", file.display())))?;

@@ -6,12 +6,12 @@ use crate::{job, output};
 use carrystep_plan::plan;
 use carrystep_spec::{MoveFile, Timebase};
 use carrystep_trace::{Checker, Origin, Report, SignalMap, TraceError, VcdReader};
+use schemars::JsonSchema;
 use serde::Serialize;
-use std::fs::File;
 use std::io::BufReader;
 
 /// What `--json` prints.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Checked<'a> {
     passed: bool,
     capture: &'a std::path::Path,
@@ -40,7 +40,7 @@ fn read(
 ) -> Result<Report, Failure> {
     job::fits_a_capture(plan)?;
     let unusable = |error: String| Failure::input(format!("{}: {error}", arguments.capture.display()));
-    let capture = File::open(&arguments.capture).map_err(|error| unusable(error.to_string()))?;
+    let capture = carrystep_files::open(&arguments.capture).map_err(|error| Failure::input(error.to_string()))?;
     let map = SignalMap::parse(&arguments.map).map_err(|error| Failure::input(error.to_string()))?;
     let names: Vec<&str> = file.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
     let reader = VcdReader::new(BufReader::new(capture), &names, &map).map_err(|error| unusable(error.to_string()))?;

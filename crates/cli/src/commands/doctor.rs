@@ -5,12 +5,13 @@ use crate::commands::boards;
 use crate::failure::Failure;
 use crate::output;
 use carrystep_doctor::{Access, Host, Report};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// What `--json` prints.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Examined {
     passed: bool,
     #[serde(flatten)]

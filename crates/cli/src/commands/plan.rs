@@ -7,11 +7,12 @@ use crate::output;
 use crate::table::{self, Limits};
 use carrystep_plan::{Plan, PlannedMove, plan};
 use carrystep_spec::{MoveFile, Segment};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
 
 /// What `--json` prints.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Planned<'a> {
     passed: bool,
     tick_ns: u64,
@@ -19,7 +20,7 @@ struct Planned<'a> {
     moves: Vec<MoveJson<'a>>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct MoveJson<'a> {
     start_tick: u64,
     rest_ticks: u64,
@@ -28,7 +29,7 @@ struct MoveJson<'a> {
     axes: Vec<AxisJson<'a>>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct AxisJson<'a> {
     axis: &'a str,
     shape: &'a str,
@@ -39,7 +40,7 @@ struct AxisJson<'a> {
 }
 
 /// Numbers of 64 bits as strings: many JSON readers keep only 53.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct SegmentJson {
     ticks: u32,
     v: String,

@@ -8,12 +8,13 @@ use carrystep_reference::{
     CsvError, Drive, Kind, Length, Listing, PictureError, Reference, ReferenceError, Row, Scale, picture, write_csv,
 };
 use carrystep_spec::StartPhase;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// What `--json` prints.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Profiles<'a> {
     passed: bool,
     drive: &'a Drive,
@@ -24,7 +25,7 @@ struct Profiles<'a> {
     files: Vec<PathBuf>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct ProfileJson {
     kind: Kind,
     ramp: bool,
@@ -53,13 +54,9 @@ pub fn run(arguments: &Profile) -> Result<(), Failure> {
 }
 
 fn only_once(arguments: &Profile) -> Result<(), Failure> {
-    let Profile { kinds, csv, plot, .. } = arguments;
+    let Profile { kinds, .. } = arguments;
     if let Some((_, twice)) = kinds.iter().enumerate().find(|(place, kind)| kinds[..*place].contains(kind)) {
         return Err(Failure::input(format!("{twice} is named twice")));
-    }
-    let same = |a: &Path, b: &Path| std::path::absolute(a).ok() == std::path::absolute(b).ok();
-    if csv.as_deref().zip(plot.as_deref()).is_some_and(|(csv, plot)| same(csv, plot)) {
-        return Err(Failure::input("--plot would write over --csv: give them two names"));
     }
     if arguments.json && to_stdout(arguments) {
         return Err(Failure::input("--csv - and --json would both go to standard output: give --csv a file"));
@@ -73,9 +70,10 @@ fn to_stdout(arguments: &Profile) -> bool {
 
 /// All files begun, then all written, then all there.
 fn files(arguments: &Profile, references: &[Reference], drive: &Drive) -> Result<Vec<PathBuf>, Failure> {
-    let begin = |path: Option<&PathBuf>| path.map(|path| OutputFile::create(path)).transpose();
-    let mut csv = begin(arguments.csv.as_ref().filter(|_| !to_stdout(arguments)))?;
-    let mut plot = begin(arguments.plot.as_ref())?;
+    let claim = |path: Option<&PathBuf>| path.map(|path| OutputFile::claim(path)).transpose();
+    let claims = [claim(arguments.csv.as_ref().filter(|_| !to_stdout(arguments)))?, claim(arguments.plot.as_ref())?];
+    let [csv, plot] = claims.map(|claim| claim.map(OutputFile::begin).transpose());
+    let (mut csv, mut plot) = (csv?, plot?);
     if let Some(file) = &mut csv {
         write_csv(file, references, &arguments.listing())?;
     }

@@ -10,7 +10,7 @@ use carrystep_sweep::{Case, Report, SweepError, SweepFile, Verdict};
 use carrystep_trace::AxisReport;
 use indicatif::{ProgressBar, ProgressDrawTarget};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::Path;
 
 /// Runs a shard, or merges reports.
 pub fn run(arguments: &Sweep) -> Result<(), Failure> {
@@ -25,7 +25,7 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
             interrupt::check()?;
             report
         }
-        None => Report::merge(arguments.merge.iter().map(read).collect::<Result<Vec<_>, _>>()?)?,
+        None => Report::merge(arguments.merge.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?)?,
     };
     if arguments.json {
         output::print_json(&report)?;
@@ -35,10 +35,10 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
     if report.passed { Ok(()) } else { Err(Failure::Check) }
 }
 
-fn read(path: &PathBuf) -> Result<Report, Failure> {
+fn read(path: &Path) -> Result<Report, Failure> {
     let wrong = |error: String| Failure::input(format!("{}: {error}", path.display()));
-    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-    serde_json::from_str(&text).map_err(|error| wrong(format!("no report of a sweep: {error}")))
+    let text = carrystep_files::read_text(path).map_err(|error| Failure::input(error.to_string()))?;
+    serde_json::from_slice(&text).map_err(|error| wrong(format!("no report of a sweep: {error}")))
 }
 
 /// Plans, simulates and checks a case.

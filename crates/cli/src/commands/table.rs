@@ -4,11 +4,12 @@ use crate::arguments::{Table as Arguments, TableKind};
 use crate::failure::Failure;
 use crate::output::{self, OutputFile};
 use carrystep_table::{Figures, PLAYER, Table, TableError};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// What `--json` prints.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Tabled<'a> {
     passed: bool,
     #[serde(flatten)]
@@ -50,8 +51,9 @@ fn player(kind: &TableKind) -> impl Iterator<Item = (&'static str, &'static str)
 
 /// All files begun, then all written, then all there.
 fn write(folder: &Path, texts: &[(String, &str)]) -> Result<Vec<PathBuf>, Failure> {
-    let begin = |(name, _): &(String, &str)| OutputFile::create(&folder.join(name));
-    let mut files = texts.iter().map(begin).collect::<Result<Vec<_>, _>>()?;
+    let claim = |(name, _): &(String, &str)| OutputFile::claim(&folder.join(name));
+    let claims = texts.iter().map(claim).collect::<Result<Vec<_>, _>>()?;
+    let mut files = claims.into_iter().map(OutputFile::begin).collect::<Result<Vec<_>, _>>()?;
     for (file, (_, text)) in files.iter_mut().zip(texts) {
         file.text(text)?;
     }

@@ -8,13 +8,14 @@ use carrystep_export::{CORE_NAME, ENGINE_NAME, ExportError};
 use carrystep_spec::engine::GuardFigures;
 use carrystep_spec::link::Uart;
 use carrystep_spec::{Machine, Source};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 const ENGINE_MACHINE: &str = include_str!("../../../../sim/engine.toml");
 
 /// What `--json` prints.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Written {
     passed: bool,
     top: &'static str,
@@ -46,7 +47,7 @@ fn listed(files: &[PathBuf]) -> String {
 }
 
 /// What `--json` prints of a board's gateware.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct WrittenForBoard<'a> {
     passed: bool,
     top: String,

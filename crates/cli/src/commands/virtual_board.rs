@@ -13,6 +13,7 @@ use carrystep_levels::replay::Replay;
 use carrystep_spec::engine::EngineOutputs;
 use carrystep_spec::{EngineBuild, Machine};
 use carrystep_trace::{OwnCapture, PinsVcd};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -24,7 +25,7 @@ const PART_OF_WATCHDOG: u64 = 4;
 const PART_OF_SECOND: u64 = 40;
 
 /// What `--json` prints.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Served {
     passed: bool,
     /// The board's own time.
@@ -35,7 +36,7 @@ struct Served {
     files: Vec<PathBuf>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct AxisServed {
     axis: String,
     position: i32,

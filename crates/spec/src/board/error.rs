@@ -1,20 +1,21 @@
 //! What a board cannot do: each error names what it can.
 
-use super::names;
+use super::{boards, names};
 use crate::clock::ClockError;
+use carrystep_files::did_you_mean;
 use thiserror::Error;
 
 /// What a board cannot do.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum BoardError {
     /// There is no such board.
-    #[error("no board is called '{name}'; there are {}", names())]
+    #[error("no board is called '{name}'{}; there are {}", did_you_mean(name, boards().iter().map(|board| &*board.name)), names())]
     Unknown {
         /// What was asked for.
         name: String,
     },
     /// It is not sold with this part.
-    #[error("{board} has no part '{part}'; there is {}", .parts.join(", "))]
+    #[error("{board} has no part '{part}'{}; there is {}", did_you_mean(part, .parts.iter().map(|part| &**part)), .parts.join(", "))]
     Part {
         /// The board.
         board: String,

@@ -1,11 +1,12 @@
 //! Families of FPGAs: who synthesises them, and what makes their clock.
 
 use crate::clock::ClockManagers;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A family.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Family {
     /// Lattice iCE40 LP, HX and UltraPlus.
@@ -21,7 +22,7 @@ pub enum Family {
 }
 
 /// Who makes a bitstream.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Toolchain {
     /// yosys, nextpnr and icestorm.
@@ -98,7 +99,7 @@ impl fmt::Display for Toolchain {
 }
 
 /// What a pin is set to; it follows from its bank's voltage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 pub enum IoStandard {
     /// 3.3 V.
     #[serde(rename = "LVCMOS33")]
@@ -136,7 +137,7 @@ impl IoStandard {
 }
 
 /// How the oscillator reaches an iCE40's PLL: nextpnr places one kind only, by the oscillator's pin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PllInput {
     /// Straight from its pad: `SB_PLL40_PAD`.

@@ -1,6 +1,7 @@
 //! What the shipped gateware takes of each board: `data/measured.toml`, which `cargo xtask long boards` writes.
 
 use super::Board;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -9,7 +10,7 @@ use std::sync::LazyLock;
 pub const MEASURED_AT: &str = "crates/spec/data/measured.toml";
 
 /// What the shipped gateware takes of a board, on its first part with its first clock.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Measured {
     /// On the pins of an iCE40.
@@ -19,7 +20,7 @@ pub enum Measured {
 }
 
 /// By nextpnr and icetime.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Placed {
     /// Logic cells.
@@ -35,7 +36,7 @@ pub struct Placed {
 }
 
 /// By yosys.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mapped {
     /// LUTs of all widths, inverters included, and those that are memory.

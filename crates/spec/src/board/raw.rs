@@ -5,6 +5,7 @@ use super::{Board, Clocking, Family, IoStandard, Oscillator, Part, Place, PllInp
 use crate::build::Timebase;
 use crate::engine::{MAX_AXES, check_schedule};
 use crate::error::{InputError, Source};
+use carrystep_files::did_you_mean;
 use pins::Pins;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -271,7 +272,8 @@ impl Reader<'_> {
     fn port(&self, name: &Spanned<String>) -> Result<&'static Port, InputError> {
         PORTS.iter().find(|port| port.name == name.as_ref()).ok_or_else(|| {
             let known: Vec<&str> = PORTS.iter().map(|port| port.name).collect();
-            InputError::at(self.source, name.span(), format!("no port is called '{}'", name.as_ref()))
+            let meant = did_you_mean(name.as_ref(), known.iter().copied());
+            InputError::at(self.source, name.span(), format!("no port is called '{}'{meant}", name.as_ref()))
                 .help(format!("known: {}", known.join(", ")))
         })
     }

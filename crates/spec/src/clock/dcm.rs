@@ -1,11 +1,12 @@
 //! The frequency synthesiser of a Spartan-3, 3E or 6: CLKFX of a DCM without feedback.
 
 use super::{ClockManager, Way};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::ops::RangeInclusive;
 
 /// CLKFX_MULTIPLY and CLKFX_DIVIDE.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Dcm {
     /// 2 to 32.
     pub multiply: u8,

@@ -2,10 +2,11 @@
 //! among equals too (`tests/clocks.rs` compares).
 
 use super::{ClockManager, Way};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Settings of `SB_PLL40_CORE` or `SB_PLL40_PAD`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Ice40Pll {
     /// DIVR, 0 to 15: divides the reference by one more.
     pub divr: u8,

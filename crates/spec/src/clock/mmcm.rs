@@ -1,10 +1,11 @@
 //! The MMCM of a Spartan-7 of speed grade -1, with whole factors.
 
 use super::{ClockManager, Way};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// CLKFBOUT_MULT_F, DIVCLK_DIVIDE and CLKOUT0_DIVIDE_F.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Mmcm {
     /// 2 to 64.
     pub multiply: u8,

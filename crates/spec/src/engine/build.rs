@@ -4,6 +4,7 @@ use super::{EngineError, MAX_AXES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, check_pins,
 use crate::build::{Build, PinTiming, Timebase};
 use crate::fixed::StartPhase;
 use crate::machine::Machine;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// All parameters of an engine.
@@ -43,7 +44,7 @@ pub struct Guard {
 }
 
 /// How the limit switches are wired.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Limits {
     /// There are none.

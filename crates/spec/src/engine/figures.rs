@@ -2,10 +2,11 @@
 
 use super::{EngineBuild, Limits};
 use crate::machine::steps_per_s2;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A time as a guard keeps it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct Between {
     /// It is never shorter.
     pub least: f64,
@@ -14,7 +15,7 @@ pub struct Between {
 }
 
 /// A guard in the units of a machine file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct GuardFigures {
     /// From one look at a limit to the next, us.
     pub round_us: f64,

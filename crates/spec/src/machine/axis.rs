@@ -5,9 +5,10 @@ use super::{Axis, stop};
 use crate::build::{MAX_CLOCKS, PinTiming, Timebase};
 use crate::decimal;
 use crate::driver::drivers;
-use crate::error::{InputError, Source};
+use crate::error::{InputError, Source, quoted};
 use crate::number::{not_negative, positive};
 use bigdecimal::{BigDecimal, Zero};
+use carrystep_files::did_you_mean;
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
@@ -41,7 +42,7 @@ impl RawAxis {
         let name = self.name.as_ref().clone();
         let fit = |c: char| c.is_ascii_alphanumeric() || c == '_';
         if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(fit) || name.len() > 32 {
-            return Err(InputError::at(source, self.name.span(), format!("{name:?} cannot name an axis")).help(
+            return Err(InputError::at(source, self.name.span(), format!("{:?} cannot name an axis", quoted(&name))).help(
                 "a name starts with a letter and has letters, digits and _ only, 32 at most: it becomes a signal name",
             ));
         }
@@ -94,7 +95,8 @@ impl RawAxis {
             None => None,
             Some(name) => Some(drivers().get(name.as_ref().as_str()).ok_or_else(|| {
                 let known: Vec<&str> = drivers().keys().map(String::as_str).collect();
-                InputError::at(source, name.span(), format!("no driver is called '{}'", name.as_ref()))
+                let meant = did_you_mean(name.as_ref(), known.iter().copied());
+                InputError::at(source, name.span(), format!("no driver is called '{}'{meant}", quoted(name.as_ref())))
                     .help(format!("known: {}; or give step_ns, gap_ns, setup_ns and hold_ns", known.join(", ")))
             })?),
         };

@@ -1,0 +1,74 @@
+//! All inputs and all unfinished outputs of this process.
+
+use crate::place::Identity;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+static REGISTRY: Mutex<Registry> = Mutex::new(Registry { inputs: Vec::new(), outputs: Vec::new(), next: 0 });
+
+struct Registry {
+    inputs: Vec<Input>,
+    outputs: Vec<Output>,
+    next: u64,
+}
+
+/// A file that was read. What it is, is looked up when it is compared: a number of a file that was removed may
+/// by then belong to another one.
+struct Input {
+    shown: PathBuf,
+    absolute: PathBuf,
+}
+
+/// A file that is being written.
+struct Output {
+    number: u64,
+    shown: PathBuf,
+    identity: Identity,
+}
+
+/// With what an output collides.
+pub(crate) enum Collision {
+    /// It is a file that was read.
+    Input(PathBuf),
+    /// It is another output.
+    Output(PathBuf),
+}
+
+fn registry() -> MutexGuard<'static, Registry> {
+    REGISTRY.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Registers an input; an error names the unfinished output that is the same file.
+pub(crate) fn add_input(path: &Path) -> Result<(), PathBuf> {
+    // A file that has just been opened has an identity; one that has lost it again cannot be replaced.
+    let (Ok(identity), Ok(absolute)) = (Identity::of(path), std::path::absolute(path)) else { return Ok(()) };
+    let mut registry = registry();
+    if let Some(output) = registry.outputs.iter().find(|output| output.identity == identity) {
+        return Err(output.shown.clone());
+    }
+    if registry.inputs.iter().all(|input| input.absolute != absolute) {
+        registry.inputs.push(Input { shown: path.to_owned(), absolute });
+    }
+    Ok(())
+}
+
+/// Registers an output under a number.
+pub(crate) fn add_output(shown: &Path, identity: Identity) -> Result<u64, Collision> {
+    let mut registry = registry();
+    let same = |input: &&Input| Identity::of(&input.absolute).is_ok_and(|read| read == identity);
+    if let Some(input) = registry.inputs.iter().find(same) {
+        return Err(Collision::Input(input.shown.clone()));
+    }
+    if let Some(output) = registry.outputs.iter().find(|output| output.identity == identity) {
+        return Err(Collision::Output(output.shown.clone()));
+    }
+    registry.next += 1;
+    let number = registry.next;
+    registry.outputs.push(Output { number, shown: shown.to_owned(), identity });
+    Ok(number)
+}
+
+/// The output of this number is finished, or given up.
+pub(crate) fn drop_output(number: u64) {
+    registry().outputs.retain(|output| output.number != number);
+}
