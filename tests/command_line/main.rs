@@ -9,6 +9,7 @@ mod bad_machines;
 mod bad_moves;
 mod bad_outputs;
 mod boards;
+mod clocks;
 mod command;
 mod curves;
 #[path = "../../crates/link/tests/support/device.rs"]
@@ -17,8 +18,11 @@ mod device;
 mod engine;
 mod interrupts;
 mod json_names;
+mod machine_new;
 mod profile;
 mod sweeps;
 mod table;
+#[cfg(unix)]
+mod terminal;
 #[cfg(unix)]
 mod virtual_boards;

@@ -1,5 +1,6 @@
 //! How the command fails: what is told, and the exit status that goes with it.
 
+use crate::colour;
 use carrystep_export::ExportError;
 use carrystep_levels::LevelError;
 use carrystep_plan::PlanError;
@@ -67,20 +68,24 @@ fn render(error: &InputError, terminal: bool) -> String {
     diagnostic.help = error.help.as_deref().map(harmless);
     let label = LabeledSpan::underline(shorten(&source.text, span.clone()));
     let code = NamedSource::new(source.path.display().to_string(), harmless(&source.text));
-    format!("error:\n{}", drawn(diagnostic.with_label(label), code, terminal))
+    drawn(diagnostic.with_label(label), code, terminal)
 }
 
 /// Colours and lines on a terminal; elsewhere plain ASCII, and no message broken into lines.
 fn drawn(diagnostic: MietteDiagnostic, code: NamedSource<String>, terminal: bool) -> String {
     let report = Report::new(diagnostic).with_source_code(code);
-    if terminal {
-        return format!("{report:?}");
-    }
+    let mut theme = match (terminal, colour::wanted(&std::io::stderr())) {
+        (true, true) => GraphicalTheme::unicode(),
+        (true, false) => GraphicalTheme::unicode_nocolor(),
+        (false, _) => GraphicalTheme::none(),
+    };
+    // A word, where a theme has a cross that reads as a letter.
+    theme.characters.error = "error:".to_owned();
+    let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(terminal);
     let mut text = String::new();
-    let plain = GraphicalReportHandler::new_themed(GraphicalTheme::none()).with_wrap_lines(false);
     // Writing to a string cannot fail.
-    let _ = plain.render_report(&mut text, report.as_ref());
-    text
+    let _ = handler.render_report(&mut text, report.as_ref());
+    text.trim_start().to_owned()
 }
 
 /// No control characters of a file reach the terminal; each byte keeps its place.
@@ -171,8 +176,7 @@ mod tests {
         let source = Source { path: "m.toml".into(), text: "[[move]]\nto = {}\n".into() };
         let shown = render(&InputError::at(&source, 0..17, "too far").help("go less far"), false);
         let lines = [
-            "error:",
-            "  x too far",
+            "error: too far",
             "   ,-[m.toml:1:1]",
             " 1 | [[move]]",
             "   : ^^^^^^^^",
