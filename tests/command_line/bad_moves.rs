@@ -44,7 +44,7 @@ fn curves_in_a_time_that_is_too_short() {
     for (profile, limit) in [("sine", "accel_limit"), ("logistic", "accel_limit"), ("scurve", "accel_limit")] {
         let timed = |time: &str| jerk.replace("\"ranade\"", &format!("\"{profile}\"\ntime = {time}"));
         let ran = Folder::with_move(timed("0.001")).run("plan move.toml");
-        ran.refuses(&format!("over {limit} 25000; at least "));
+        ran.refuses(&format!("over {limit} 5000 units/s^2 (25000 steps/s^2); at least "));
         let least = ran.stderr.split("at least ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
         assert_eq!(Folder::with_move(timed(least)).run("plan move.toml").status, 0, "{profile} in {least} s");
     }
@@ -53,12 +53,20 @@ fn curves_in_a_time_that_is_too_short() {
 #[test]
 fn distances_beyond_the_position_register() {
     all_refused(&[
-        ("x = 2 ", "x = ^429496730 ", "axis 'x' would stand at 2147483650 steps, beyond its register"),
-        ("x = 2 ", "x = ^-429496730 ", "would stand at -2147483650 steps"),
+        (
+            "x = 2 ",
+            "x = ^429496730 ",
+            "axis 'x' would stand at 429496730 units (2147483650 steps), beyond its register",
+        ),
+        ("x = 2 ", "x = ^-429496730 ", "would stand at -429496730 units (-2147483650 steps)"),
         ("x = 2 ", "x = ^1e29 ", "beyond its register"),
-        ("x = 2 ", "x = ^1e29 ", "the sum of all moves must stay within +-2147483647 steps of the start"),
+        (
+            "x = 2 ",
+            "x = ^1e29 ",
+            "the sum of all moves must stay within +-429496729 units (2147483647 steps) of the start",
+        ),
         // each move fits, their sum does not
-        ("x = -1.3", "x = ^429496728", "would stand at 2147483650 steps"),
+        ("x = -1.3", "x = ^429496728", "would stand at 429496730 units"),
     ]);
 }
 
@@ -76,22 +84,26 @@ fn times_that_are_too_short_name_the_limit_and_the_least_time() {
         (
             "[[move]]\nprofile = \"ranade\"",
             "^[[move]]\nprofile = \"ranade\"\ntime = 0.001",
-            "move 1, axis x: needs 10000.0 steps/s, over speed_limit 5000; at least 0.00944",
+            "move 1, axis x: needs 2000 units/s (10000 steps/s), over speed_limit 1000 units/s (5000 steps/s); at least 0.00944",
         ),
         (
             "[[move]]\nprofile = \"trapezoid\"\ntime = 0.05",
             "^[[move]]\nprofile = \"trapezoid\"\ntime = 0.01",
-            "move 2, axis x: needs 240000.0 steps/s^2, over accel_limit 25000; at least 0.0",
+            "move 2, axis x: needs 48000 units/s^2 (240000 steps/s^2), over accel_limit 5000 units/s^2 (25000 steps/s^2); at least 0.0",
         ),
         (
             "[[move]]\nprofile = \"ranade\"",
             "^[[move]]\nprofile = \"constant\"\ntime = 0.001",
-            "move 1, axis x: needs 10000.0 steps/s, over start_speed 1000; at least 0.01 s would do",
+            "move 1, axis x: needs 2000 units/s (10000 steps/s), over start_speed 200 units/s (1000 steps/s); at least 0.01 s would do",
         ),
     ]);
     let (rest, times) = (GOOD.replace("start_speed = 200", "start_speed = 0"), "profile = \"constant\"\ntime = 1");
     let ran = Folder::with_move(rest.replacen("profile = \"ranade\"", times, 1)).run("plan move.toml");
-    ran.refuses_at("move.toml", (15, 1), "needs a start_speed over 0 steps/s; raise it, or take another profile");
+    ran.refuses_at(
+        "move.toml",
+        (15, 1),
+        "needs a start_speed over 0 units/s (0 steps/s); raise it, or take another profile",
+    );
 }
 
 #[test]

@@ -143,7 +143,7 @@ fn a_schedule_that_does_not_fit_is_refused_with_the_arithmetic() {
     let folder = with_machine(&text);
     folder.run(WRITE).refuses(
         "m.toml: 6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz has \
-         48: a clock of 80000000 Hz, a longer tick or fewer axes would do",
+         48: a tick of 2000 ns, a clock of 80000000 Hz or fewer axes would do",
     );
     folder.write("move.toml", format!("{text}{MOVES}"));
     let simulate = "simulate move.toml --core engine --vcd a.vcd --csv a.csv";

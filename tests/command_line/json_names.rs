@@ -6,8 +6,8 @@ use serde_json::Value;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
-const LIMITS: &str = "limits limits.total_ticks limits.total_s limits.axes
-    limits.axes[].axis limits.axes[].segments limits.axes[].steps limits.axes[].residue
+const LIMITS: &str = "limits limits.total_ticks limits.total_s limits.tick_ns limits.tick_note limits.axes
+    limits.axes[].axis limits.axes[].unit limits.axes[].steps_per_unit limits.axes[].segments limits.axes[].steps limits.axes[].residue
     limits.axes[].speed_steps_per_s limits.axes[].speed_limit_steps_per_s
     limits.axes[].acceleration_steps_per_s2 limits.axes[].acceleration_limit_steps_per_s2
     limits.axes[].start_speed_steps_per_s limits.axes[].start_speed_limit_steps_per_s";
@@ -109,7 +109,7 @@ fn every_report_keeps_its_names() {
     assert_eq!(run["files"], serde_json::json!(["a.vcd", "a.csv"]));
     assert_eq!(run["positions"], serde_json::json!([4]));
     document(&folder, "check a.vcd move.toml", 0, &["passed capture", CHECK]);
-    document(&folder, "verilog --out out", 0, &["passed top files"]);
+    document(&folder, "verilog --out out", 0, &["passed top tick_ns tick_note files"]);
 
     let run = document(&folder, "demo --out demo", 0, &[RUN, LIMITS, CHECK]);
     for file in run["files"].as_array().expect("a list of files") {

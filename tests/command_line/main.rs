@@ -11,6 +11,7 @@ mod bad_outputs;
 mod boards;
 #[cfg(unix)]
 mod cache;
+mod clocks;
 mod command;
 mod curves;
 #[path = "../../crates/link/tests/support/device.rs"]
@@ -22,10 +23,13 @@ mod inputs;
 #[cfg(target_os = "linux")]
 mod interrupts;
 mod json_names;
+mod machine_new;
 #[cfg(unix)]
 mod outputs;
 mod profile;
 mod sweeps;
 mod table;
+#[cfg(unix)]
+mod terminal;
 #[cfg(unix)]
 mod virtual_boards;

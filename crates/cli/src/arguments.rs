@@ -1,5 +1,6 @@
 //! The command line, once: it feeds the parser and the help.
 
+mod machine;
 mod port;
 mod profile;
 mod table;
@@ -7,6 +8,7 @@ mod table;
 use carrystep_levels::Level;
 use carrystep_sweep::Shard;
 use clap::{Args, Parser};
+pub use machine::{Machine, MachineCommand, MachineNew};
 #[cfg(unix)]
 pub use port::{BoardLevel, VirtualBoard};
 pub use port::{Home, Jog, Peer, Port, Run, Status, Stop};
@@ -62,6 +64,8 @@ pub enum Subcommand {
     /// `estop 1`, `min x 1`, `max x 0` press and release switches; Ctrl-C or `end` ends it.
     #[cfg(unix)]
     VirtualBoard(VirtualBoard),
+    /// Machine files: write a new one.
+    Machine(Machine),
     /// Make a board's bitstream: synthesis, placement, timing, with the open tools.
     Build(Build),
     /// Show the boards, or one of them: part, clock, ticks, and which pin does what.
@@ -240,9 +244,12 @@ pub struct Build {
     /// Which of its parts; default: its first.
     #[arg(long, value_name = "PART")]
     pub part: Option<String>,
-    /// The machine whose gateware it is; default: the shipped machine at the board's clock.
+    /// The machine whose gateware it is; default: the shipped machine at the board's clock and tick.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
+    /// Try a clock that is more than 10 % over what the board was measured to reach.
+    #[arg(long)]
+    pub try_clock: bool,
     /// Folder for all files; default: sim/out/BOARD.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -6,6 +6,7 @@ pub mod check;
 pub mod demo;
 pub mod doctor;
 pub mod home;
+pub mod machine;
 pub mod plan;
 pub mod profile;
 pub mod run;

@@ -33,6 +33,7 @@ pub use none::{Caller, Claim, Door, Reply, call, claim, holder};
 use crate::found::{Found, Known};
 use crate::interrupt;
 use carrystep_link::{Facts, Status, Wish};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::atomic::Ordering;
@@ -79,7 +80,7 @@ impl Request {
 }
 
 /// Who has stopped a command that drives.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StoppedBy {
     /// Ctrl-C, or a signal that ends programs.

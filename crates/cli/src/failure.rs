@@ -1,5 +1,6 @@
 //! How the command fails: what is told, and the exit status that goes with it.
 
+use crate::colour;
 use crate::excerpt::Excerpt;
 use carrystep_export::ExportError;
 use carrystep_levels::LevelError;
@@ -66,20 +67,24 @@ fn render(error: &InputError, terminal: bool) -> String {
     let mut diagnostic = MietteDiagnostic::new(harmless(&error.message));
     diagnostic.help = error.help.as_deref().map(harmless);
     let code = Excerpt::new(source.path.display().to_string(), &harmless(&source.text), span);
-    format!("error:\n{}", drawn(diagnostic.with_label(LabeledSpan::underline(code.span())), code, terminal))
+    drawn(diagnostic.with_label(LabeledSpan::underline(code.span())), code, terminal)
 }
 
 /// Colours and lines on a terminal; elsewhere plain ASCII, and no message broken into lines.
 fn drawn(diagnostic: MietteDiagnostic, code: Excerpt, terminal: bool) -> String {
     let report = Report::new(diagnostic).with_source_code(code);
-    if terminal {
-        return format!("{report:?}");
-    }
+    let mut theme = match (terminal, colour::wanted(&std::io::stderr())) {
+        (true, true) => GraphicalTheme::unicode(),
+        (true, false) => GraphicalTheme::unicode_nocolor(),
+        (false, _) => GraphicalTheme::none(),
+    };
+    // A word, where a theme has a cross that reads as a letter.
+    theme.characters.error = "error:".to_owned();
+    let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(terminal);
     let mut text = String::new();
-    let plain = GraphicalReportHandler::new_themed(GraphicalTheme::none()).with_wrap_lines(false);
     // Writing to a string cannot fail.
-    let _ = plain.render_report(&mut text, report.as_ref());
-    text
+    let _ = handler.render_report(&mut text, report.as_ref());
+    text.trim_start().to_owned()
 }
 
 /// No control characters of a file reach the terminal; each byte keeps its place.
@@ -165,8 +170,7 @@ mod tests {
         let source = Source { path: "m.toml".into(), text: "[[move]]\nto = {}\n".into() };
         let shown = render(&InputError::at(&source, 0..17, "too far").help("go less far"), false);
         let lines = [
-            "error:",
-            "  x too far",
+            "error: too far",
             "   ,-[m.toml:1:1]",
             " 1 | [[move]]",
             "   : ^^^^^^^^",

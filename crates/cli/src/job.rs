@@ -132,11 +132,15 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
     // Nobody waits for the end of a run whose output cannot be written.
     let deaf = AtomicBool::new(false);
     let halt = &[interrupt::watch(), &deaf];
-    let gateware = match &engine {
-        None => Gateware::Parallel(Job { halt, ..Job::new(&plan.build, &program, plan.total_ticks()) }),
-        Some(engine) => Gateware::Engine(EngineJob { halt, ..EngineJob::new(engine, &program, plan.total_ticks()) }),
-    };
     let timebase = plan.build.timebase;
+    let progress = Progress::new(level, plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
+    let how_far = Some(progress.how_far());
+    let gateware = match &engine {
+        None => Gateware::Parallel(Job { halt, how_far, ..Job::new(&plan.build, &program, plan.total_ticks()) }),
+        Some(engine) => {
+            Gateware::Engine(EngineJob { halt, how_far, ..EngineJob::new(engine, &program, plan.total_ticks()) })
+        }
+    };
     let load = gateware.origin()?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks()).cast_signed();
     let timelines = plan.timelines();
@@ -180,9 +184,8 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
             tee.add(sink);
         }
         let mut feed = PinFeed::new(timebase, file.machine.axes.len(), &mut tee);
-        let mut progress = Progress::new(level.name(), plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
         let outcome = gateware.run(level, &mut |cycle, step, dir| {
-            progress.at(cycle);
+            progress.how_far().at(cycle);
             feed.pins(cycle, step, dir);
             if feed.has_failed() {
                 deaf.store(true, Ordering::Relaxed);
@@ -198,6 +201,7 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
         outcome
     };
     let run_s = started.elapsed().as_secs_f64();
+    drop(progress);
     drop((vcd, fst, csv));
 
     let check = checker.finish();

@@ -1,6 +1,7 @@
 //! The `carrystep` command: arguments in, reports out; no logic of its own.
 
 mod arguments;
+mod colour;
 mod commands;
 mod connection;
 mod control;
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         Subcommand::Stop(stop) => commands::stop::stop(stop),
         #[cfg(unix)]
         Subcommand::VirtualBoard(board) => commands::virtual_board::run(board),
+        Subcommand::Machine(machine) => commands::machine::run(machine),
         Subcommand::Build(build) => commands::build::run(build),
         Subcommand::Boards(boards) => commands::boards::run(boards),
         Subcommand::Doctor(doctor) => commands::doctor::run(doctor),

@@ -1,16 +1,19 @@
 //! Where results go: standard output, and files that appear whole or not at all.
 
+use crate::colour;
 use crate::failure::Failure;
 use crate::interrupt;
 use carrystep_files::{Claim, NewFile, OutputFailure};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Prints text to standard output.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| match error.kind() {
+    let painted = if colour::wanted(&out) { Cow::Owned(colour::painted(text)) } else { Cow::Borrowed(text) };
+    out.write_all(painted.as_bytes()).and_then(|()| out.flush()).map_err(|error| match error.kind() {
         ErrorKind::BrokenPipe => Failure::ReaderGone,
         _ => Failure::input(format!("cannot write to standard output: {error}")),
     })

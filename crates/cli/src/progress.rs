@@ -1,44 +1,106 @@
-//! A progress bar for anything longer than a second, on a terminal only.
+//! Progress of anything longer than a second, on a terminal only.
 
+use carrystep_levels::{HowFar, Level, Stage};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal as _;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Calls between two looks at the time: a look takes longer than an edge.
-const CALLS: u32 = 1 << 14;
+/// From one look at the run to the next.
+const LOOK: Duration = Duration::from_millis(100);
 
-/// Progress of one run, in clocks.
+/// Nothing is shown of runs that are shorter.
+const SHORT: Duration = Duration::from_secs(1);
+
+/// Progress of one run, in clocks: another thread looks how far it is, however seldom an edge comes.
 pub struct Progress {
-    bar: Option<ProgressBar>,
-    calls: u32,
-    started: Instant,
-    total: u64,
-    what: &'static str,
+    how_far: Arc<HowFar>,
+    over: Arc<AtomicBool>,
+    watcher: Option<JoinHandle<()>>,
 }
 
 impl Progress {
-    /// A run of about `total` clocks.
-    pub fn new(what: &'static str, total: u64) -> Self {
-        Self { bar: None, calls: 0, started: Instant::now(), total, what }
+    /// A run of about `total` clocks at a level.
+    pub fn new(level: Level, total: u64) -> Self {
+        let (how_far, over) = (Arc::new(HowFar::default()), Arc::new(AtomicBool::new(false)));
+        let seen = (Arc::clone(&how_far), Arc::clone(&over));
+        let watch = move || watch(level, total, &seen.0, &seen.1);
+        let watcher = std::io::stderr().is_terminal().then(|| std::thread::spawn(watch));
+        Self { how_far, over, watcher }
     }
 
-    /// The run has come to this clock.
-    pub fn at(&mut self, clock: u64) {
-        self.calls += 1;
-        if self.calls < CALLS {
-            return;
+    /// What the run tells.
+    pub fn how_far(&self) -> &HowFar {
+        &self.how_far
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.over.store(true, Ordering::Relaxed);
+        if let Some(watcher) = self.watcher.take() {
+            watcher.thread().unpark();
+            // A bar that could not be drawn is no reason to fail.
+            let _ = watcher.join();
         }
-        self.calls = 0;
-        if self.bar.is_none() && self.started.elapsed() > Duration::from_secs(1) {
-            // The target hides itself where standard error is no terminal.
-            let bar = ProgressBar::with_draw_target(Some(self.total), ProgressDrawTarget::stderr_with_hz(10));
-            let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {eta} left");
-            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            bar.set_message(self.what);
-            self.bar = Some(bar);
+    }
+}
+
+/// Shows how far the run is until it is over.
+fn watch(level: Level, total: u64, how_far: &HowFar, over: &AtomicBool) {
+    let begun = Instant::now();
+    let mut stage = (how_far.stage(), begun);
+    let mut bar: Option<ProgressBar> = None;
+    while !over.load(Ordering::Relaxed) {
+        std::thread::park_timeout(LOOK);
+        if how_far.stage() != stage.0 {
+            stage = (how_far.stage(), Instant::now());
         }
-        if let Some(bar) = &self.bar {
-            bar.set_position(clock.min(self.total));
+        if begun.elapsed() < SHORT {
+            continue;
         }
+        let bar = bar.get_or_insert_with(|| begin(total));
+        let clock = how_far.clock().min(total);
+        bar.set_position(clock);
+        bar.set_prefix(match stage.0 {
+            Stage::Runs => level.name().to_owned(),
+            Stage::ModelRuns => format!("model, then {level}"),
+            Stage::VerilogRuns => format!("{level} against the model"),
+        });
+        bar.set_message(told(stage.1.elapsed(), clock, total));
+    }
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+}
+
+fn begin(total: u64) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr_with_hz(10));
+    let style = ProgressStyle::with_template("{prefix} {wide_bar} {percent:>3} % {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
+
+/// Time left at the speed of this very run so far, and that speed.
+fn told(elapsed: Duration, clock: u64, total: u64) -> String {
+    let seconds = elapsed.as_secs_f64();
+    if clock == 0 || seconds <= 0.0 {
+        return format!("{} so far", clock_face(seconds));
+    }
+    let speed = clock as f64 / seconds;
+    let left = total.saturating_sub(clock) as f64 / speed;
+    format!("{} left at {:.0} k clocks/s", clock_face(left), speed / 1e3)
+}
+
+/// `12 s`, `3 min 20 s`, `2 h 5 min`.
+fn clock_face(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    match whole {
+        0..60 => format!("{whole} s"),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        _ => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
     }
 }
 
@@ -68,10 +130,16 @@ impl Drop for Stages {
     }
 }
 
-impl Drop for Progress {
-    fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_is_reckoned_from_the_speed_of_the_run_itself() {
+        let told = |seconds, clock| told(Duration::from_secs(seconds), clock, 480_000_000);
+        assert_eq!(told(10, 48_000_000), "1 min 30 s left at 4800 k clocks/s");
+        assert_eq!(told(10, 480_000), "2 h 46 min left at 48 k clocks/s");
+        assert_eq!(told(100, 480_000_000), "0 s left at 4800 k clocks/s");
+        assert_eq!(told(7, 0), "7 s so far");
     }
 }

@@ -2,7 +2,8 @@
 //! have been refused.
 
 use carrystep_plan::Plan;
-use carrystep_spec::{Axis, MoveFile, Segment, decimal};
+use carrystep_spec::unit::digits;
+use carrystep_spec::{Axis, MoveFile, Segment, Unit, decimal};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
@@ -14,6 +15,10 @@ pub struct Limits {
     pub total_ticks: u64,
     /// The same in seconds.
     pub total_s: f64,
+    /// The tick, ns.
+    pub tick_ns: u64,
+    /// How the tick was chosen, where the machine file gives none and the clock is not the default.
+    pub tick_note: Option<String>,
     /// One entry an axis.
     pub axes: Vec<AxisLimits>,
 }
@@ -22,6 +27,10 @@ pub struct Limits {
 #[derive(Debug, JsonSchema, Serialize)]
 pub struct AxisLimits {
     pub axis: String,
+    /// What it is measured in.
+    pub unit: String,
+    /// Steps in one of these, as the nearest float.
+    pub steps_per_unit: f64,
     /// Segments sent to it.
     pub segments: usize,
     /// Steps forward less steps back.
@@ -40,8 +49,14 @@ pub struct AxisLimits {
 pub fn limits(file: &MoveFile, plan: &Plan) -> Limits {
     let axes: Vec<AxisLimits> =
         file.machine.axes.iter().enumerate().map(|(i, axis)| axis_limits(i, axis, plan)).collect();
-    let total_ticks = plan.total_ticks();
-    Limits { total_ticks, total_s: total_ticks as f64 * plan.build.timebase.tick_seconds(), axes }
+    let (total_ticks, timebase) = (plan.total_ticks(), &plan.build.timebase);
+    Limits {
+        total_ticks,
+        total_s: total_ticks as f64 * timebase.tick_seconds(),
+        tick_ns: timebase.tick_ns(),
+        tick_note: file.machine.chosen_tick.map(|chosen| chosen.to_string()),
+        axes,
+    }
 }
 
 fn axis_limits(index: usize, axis: &Axis, plan: &Plan) -> AxisLimits {
@@ -55,6 +70,8 @@ fn axis_limits(index: usize, axis: &Axis, plan: &Plan) -> AxisLimits {
         |units: u64, power: u32| units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power.cast_signed());
     AxisLimits {
         axis: axis.name.clone(),
+        unit: axis.unit.name.clone(),
+        steps_per_unit: axis.unit.steps,
         segments: planned().map(|a| a.segments.len()).sum(),
         steps,
         residue: travelled - (i128::from(steps) << 64),
@@ -81,29 +98,73 @@ impl Limits {
     }
 }
 
+impl AxisLimits {
+    /// Its unit, which shows lengths and speeds.
+    fn unit(&self) -> Unit {
+        Unit { name: self.unit.clone(), steps: self.steps_per_unit }
+    }
+
+    /// What it does, in steps.
+    fn in_steps(&self) -> [String; 7] {
+        [
+            self.axis.clone(),
+            self.segments.to_string(),
+            self.steps.to_string(),
+            self.unit().own(self.steps as f64, 0),
+            format!("{:.0}", self.speed_steps_per_s),
+            format!("{:.0}", self.acceleration_steps_per_s2),
+            self.residue.to_string(),
+        ]
+    }
+
+    /// What it reaches of its limits, in its own unit.
+    fn in_units(&self) -> [String; 4] {
+        let unit = self.unit();
+        // A start speed of one unit of V is none.
+        let seen = |found: f64| if found < 1e-6 { 0.0 } else { found };
+        let of = |found: f64, limit: f64, seconds| {
+            format!("{} of {}", digits(seen(found / unit.steps)), unit.own(limit, seconds))
+        };
+        [
+            self.axis.clone(),
+            of(self.speed_steps_per_s, self.speed_limit_steps_per_s, 1),
+            of(self.acceleration_steps_per_s2, self.acceleration_limit_steps_per_s2, 2),
+            of(self.start_speed_steps_per_s, self.start_speed_limit_steps_per_s, 1),
+        ]
+    }
+}
+
 impl fmt::Display for Limits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} ticks, {:.6} s", self.total_ticks, self.total_s)?;
-        let name = self.axes.iter().map(|axis| axis.axis.len()).max().unwrap_or(4).max(4);
-        writeln!(
-            f,
-            "{:<name$}  {:>8}  {:>8}  {:>19}  {:>19}  {:>15}  {:>7}",
-            "axis", "segments", "steps", "speed/limit", "accel/limit", "start/limit", "residue"
-        )?;
-        for axis in &self.axes {
-            let pair = |found: f64, limit: f64| format!("{found:.0}/{limit:.0}");
-            writeln!(
-                f,
-                "{:<name$}  {:>8}  {:>8}  {:>19}  {:>19}  {:>15}  {:>7}",
-                axis.axis,
-                axis.segments,
-                axis.steps,
-                pair(axis.speed_steps_per_s, axis.speed_limit_steps_per_s),
-                pair(axis.acceleration_steps_per_s2, axis.acceleration_limit_steps_per_s2),
-                pair(axis.start_speed_steps_per_s, axis.start_speed_limit_steps_per_s),
-                axis.residue
-            )?;
+        writeln!(f, "{} ticks of {} ns, {:.6} s", self.total_ticks, self.tick_ns, self.total_s)?;
+        if let Some(note) = &self.tick_note {
+            writeln!(f, "{}", note.replace("; ", "\n"))?;
         }
-        write!(f, "steps/s and steps/s^2; residue in 2^-64 step")
+        let head = ["axis", "segments", "steps", "position", "steps/s", "steps/s^2", "residue"];
+        columns(f, head, self.axes.iter().map(AxisLimits::in_steps), |column| column == 0)?;
+        let head = ["axis", "speed", "acceleration", "start speed"];
+        columns(f, head, self.axes.iter().map(AxisLimits::in_units), |_| true)?;
+        write!(f, "greatest values, and the limits that they keep to; residue in 2^-64 step")
     }
+}
+
+/// Rows in columns as wide as their widest cell, two blanks apart, numbers to the right and what is `left` to the left.
+pub fn columns<const N: usize>(
+    out: &mut impl fmt::Write,
+    head: [&str; N],
+    rows: impl Iterator<Item = [String; N]>,
+    left: fn(usize) -> bool,
+) -> fmt::Result {
+    let rows: Vec<[String; N]> = std::iter::once(head.map(str::to_owned)).chain(rows).collect();
+    let widths: [usize; N] =
+        std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
+    for row in &rows {
+        let cell = |(column, cell): (usize, &String)| {
+            let width = widths[column];
+            if left(column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        };
+        let line = row.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ");
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    Ok(())
 }

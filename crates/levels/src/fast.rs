@@ -2,7 +2,7 @@
 
 use crate::host::Host;
 use crate::replay::Replay;
-use crate::{Job, LevelError, Observer, Outcome, halted};
+use crate::{Job, LevelError, Observer, Outcome, halted, how_far};
 use carrystep_model::Fast;
 use carrystep_model::fast::{Edge, Edges};
 use carrystep_spec::ports::Outputs;
@@ -48,6 +48,7 @@ pub fn run(job: &Job<'_>, listener: &mut impl Listener<Outputs>) -> Result<Outco
             return Err(LevelError::Halted);
         }
         let cycle = core.cycle();
+        how_far::tell(job.how_far, cycle);
         let fault = core.core().faults().any();
         let inputs = host.inputs(fault);
         let outputs = core.outputs(&inputs);

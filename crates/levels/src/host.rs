@@ -1,6 +1,6 @@
 //! The host that feeds a core, clock by clock: the Rust side of docs/clock-by-clock.md, "host".
 
-use crate::{Job, LevelError, Observer, Outcome, halted};
+use crate::{Job, LevelError, Observer, Outcome, halted, how_far};
 use carrystep_spec::ports::{Inputs, Outputs};
 use carrystep_spec::{Command, Program};
 
@@ -125,6 +125,7 @@ pub(crate) fn run(core: &mut impl Core, job: &Job<'_>, observer: &mut Observer<'
         if halted(job.halt) {
             return Err(LevelError::Halted);
         }
+        how_far::tell(job.how_far, cycle);
         // The host sees this cycle's fault: ask again where it has just changed.
         let mut inputs = host.inputs(fault);
         let mut outputs = core.outputs(&inputs);

@@ -10,6 +10,7 @@ pub mod engine;
 mod external;
 pub mod fast;
 pub mod host;
+mod how_far;
 mod icarus;
 pub mod pins;
 pub mod replay;
@@ -25,6 +26,8 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use thiserror::Error;
+
+pub use how_far::{HowFar, Stage};
 
 /// Where a program is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -84,6 +87,8 @@ pub struct Job<'a> {
     pub max_clocks: u64,
     /// Ends it before its end.
     pub halt: Halt<'a>,
+    /// Hears how far it is.
+    pub how_far: Option<&'a HowFar>,
 }
 
 /// Flags of which any one ends a run with [`LevelError::Halted`]; the loops look at them wherever they come by.
@@ -99,7 +104,7 @@ impl<'a> Job<'a> {
     pub fn new(build: &'a Build, program: &'a Program, ticks: u64) -> Self {
         let clocks = u64::from(build.timebase.clocks_per_tick());
         let slack = 4 * clocks + build.pins.iter().map(|p| u64::from(p.width + p.gap)).max().unwrap_or(0);
-        Self { build, program, tail: slack, max_clocks: (ticks + 8) * clocks + 4 * slack, halt: &[] }
+        Self { build, program, tail: slack, max_clocks: (ticks + 8) * clocks + 4 * slack, halt: &[], how_far: None }
     }
 }
 

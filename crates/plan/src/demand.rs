@@ -54,7 +54,8 @@ pub(crate) fn demand<F: Real>(
     }
     let refused = |axis: usize, refusal: Refusal, least_time| {
         let (axis, refusal) = if straight { line::blame(moved.profile, &own, axis, refusal) } else { (axis, refusal) };
-        PlanError::Refused { index, axis: file.machine.axes[axis].name.clone(), refusal, least_time }
+        let carrystep_spec::Axis { name, unit, .. } = &file.machine.axes[axis];
+        PlanError::Refused { index, axis: name.clone(), refusal, unit: unit.clone(), least_time }
     };
 
     let mut least = F::zero();

@@ -1,7 +1,7 @@
 //! Why a file cannot be planned.
 
 use carrystep_profile::Refusal;
-use carrystep_spec::TooManyAxes;
+use carrystep_spec::{TooManyAxes, Unit};
 use thiserror::Error;
 
 /// A move that cannot be done as asked, and what to do. `index` counts moves from 0, messages from 1.
@@ -11,14 +11,16 @@ pub enum PlanError {
     #[error(transparent)]
     Axes(#[from] TooManyAxes),
     /// A limit of an axis forbids it.
-    #[error("move {}, axis {axis}: {}", index + 1, refused(refusal, *least_time))]
+    #[error("move {}, axis {axis}: {}", index + 1, refused(refusal, unit, *least_time))]
     Refused {
         /// Which move.
         index: usize,
         /// The axis that needs most time.
         axis: String,
-        /// Limit, wanted and available value.
+        /// Limit, wanted and available value, in steps.
         refusal: Refusal,
+        /// The unit in which the message gives them.
+        unit: Unit,
         /// Least time in which all axes can do the move, whole ticks, seconds; `None`: no time would do.
         least_time: Option<f64>,
     },
@@ -122,15 +124,16 @@ impl PlanError {
     }
 }
 
-fn refused(refusal: &Refusal, least_time: Option<f64>) -> String {
+fn refused(refusal: &Refusal, unit: &Unit, least_time: Option<f64>) -> String {
     let Refusal { limit, wanted, available, .. } = refusal;
-    let unit = limit.unit();
+    let seconds = limit.seconds();
+    let has = unit.both(*available, seconds);
     match least_time {
-        None => format!("needs a {limit} over {available} {unit}; raise it, or take another profile"),
+        None => format!("needs a {limit} over {has}; raise it, or take another profile"),
         Some(least) if wanted.is_finite() => {
-            format!("needs {wanted:.1} {unit}, over {limit} {available}; at least {least} s would do")
+            format!("needs {}, over {limit} {has}; at least {least} s would do", unit.both(*wanted, seconds))
         }
-        Some(least) => format!("no {unit} would do, {limit} is {available}; at least {least} s would do"),
+        Some(least) => format!("no {} would do, {limit} is {has}; at least {least} s would do", unit.per(seconds)),
     }
 }
 

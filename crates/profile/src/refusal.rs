@@ -41,6 +41,15 @@ pub enum Limit {
 }
 
 impl Limit {
+    /// The power of seconds that its unit is per: 1 of a speed, 2 of an acceleration, 3 of a jerk.
+    pub const fn seconds(self) -> u32 {
+        match self {
+            Self::StartSpeed | Self::Speed => 1,
+            Self::Acceleration => 2,
+            Self::Jerk => 3,
+        }
+    }
+
     /// Its unit.
     pub const fn unit(self) -> &'static str {
         match self {

@@ -14,6 +14,7 @@ mod family;
 mod measured;
 mod port;
 mod raw;
+mod reach;
 
 pub use error::BoardError;
 pub use family::{Family, IoStandard, PllInput, Toolchain};
@@ -229,13 +230,10 @@ impl Board {
     /// # Errors
     /// [`BoardError::Clock`] names the nearest that it can.
     pub fn clock(&self, clock_hz: u64) -> Result<ClockManager, BoardError> {
-        self.family.clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| {
-            let shown = |clock: &Clocking| {
-                let Clocking { clock_hz, tick_ns, phases, .. } = clock;
-                format!("{} MHz (ticks of {tick_ns} ns in {phases} phases)", crate::clock::mhz(*clock_hz))
-            };
-            let proposed: Vec<String> = self.clocks.iter().map(shown).collect();
-            BoardError::Clock { board: self.name.clone(), source, proposed: proposed.join(" or ") }
+        self.family.clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
+            board: self.name.clone(),
+            source,
+            proposed: self.proposed(None),
         })
     }
 

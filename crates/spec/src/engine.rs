@@ -9,6 +9,7 @@
 //! ```
 
 use crate::build::{MAX_CLOCKS, PinTiming, Timebase};
+use crate::tick::Ticks;
 
 mod build;
 mod cause;
@@ -52,6 +53,12 @@ pub const fn clocks_of_turns(axes: usize) -> u32 {
     axes as u32 * TURN + 1
 }
 
+/// Fewest clocks of a tick for so many axes in so many phases: the turns fit, and events between the phases.
+pub const fn least_clocks(axes: usize, phases: u32) -> u32 {
+    let (turns, events) = (clocks_of_turns(axes), phases * MIN_CLOCKS_PER_PHASE);
+    if turns > events { turns } else { events }
+}
+
 /// Fewest clocks of a phase: in one its events are read, in the others more are written.
 pub const MIN_CLOCKS_PER_PHASE: u32 = 2;
 
@@ -62,18 +69,19 @@ pub const MIN_CLOCKS_PER_PHASE: u32 = 2;
 /// [`EngineError::ShortPhase`] that phases are too many.
 pub fn check_schedule(axes: usize, timebase: &Timebase) -> Result<(), EngineError> {
     let needed = clocks_of_turns(axes);
-    let clocks = timebase.clocks_per_tick();
+    let (clocks, phases) = (timebase.clocks_per_tick(), timebase.phases());
+    let (tick_ns, clock_hz) = (timebase.tick_ns(), timebase.clock_hz());
+    let least_tick_ns = Ticks::for_engine(clock_hz, phases, axes);
     if clocks >= needed {
         return match timebase.clocks_per_phase() {
             MIN_CLOCKS_PER_PHASE.. => Ok(()),
-            _ => Err(EngineError::ShortPhase { phases: timebase.phases(), clocks }),
+            _ => Err(EngineError::ShortPhase { phases, clocks, least_tick_ns }),
         };
     }
-    let (tick_ns, clock_hz) = (timebase.tick_ns(), timebase.clock_hz());
     // As few clocks as hold the turns and divide into phases.
     let least = u64::from(needed.next_multiple_of(timebase.phases()));
     let least_hz = (least * 1_000_000_000).div_ceil(tick_ns);
-    Err(EngineError::Schedule { axes, needed, clocks, tick_ns, clock_hz, least_hz })
+    Err(EngineError::Schedule { axes, needed, clocks, tick_ns, clock_hz, least_tick_ns, least_hz })
 }
 
 /// Whether the timers can count what the drivers of all axes ask for.
@@ -174,7 +182,7 @@ mod tests {
         assert_eq!(
             check_schedule(6, &timebase).unwrap_err().to_string(),
             "6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz \
-             has 48: a clock of 80000000 Hz, a longer tick or fewer axes would do"
+             has 48: a tick of 2000 ns, a clock of 80000000 Hz or fewer axes would do"
         );
         assert!(check_schedule(6, &Timebase::new(80_000_000, 1000, 16).unwrap()).is_ok());
         assert!(check_schedule(6, &Timebase::new(48_000_000, 2000, 16).unwrap()).is_ok());
@@ -185,8 +193,8 @@ mod tests {
         let timebase = |phases| Timebase::new(16_000_000, 1000, phases).unwrap();
         assert_eq!(
             check_schedule(1, &timebase(16)).unwrap_err().to_string(),
-            "16 phases in the 16 clocks of a tick: an engine needs 2 clocks in each; fewer phases, a faster clock or a \
-             longer tick would do"
+            "16 phases in the 16 clocks of a tick: an engine needs 2 clocks in each; a tick of 2000 ns, fewer phases or \
+             a faster clock would do"
         );
         assert!(check_schedule(1, &timebase(4)).is_ok());
     }

@@ -18,7 +18,9 @@ pub mod move_file;
 mod number;
 pub mod ports;
 pub mod segment;
+pub mod tick;
 pub mod tool;
+pub mod unit;
 
 pub use bigdecimal::BigDecimal;
 pub use build::{AXES, Build, PinTiming, Timebase};
@@ -29,3 +31,5 @@ pub use fixed::StartPhase;
 pub use machine::{Axis, Machine, TooManyAxes};
 pub use move_file::{Move, MoveFile, PathKind, ProfileKind};
 pub use segment::{Command, Program, Segment};
+pub use tick::ChosenTick;
+pub use unit::Unit;

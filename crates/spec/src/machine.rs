@@ -7,6 +7,8 @@ use crate::engine::{Guard, MAX_AXES};
 use crate::error::{InputError, Source};
 use crate::fixed::StartPhase;
 use crate::link::{BaudError, Line, Uart};
+use crate::tick::{ChosenTick, FIXED_CLOCK_HZ, default_tick, nearest_ticks};
+use crate::unit::Unit;
 use axis::RawAxis;
 use bigdecimal::BigDecimal;
 use guard::RawGuard;
@@ -23,6 +25,7 @@ mod guard;
 mod home;
 mod link;
 mod stop;
+mod units;
 
 pub use home::{End, Home, overrun};
 pub(crate) use stop::steps_per_s2;
@@ -32,6 +35,8 @@ pub(crate) use stop::steps_per_s2;
 pub struct Machine {
     /// Clock, tick and phases.
     pub timebase: Timebase,
+    /// How the tick came about, where the file gives none and the clock is not the default.
+    pub chosen_tick: Option<ChosenTick>,
     /// Where in a step moves start.
     pub phase: StartPhase,
     /// One to eight axes.
@@ -56,8 +61,10 @@ pub struct TooManyAxes(pub usize);
 pub struct Axis {
     /// Its name in move files and waveforms.
     pub name: String,
-    /// Steps in a unit of length.
+    /// Steps in a unit of length; a quotient that is no finite decimal is rounded up in its 60th place.
     pub steps_per_unit: BigDecimal,
+    /// The unit that people read.
+    pub unit: Unit,
     /// Speed the motor takes from rest, steps/s; 0 or more.
     pub start_speed: BigDecimal,
     /// Greatest speed, steps/s.
@@ -161,7 +168,7 @@ impl RawMachine {
     }
 
     pub(crate) fn check(self, source: &Source) -> Result<Machine, InputError> {
-        let timebase = self.timebase(source)?;
+        let (timebase, chosen_tick) = self.timebase(source)?;
         let span = self.axis.span();
         let raw = self.axis.into_inner();
         if raw.is_empty() {
@@ -177,10 +184,11 @@ impl RawMachine {
         let mut axes: Vec<Axis> = Vec::with_capacity(raw.len());
         let mut places: Vec<RawPlace> = Vec::with_capacity(raw.len());
         for axis in raw {
-            let name_span = axis.as_ref().name.span();
+            let (name_span, table) = (axis.as_ref().name.span(), axis.span());
             let mut axis = axis.into_inner();
             places.push(axis.place());
-            let axis = axis.check(source, &timebase)?;
+            let axis = axis.check(source, table, &timebase);
+            let axis = axis.map_err(|error| with_proposal(error, chosen_tick.as_ref()))?;
             if axes.iter().any(|other| other.name == axis.name) {
                 return Err(InputError::at(source, name_span, format!("two axes are called '{}'", axis.name))
                     .help("give each axis a name of its own"));
@@ -190,31 +198,46 @@ impl RawMachine {
         let guard = self.guard.check(source, &timebase, axes.iter().map(|axis| axis.stop).collect())?;
         let home_order = home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
         let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);
-        Ok(Machine { timebase, phase: self.phase, axes, guard, home_order, baud, spi })
+        Ok(Machine { timebase, chosen_tick, phase: self.phase, axes, guard, home_order, baud, spi })
     }
 
-    fn timebase(&self, source: &Source) -> Result<Timebase, InputError> {
-        let get = |value: &Option<Spanned<u64>>, default| value.as_ref().map_or(default, |v| *v.as_ref());
-        let clock_hz = get(&self.clock_hz, 48_000_000);
-        let tick_ns = get(&self.tick_ns, 1000);
+    /// Clock, tick and phases; where the file gives no tick, also how it was chosen.
+    fn timebase(&self, source: &Source) -> Result<(Timebase, Option<ChosenTick>), InputError> {
+        let clock_hz = self.clock_hz.as_ref().map_or(FIXED_CLOCK_HZ, |v| *v.as_ref());
         let phases = self.phases.as_ref().map_or(16, |v| *v.as_ref());
-        Timebase::new(clock_hz, tick_ns, phases).map_err(|error| {
+        let axes = self.axis.as_ref().len().clamp(1, MAX_AXES);
+        let given = self.tick_ns.as_ref().map(|v| (*v.as_ref(), None));
+        // Of a clock without ticks any one is refused, and so is what is no clock.
+        let (tick_ns, chosen) = given.or_else(|| default_tick(clock_hz, phases, axes)).unwrap_or((1, None));
+        let timebase = Timebase::new(clock_hz, tick_ns, phases).map_err(|error| {
             let tick = self.tick_ns.as_ref().map(Spanned::span);
             let clock = self.clock_hz.as_ref().map(Spanned::span);
-            let phases = self.phases.as_ref().map(Spanned::span);
+            let phase_span = self.phases.as_ref().map(Spanned::span);
             // The value that is wrong, or else one that has a part in it: the others are defaults.
             let span = match error {
                 TimebaseError::Clock(_) => clock,
-                TimebaseError::Phases(_) => phases,
-                TimebaseError::NotWhole { .. } | TimebaseError::Range(_) => tick.or(clock),
-                TimebaseError::NotDivisible { .. } => phases.or(tick).or(clock),
+                TimebaseError::Phases(_) => phase_span,
+                TimebaseError::NotWhole { .. } | TimebaseError::Range(_) => tick.clone().or(clock),
+                TimebaseError::NotDivisible { .. } => phase_span.or(tick.clone()).or(clock),
             };
-            let mut told = InputError::new(error.to_string());
-            told.place = span.map(|span| (source.clone(), span));
-            told.help(
-                "clock_hz x tick_ns must be a whole number of clocks, divisible by `phases`: \
-                 48 MHz x 1000 ns = 48 clocks = 16 phases x 3",
-            )
-        })
+            let (message, help) = match error {
+                TimebaseError::Clock(_) | TimebaseError::Phases(_) => (error.to_string(), None),
+                _ if tick.is_none() => (
+                    format!("a clock of {clock_hz} Hz has no tick"),
+                    Some(nearest_ticks(clock_hz, tick_ns, phases, axes)),
+                ),
+                _ => (error.to_string(), Some(nearest_ticks(clock_hz, tick_ns, phases, axes))),
+            };
+            InputError { message, help, place: span.map(|span| (source.clone(), span)) }
+        })?;
+        Ok((timebase, chosen))
     }
+}
+
+/// An error about an axis, where fewer phases would make the tick that was chosen shorter, says so.
+fn with_proposal(mut error: InputError, chosen: Option<&ChosenTick>) -> InputError {
+    if let (Some(help), Some(proposal)) = (&mut error.help, chosen.and_then(ChosenTick::proposal)) {
+        *help = format!("{help}; {proposal}");
+    }
+    error
 }

@@ -234,15 +234,19 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
             targets[axis] += exact(source, distance, name.as_ref())?;
             let target = &targets[axis] * &machine.axes[axis].steps_per_unit;
             positions[axis] = register(&target).ok_or_else(|| {
-                let steps = decimal::to_f64(&target);
-                let message = format!("axis '{}' would stand at {steps:.0} steps, beyond its register", name.as_ref());
+                let unit = &machine.axes[axis].unit;
+                let at = unit.both(decimal::to_f64(&target), 0);
+                let message = format!("axis '{}' would stand at {at}, beyond its register", name.as_ref());
+                let most = unit.at_most(i32::MAX.into(), 0);
                 InputError::at(source, distance.span(), message)
-                    .help(format!("the sum of all moves must stay within +-{} steps of the start", i32::MAX))
+                    .help(format!("the sum of all moves must stay within +-{most} of the start"))
             })?;
         }
         let rounding = targets.iter().zip(&machine.axes).zip(&positions);
         let rounding = rounding.map(|((target, axis), &steps)| {
-            decimal::to_f64(&(target * &axis.steps_per_unit - BigDecimal::from(steps)))
+            let left = decimal::to_f64(&(target * &axis.steps_per_unit - BigDecimal::from(steps)));
+            // A quotient's 60th place is no rounding of a target.
+            if left.abs() < 2_f64.powi(-64) { 0.0 } else { left }
         });
         moves.push(Move {
             profile: profile.into_inner(),

@@ -106,9 +106,9 @@ fn a_stop_acceleration_of_its_own() {
     assert_eq!(stop("stop_accel = 5e10").unwrap(), 1 << 62);
     let refused = |line: &str| stop(line).unwrap_err();
     let error = refused("stop_accel = 5.0000001e10");
-    assert!(error.message.contains("stop_accel is 250000005000 steps/s^2"), "{error}");
+    assert!(error.message.contains("stop_accel is 50000001000 units/s^2 (250000005000 steps/s^2)"), "{error}");
     assert_eq!(error.line_column(), Some((8, 14)));
-    assert!(error.help.unwrap().ends_with("to 5e10 units/s^2 can be counted"));
+    assert!(error.help.unwrap().ends_with("to 50000000000 units/s^2 (250000000000 steps/s^2) can be counted"));
     assert!(refused("stop_accel = 1e-9").message.contains("not from 2^-64"));
     for (value, says) in [("0", "must be over zero"), ("-3", "must be over zero"), ("nan", "not a usable number")] {
         assert!(refused(&format!("stop_accel = {value}")).message.contains(says), "{value}");

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_spec::{Machine, MoveFile, Source};
+use carrystep_spec::{ChosenTick, Machine, MoveFile, Source};
 
 const PAGE: &str = include_str!("../../../docs/machine-files.md");
 const AXIS: &str = "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n\
@@ -80,6 +80,23 @@ fn defaults_are_those_of_the_page() {
         format!("{:?}", MoveFile::from_source(source(&format!("{MOVE}{more}[machine]\n{AXIS}"))).unwrap().moves[0].path)
     };
     assert_eq!(moved(&given("### `[[move]]`").concat()), moved(""));
+}
+
+#[test]
+fn the_page_s_ticks_are_those_that_are_chosen() {
+    let rows = PAGE.lines().filter_map(|line| line.strip_prefix("| ")?.split_once(" MHz | "));
+    let mut seen = 0;
+    for (mhz, rest) in rows {
+        let ticks: Vec<u64> = rest
+            .trim_end_matches(" |")
+            .split(" | ")
+            .map(|cell| cell.trim_end_matches(" ns").parse().unwrap())
+            .collect();
+        let chosen = |phases| ChosenTick::new(mhz.parse::<u64>().unwrap() * 1_000_000, phases, 6).unwrap().tick_ns;
+        assert_eq!(ticks, [chosen(16), chosen(4)], "{mhz} MHz");
+        seen += 1;
+    }
+    assert_eq!(seen, 6);
 }
 
 #[test]

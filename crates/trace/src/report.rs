@@ -127,7 +127,8 @@ fn minimum(found: Option<f64>, required: f64) -> String {
 }
 
 impl AxisReport {
-    fn cells(&self) -> [String; 12] {
+    /// What its pulses are: counts and errors.
+    fn pulses(&self) -> [String; 8] {
         [
             self.axis.clone(),
             against(&self.pulses_found, &self.pulses_expected),
@@ -136,42 +137,52 @@ impl AxisReport {
             figure(self.error_max_ns),
             figure(self.error_rms_ns),
             figure(Some(self.error_bound_ns)),
+            if self.passed { "ok" } else { "FAILED" }.to_owned(),
+        ]
+    }
+
+    /// What its pins keep to.
+    fn pins(&self) -> [String; 5] {
+        [
+            self.axis.clone(),
             minimum(self.high_min_ns, self.high_required_ns),
             minimum(self.low_min_ns, self.low_required_ns),
             minimum(self.setup_min_ns, self.setup_required_ns),
             minimum(self.hold_min_ns, self.hold_required_ns),
-            if self.passed { "ok" } else { "FAILED" }.to_owned(),
         ]
     }
 }
 
-const HEAD: [&str; 12] =
-    ["axis", "pulses", "position", "e min", "e max", "e rms", "bound", "high", "low", "set-up", "hold", ""];
+const PULSES: [&str; 8] = ["axis", "pulses", "position", "e min", "e max", "e rms", "bound", ""];
+const PINS: [&str; 5] = ["axis", "high", "low", "set-up", "hold"];
+
+/// Rows under their heads: names to the left, numbers to the right, and what has no head to the left.
+fn table<const N: usize>(f: &mut fmt::Formatter<'_>, head: [&str; N], rows: &[[String; N]]) -> fmt::Result {
+    let mut widths = head.map(str::len);
+    for row in rows {
+        for (width, cell) in widths.iter_mut().zip(row) {
+            *width = cell.chars().count().max(*width);
+        }
+    }
+    let mut line = |cells: [&str; N]| {
+        let mut text = String::new();
+        for (column, (cell, width)) in cells.into_iter().zip(widths).enumerate() {
+            if column == 0 || head[column].is_empty() {
+                text.push_str(&format!("{cell:<width$}  "));
+            } else {
+                text.push_str(&format!("{cell:>width$}  "));
+            }
+        }
+        writeln!(f, "{}", text.trim_end())
+    };
+    line(head)?;
+    rows.iter().try_for_each(|row| line(row.each_ref().map(String::as_str)))
+}
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rows: Vec<[String; 12]> = self.axes.iter().map(AxisReport::cells).collect();
-        let mut widths = HEAD.map(str::len);
-        for row in &rows {
-            for (width, cell) in widths.iter_mut().zip(row) {
-                *width = cell.chars().count().max(*width);
-            }
-        }
-        let mut line = |cells: [&str; 12]| {
-            let mut text = String::new();
-            for (column, (cell, width)) in cells.into_iter().zip(widths).enumerate() {
-                // names and verdicts to the left, numbers to the right
-                match column {
-                    0 | 11 => text.push_str(&format!("{cell:<width$}  ")),
-                    _ => text.push_str(&format!("{cell:>width$}  ")),
-                }
-            }
-            writeln!(f, "{}", text.trim_end())
-        };
-        line(HEAD)?;
-        for row in &rows {
-            line(row.each_ref().map(String::as_str))?;
-        }
+        table(f, PULSES, &self.axes.iter().map(AxisReport::pulses).collect::<Vec<_>>())?;
+        table(f, PINS, &self.axes.iter().map(AxisReport::pins).collect::<Vec<_>>())?;
         writeln!(f, "times in ns; found/required; phase {} ns", self.phase_ns)?;
         match self.origin {
             OriginKind::Known => {}

@@ -73,7 +73,9 @@ pub fn run(arguments: &Home) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
     let groups = groups(&machine, &arguments.axes)?;
     let mut homing = homing(&machine, &groups);
-    homing.check().map_err(|(axis, why)| Failure::input(format!("axis {}: {why}", machine.axes[usize::from(axis)].name)))?;
+    homing
+        .check()
+        .map_err(|(axis, why)| Failure::input(format!("axis {}: {why}", machine.axes[usize::from(axis)].name)))?;
     let connection = connection::to_machine(&arguments.port, &machine, &arguments.machine, "home")?;
     let mut memory = Memory::recall(&connection);
     homing.others = others(&machine, homing.mask(), connection.board.status(), &memory);
@@ -102,7 +104,8 @@ fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
     }
     let mask = |group: &Vec<usize>| group.iter().fold(0_u8, |mask, axis| mask | 1 << axis);
     let wanted = if names.is_empty() { u8::MAX } else { wanted };
-    let groups: Vec<u8> = machine.home_order.iter().map(|group| mask(group) & wanted).filter(|&mask| mask != 0).collect();
+    let groups: Vec<u8> =
+        machine.home_order.iter().map(|group| mask(group) & wanted).filter(|&mask| mask != 0).collect();
     if groups.is_empty() {
         return Err(Failure::input(
             "no axis of the machine has a home table: home = { toward = \"min\", ... }, as in docs/homing.md",
@@ -115,9 +118,10 @@ fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
 fn homing<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
     let mut axes = [None; 8];
     for (place, axis) in axes.iter_mut().zip(&machine.axes) {
-        *place = axis.home.map(|AxisHome { toward, start, accel, seek, slow, move_off, max_travel, pull_off, .. }| {
-            AxisHoming { toward_max: toward == End::Max, start, accel, seek, slow, move_off, max_travel, pull_off }
-        });
+        *place =
+            axis.home.map(|AxisHome { toward, start, accel, seek, slow, move_off, max_travel, pull_off, .. }| {
+                AxisHoming { toward_max: toward == End::Max, start, accel, seek, slow, move_off, max_travel, pull_off }
+            });
     }
     let wiring = match machine.guard.limits {
         Limits::Each => Wiring::Each,
@@ -147,7 +151,12 @@ fn others(machine: &Machine, wanted: u8, status: &Status, memory: &Memory) -> u8
     machine.axes.iter().enumerate().filter_map(unclear).fold(0, |mask, bit| mask | bit)
 }
 
-fn drive(connection: Connection, machine: &Machine, homing: &Homing<'_>, memory: &mut Memory) -> Result<Report, Failure> {
+fn drive(
+    connection: Connection,
+    machine: &Machine,
+    homing: &Homing<'_>,
+    memory: &mut Memory,
+) -> Result<Report, Failure> {
     // The port is closed before the control gives up its claim: what is bound first is dropped last.
     let Connection { mut control, port, mut board, axes, .. } = connection;
     let begun = Instant::now();
@@ -158,8 +167,9 @@ fn drive(connection: Connection, machine: &Machine, homing: &Homing<'_>, memory:
         return Err(connection::broken(&fault, &axes));
     }
     let line = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
-    let powered =
-        board.enable_while(|progress| control.wish(progress.status)).map_err(|error| connection::broken(&error, &axes))?;
+    let powered = board
+        .enable_while(|progress| control.wish(progress.status))
+        .map_err(|error| connection::broken(&error, &axes))?;
     let mut last = (0, Stage::MoveOff);
     let outcome = match powered {
         Ended::Stopped => Ok(Homed::Stopped),
@@ -172,11 +182,15 @@ fn drive(connection: Connection, machine: &Machine, homing: &Homing<'_>, memory:
     };
     line.finish_and_clear();
     // An axis that was to be homed is nowhere until it is.
-    (0..axes.len()).filter(|number| homing.mask() >> number & 1 == 1).for_each(|number| memory.set_offset(number, None));
+    (0..axes.len())
+        .filter(|number| homing.mask() >> number & 1 == 1)
+        .for_each(|number| memory.set_offset(number, None));
     let mut edges = None;
     let ended = match outcome {
         Ok(Homed::At(places)) => {
-            for (number, home) in machine.axes.iter().enumerate().filter_map(|(number, axis)| Some((number, axis.home?))) {
+            for (number, home) in
+                machine.axes.iter().enumerate().filter_map(|(number, axis)| Some((number, axis.home?)))
+            {
                 if homing.mask() >> number & 1 == 1 {
                     memory.set_offset(number, Some(home.position - i64::from(places[number])));
                     memory.set_limit(number, None);

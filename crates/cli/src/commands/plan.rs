@@ -6,7 +6,7 @@ use crate::job;
 use crate::output;
 use crate::table::{self, Limits};
 use carrystep_plan::{Plan, PlannedMove, plan};
-use carrystep_spec::{MoveFile, Segment};
+use carrystep_spec::{Axis, MoveFile, Segment};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -95,21 +95,27 @@ fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
     for (index, (planned, asked)) in plan.moves.iter().zip(&file.moves).enumerate() {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{}", heading(index + 1, planned, &asked.profile.to_string()));
-        for ((planned, axis), rounding) in planned.axes.iter().zip(&file.machine.axes).zip(&asked.rounding) {
-            let _ = writeln!(
-                text,
-                "  {:<4} {:>10} steps  {:<10} {:>4} segments  {:>9.0} steps/s  {:>11.0} steps/s^2{}",
-                axis.name,
-                planned.steps,
-                planned.shape,
-                planned.segments.len(),
-                planned.peaks.steps_per_s(&plan.build.timebase),
-                planned.peaks.steps_per_s2(&plan.build.timebase),
-                rounded(*rounding)
-            );
-            for Segment { ticks, v, a, j, last } in planned.segments.iter().filter(|_| segments) {
+        let rows = planned.axes.iter().zip(&file.machine.axes).zip(&asked.rounding);
+        let timebase = &plan.build.timebase;
+        let cells = rows.clone().map(|((planned, Axis { name, unit, .. }), _)| {
+            [
+                format!("  {name}"),
+                planned.steps.to_string(),
+                unit.own(planned.steps as f64, 0),
+                planned.shape.to_owned(),
+                planned.segments.len().to_string(),
+                unit.own(planned.peaks.steps_per_s(timebase), 1),
+                unit.own(planned.peaks.steps_per_s2(timebase), 2),
+            ]
+        });
+        let head = ["  axis", "steps", "distance", "shape", "segments", "speed", "acceleration"];
+        let _ = table::columns(&mut text, head, cells, |column| column == 0 || column == 3);
+        for ((planned, axis), rounding) in rows {
+            text.push_str(&rounded(axis, *rounding));
+            for (index, Segment { ticks, v, a, j, last }) in planned.segments.iter().filter(|_| segments).enumerate() {
+                let name = if index == 0 { axis.name.as_str() } else { "" };
                 let mark = if *last { "  last" } else { "" };
-                let _ = writeln!(text, "       {ticks:>10} ticks  V {v:>20}  A {a:>20}  J {j:>12}{mark}");
+                let _ = writeln!(text, "  {name:<4} {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}");
             }
         }
     }
@@ -118,8 +124,13 @@ fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
 }
 
 /// What rounding to whole steps added, where it did.
-fn rounded(rounding: f64) -> String {
-    if rounding == 0.0 { String::new() } else { format!("  rounded by {:+.4} steps", -rounding) }
+fn rounded(axis: &Axis, rounding: f64) -> String {
+    if rounding == 0.0 {
+        return String::new();
+    }
+    let Axis { name, unit, .. } = axis;
+    let own = if unit.is_step() { String::new() } else { format!(", {}", unit.own(-rounding, 0)) };
+    format!("  {name} is rounded by {:+.4} steps{own}\n", -rounding)
 }
 
 fn heading(number: usize, planned: &PlannedMove, profile: &str) -> String {

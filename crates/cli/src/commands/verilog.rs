@@ -19,6 +19,10 @@ const ENGINE_MACHINE: &str = include_str!("../../../../sim/engine.toml");
 struct Written {
     passed: bool,
     top: &'static str,
+    /// The tick that is built in, ns.
+    tick_ns: u64,
+    /// How it was chosen, where the machine file gives none and the clock is not the default.
+    tick_note: Option<String>,
     /// What stops the axes, as counted; the parallel core has no guard.
     #[serde(skip_serializing_if = "Option::is_none")]
     guard: Option<GuardFigures>,
@@ -39,11 +43,13 @@ pub fn run(arguments: &Verilog) -> Result<(), Failure> {
     if arguments.json {
         return output::print_json(&written);
     }
-    output::print(&listed(&written.files))
+    output::print(&listed(&written.files, written.tick_note.as_deref()))
 }
 
-fn listed(files: &[PathBuf]) -> String {
-    files.iter().map(|file| format!("wrote {}\n", file.display())).collect()
+/// The files, and what was chosen for them.
+fn listed(files: &[PathBuf], note: Option<&str>) -> String {
+    let note = note.map_or_else(String::new, |note| note.replace("; ", "\n") + "\n");
+    files.iter().map(|file| format!("wrote {}\n", file.display())).chain([note]).collect()
 }
 
 /// What `--json` prints of a board's gateware.
@@ -55,6 +61,8 @@ struct WrittenForBoard<'a> {
     part: String,
     build_id: String,
     baud: Option<u32>,
+    tick_ns: u64,
+    tick_note: Option<String>,
     guard: GuardFigures,
     files: Vec<PathBuf>,
 }
@@ -65,6 +73,7 @@ fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
     let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
     let files = carrystep_export::write(&out, &gateware.files()?)?;
+    let tick_note = gateware.chosen_tick().map(|chosen| chosen.to_string());
     if arguments.json {
         return output::print_json(&WrittenForBoard {
             passed: true,
@@ -73,11 +82,13 @@ fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
             part: gateware.part().ordered(),
             build_id: gateware.build_id().to_string(),
             baud: gateware.uart().map(Uart::baud),
+            tick_ns: gateware.build().timebase.tick_ns(),
+            tick_note,
             guard: gateware.build().guard_figures(),
             files,
         });
     }
-    output::print(&listed(&files))
+    output::print(&listed(&files, tick_note.as_deref()))
 }
 
 /// The machine that `hdl-out/core` is made from.
@@ -97,16 +108,24 @@ fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Writte
         ExportError::Io { .. } => Failure::input(error.to_string()),
         _ => Failure::input(format!("{name}: {error}")),
     };
+    let (tick_ns, tick_note) = (machine.timebase.tick_ns(), machine.chosen_tick.map(|chosen| chosen.to_string()));
     match core {
         Core::Parallel => {
             let build = machine.build().map_err(|error| Failure::input(format!("{name}: {error}")))?;
             let files = carrystep_export::write_core(out, &build, name).map_err(refused)?;
-            Ok(Written { passed: true, top: CORE_NAME, guard: None, files })
+            Ok(Written { passed: true, top: CORE_NAME, tick_ns, tick_note, guard: None, files })
         }
         Core::Engine => {
             let build = machine.engine();
             let files = carrystep_export::write_engine(out, &build, name).map_err(refused)?;
-            Ok(Written { passed: true, top: ENGINE_NAME, guard: Some(build.guard_figures()), files })
+            Ok(Written {
+                passed: true,
+                top: ENGINE_NAME,
+                tick_ns,
+                tick_note,
+                guard: Some(build.guard_figures()),
+                files,
+            })
         }
     }
 }

@@ -8,7 +8,7 @@ use carrystep_hdl::memory::{BIT_BY_BIT, IN_BLOCK_RAM};
 use carrystep_spec::board::{Board, Clocking, Part};
 use carrystep_spec::engine::Limits;
 use carrystep_spec::link::{BuildId, Line, Uart};
-use carrystep_spec::{EngineBuild, Machine, Source};
+use carrystep_spec::{ChosenTick, EngineBuild, Machine, Source};
 use minijinja::{Value, context};
 
 const TOP: &str = include_str!("../../templates/board/top.v");
@@ -23,6 +23,7 @@ pub struct Gateware<'a> {
     part: &'a Part,
     build: EngineBuild,
     line: Line,
+    chosen_tick: Option<ChosenTick>,
     /// The machine file: it goes with the gateware, for moves are planned from it.
     machine: Source,
 }
@@ -41,7 +42,7 @@ impl<'a> Gateware<'a> {
             board.takes(uart.baud())?;
         }
         build.check().map_err(carrystep_hdl::HdlError::from)?;
-        let gateware = Self { board, part, build, line, machine };
+        let gateware = Self { board, part, build, line, chosen_tick: read.chosen_tick, machine };
         // A pin for each port, or the name of the one that has none.
         gateware.design(&gateware.ports(), &[]).constraints()?;
         Ok(gateware)
@@ -69,6 +70,11 @@ impl<'a> Gateware<'a> {
     /// The engine's parameters.
     pub fn build(&self) -> &EngineBuild {
         &self.build
+    }
+
+    /// How the tick was chosen, where the machine file gives none.
+    pub fn chosen_tick(&self) -> Option<ChosenTick> {
+        self.chosen_tick
     }
 
     /// The link's UART, if it is one.

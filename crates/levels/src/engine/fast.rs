@@ -4,7 +4,7 @@ use super::run::{EngineJob, EngineObserver, EngineOutcome};
 use super::{EngineHost, replay};
 use crate::fast::{EdgesOnly, Listener};
 use crate::replay::Replay;
-use crate::{LevelError, halted};
+use crate::{LevelError, halted, how_far};
 use carrystep_model::FastEngine;
 use carrystep_spec::engine::EngineOutputs;
 
@@ -58,6 +58,7 @@ impl EngineJob<'_> {
             if halted(self.halt) {
                 return Err(LevelError::Halted);
             }
+            how_far::tell(self.how_far, fed.core.cycle());
             let (cycles, outputs) = fed.advance(self.max_clocks - fed.core.cycle(), settle - quiet, listener);
             quiet = if fed.host.is_done() && (outputs.idle || outputs.halted) { quiet + cycles } else { 0 };
             if quiet == settle {

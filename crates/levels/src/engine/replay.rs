@@ -6,7 +6,7 @@
 use crate::engine::{EngineHost, Events};
 use crate::tool::{self, ICARUS};
 use crate::verilator::Simulation;
-use crate::{Halt, Level, LevelError, halted};
+use crate::{Halt, HowFar, Level, LevelError, halted, how_far};
 use carrystep_model::Engine;
 use carrystep_spec::engine::{EngineInputs, EngineOutputs};
 use carrystep_spec::{EngineBuild, Program};
@@ -38,16 +38,23 @@ impl Recording {
     /// Runs a program, and what happens around it, on the model until it is over and all is quiet, or for `max_clocks`; whichever comes first,
     /// then so many ticks of rest that all is counted.
     pub fn new(build: &EngineBuild, program: &Program, events: &Events, max_clocks: u64) -> Self {
-        Self::of(build, EngineHost::new(&build.guard, program, events), max_clocks, &[])
+        Self::of(build, EngineHost::new(&build.guard, program, events), max_clocks, &[], None)
     }
 
     /// The same of any host; as far as it goes until it is halted.
-    pub(super) fn of(build: &EngineBuild, mut host: EngineHost, max_clocks: u64, halt: Halt<'_>) -> Self {
+    pub(super) fn of(
+        build: &EngineBuild,
+        mut host: EngineHost,
+        max_clocks: u64,
+        halt: Halt<'_>,
+        how_far: Option<&HowFar>,
+    ) -> Self {
         let mut model = Engine::new(build);
         let mut recording = Self { stimuli: Vec::new(), outputs: Vec::new(), clocks: 0, kept: Kept::default() };
         let settle = settle(build);
         let mut quiet = 0;
         while quiet < settle && recording.clocks < max_clocks && !halted(halt) {
+            how_far::tell(how_far, recording.clocks);
             let (inputs, outputs) = host.step(&mut model);
             recording.add(inputs, outputs);
             quiet = if host.is_done() && (outputs.idle || outputs.halted) { quiet + 1 } else { 0 };

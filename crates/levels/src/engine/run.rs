@@ -2,7 +2,7 @@
 
 use super::replay::{self, Recording};
 use super::{EngineCore, EngineHost};
-use crate::{Halt, Level, LevelError, halted};
+use crate::{Halt, HowFar, Level, LevelError, Stage, halted, how_far};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_spec::engine::{Cause, EngineOutputs};
@@ -22,6 +22,8 @@ pub struct EngineJob<'a> {
     pub max_clocks: u64,
     /// Ends it before its end.
     pub halt: Halt<'a>,
+    /// Hears how far it is.
+    pub how_far: Option<&'a HowFar>,
 }
 
 /// How a run ended.
@@ -47,7 +49,7 @@ impl<'a> EngineJob<'a> {
         let pins = build.pins.iter().map(|pins| u64::from(pins.width + pins.gap)).max().unwrap_or(0);
         let clocks = u64::from(build.timebase.clocks_per_tick());
         let max_clocks = (ticks + warm + 10 * segments + 100) * clocks + 4 * pins;
-        Self { build, program, max_clocks, halt: &[] }
+        Self { build, program, max_clocks, halt: &[], how_far: None }
     }
 
     pub(super) fn host(&self) -> EngineHost {
@@ -80,7 +82,10 @@ impl<'a> EngineJob<'a> {
             Level::Icarus | Level::Verilator => {
                 let verilog =
                     carrystep_export::engine_verilog(self.build, "a simulation").map_err(|error| gateware(&error))?;
-                let recording = Recording::of(self.build, self.host(), self.max_clocks, self.halt);
+                let begin = |stage| self.how_far.into_iter().for_each(|how_far| how_far.begin(stage));
+                begin(Stage::ModelRuns);
+                let recording = Recording::of(self.build, self.host(), self.max_clocks, self.halt, self.how_far);
+                begin(Stage::VerilogRuns);
                 if halted(self.halt) {
                     return Err(LevelError::Halted);
                 }
@@ -111,6 +116,7 @@ impl<'a> EngineJob<'a> {
             if halted(self.halt) {
                 return Err(LevelError::Halted);
             }
+            how_far::tell(self.how_far, cycle);
             let (_, outputs) = host.step(core);
             if before != Some(outputs) {
                 observer(cycle, &outputs);

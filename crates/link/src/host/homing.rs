@@ -310,7 +310,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         found.all(homing, axes, HomingFault::NotFound, |axis| axis.seek)?;
         let ran_on = each(axes).fold([0; AXES], |mut ran_on, axis| {
             let rests = self.status.positions.get(usize::from(axis)).copied().unwrap_or(0);
-            ran_on.get_mut(usize::from(axis)).into_iter().for_each(|ran_on| *ran_on = apart(at(&found.latched, axis), rests));
+            ran_on
+                .get_mut(usize::from(axis))
+                .into_iter()
+                .for_each(|ran_on| *ran_on = apart(at(&found.latched, axis), rests));
             ran_on
         });
         let ran_on = |axis: u8| ran_on.get(usize::from(axis)).copied().unwrap_or(0);

@@ -1,7 +1,7 @@
 //! What a board cannot do: each error names what it can.
 
 use super::{boards, names};
-use crate::clock::ClockError;
+use crate::clock::{ClockError, mhz};
 use carrystep_files::did_you_mean;
 use thiserror::Error;
 
@@ -74,6 +74,23 @@ pub enum BoardError {
         /// Why not.
         source: ClockError,
         /// Those that it is known to make.
+        proposed: String,
+    },
+    /// A clock that its part is not fast enough for, as far as it was measured.
+    #[error(
+        "{board}: nextpnr reaches {} MHz with the shipped gateware, far less than the machine's {} MHz; \
+         it is proposed to run at {proposed}",
+        mhz(*.measured_hz),
+        mhz(*.wanted_hz)
+    )]
+    Slow {
+        /// The board.
+        board: String,
+        /// What the machine has, Hz.
+        wanted_hz: u64,
+        /// What was reached, Hz.
+        measured_hz: u64,
+        /// The clocks that it is known to make.
         proposed: String,
     },
 }

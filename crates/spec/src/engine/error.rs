@@ -13,7 +13,7 @@ pub enum EngineError {
     /// A tick is too short for the turns of all axes.
     #[error(
         "{axes} axes need {TURN} clocks each and one to close the tick, {needed} in all, but a tick of {tick_ns} ns \
-         at {clock_hz} Hz has {clocks}: a clock of {least_hz} Hz, a longer tick or fewer axes would do"
+         at {clock_hz} Hz has {clocks}: {}, a clock of {least_hz} Hz or fewer axes would do", tick_said(.least_tick_ns)
     )]
     Schedule {
         /// How many there are to be.
@@ -26,19 +26,23 @@ pub enum EngineError {
         tick_ns: u64,
         /// Clock, Hz.
         clock_hz: u64,
+        /// The shortest tick that would do, ns.
+        least_tick_ns: Option<u64>,
         /// The least clock that would do, Hz.
         least_hz: u64,
     },
     /// Events could not be written between the phases.
     #[error(
         "{phases} phases in the {clocks} clocks of a tick: an engine needs {MIN_CLOCKS_PER_PHASE} clocks in each; \
-         fewer phases, a faster clock or a longer tick would do"
+         {}, fewer phases or a faster clock would do", tick_said(.least_tick_ns)
     )]
     ShortPhase {
         /// Phases of a tick.
         phases: u32,
         /// Clocks of a tick.
         clocks: u32,
+        /// The shortest tick that would do, ns.
+        least_tick_ns: Option<u64>,
     },
     /// A pin timing that the timers cannot count.
     #[error("axis {axis}: {name} is {clocks} clocks: from 1 to {MAX_CLOCKS} can be counted")]
@@ -80,4 +84,8 @@ pub enum EngineError {
         /// Stop accelerations.
         found: usize,
     },
+}
+
+fn tick_said(least_ns: &Option<u64>) -> String {
+    least_ns.map_or_else(|| "a longer tick".to_owned(), |ns| format!("a tick of {ns} ns"))
 }

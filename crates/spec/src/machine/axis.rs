@@ -6,7 +6,8 @@ use crate::build::{MAX_CLOCKS, PinTiming, Timebase};
 use crate::decimal;
 use crate::driver::drivers;
 use crate::error::{InputError, Source, quoted};
-use crate::number::{not_negative, positive};
+use crate::number::positive;
+use crate::unit::Unit;
 use bigdecimal::{BigDecimal, Zero};
 use carrystep_files::did_you_mean;
 use serde::Deserialize;
@@ -17,9 +18,15 @@ use toml::Spanned;
 #[serde(deny_unknown_fields, expecting = "a [[machine.axis]] table")]
 pub(super) struct RawAxis {
     pub(super) name: Spanned<String>,
-    steps_per_unit: Spanned<f64>,
-    start_speed: Option<Spanned<f64>>,
-    speed_limit: Spanned<f64>,
+    pub(super) steps_per_unit: Option<Spanned<f64>>,
+    pub(super) unit: Option<Spanned<String>>,
+    pub(super) lead: Option<Spanned<f64>>,
+    pub(super) steps_per_rev: Option<Spanned<u32>>,
+    pub(super) microsteps: Option<Spanned<u32>>,
+    pub(super) start_speed: Option<Spanned<f64>>,
+    pub(super) start_speed_per_min: Option<Spanned<f64>>,
+    pub(super) speed_limit: Option<Spanned<f64>>,
+    pub(super) speed_limit_per_min: Option<Spanned<f64>>,
     accel_limit: Spanned<f64>,
     jerk_limit: Option<Spanned<f64>>,
     stop_accel: Option<Spanned<f64>>,
@@ -38,7 +45,8 @@ impl RawAxis {
         RawPlace { travel: self.travel.take(), home: self.home.take() }
     }
 
-    pub(super) fn check(self, source: &Source, timebase: &Timebase) -> Result<Axis, InputError> {
+    /// The axis; `table` is where its table stands.
+    pub(super) fn check(self, source: &Source, table: Range<usize>, timebase: &Timebase) -> Result<Axis, InputError> {
         let name = self.name.as_ref().clone();
         let fit = |c: char| c.is_ascii_alphanumeric() || c == '_';
         if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(fit) || name.len() > 32 {
@@ -46,36 +54,35 @@ impl RawAxis {
                 "a name starts with a letter and has letters, digits and _ only, 32 at most: it becomes a signal name",
             ));
         }
-        let steps_per_unit = positive(source, &self.steps_per_unit, "steps_per_unit")?;
+        let steps_per_unit = self.steps_per_unit(source, table.clone())?;
+        let unit = self.unit(source, &steps_per_unit)?;
         let in_steps = |value: BigDecimal| value * &steps_per_unit;
-        let start_speed = match &self.start_speed {
-            None => BigDecimal::zero(),
-            Some(value) => in_steps(not_negative(source, value, "start_speed")?),
-        };
-        let speed_limit = in_steps(positive(source, &self.speed_limit, "speed_limit")?);
+        let start = self.start_speed(source, &steps_per_unit)?;
+        let speed = self.speed_limit(source, table, &steps_per_unit)?;
         let accel_limit = in_steps(positive(source, &self.accel_limit, "accel_limit")?);
-        not_too_slow(source, self.speed_limit.span(), "speed_limit", &speed_limit, "steps/s")?;
-        not_too_slow(source, self.accel_limit.span(), "accel_limit", &accel_limit, "steps/s^2")?;
+        not_too_slow(source, speed.span.clone(), speed.key, &speed.steps, (&unit, 1))?;
+        not_too_slow(source, self.accel_limit.span(), "accel_limit", &accel_limit, (&unit, 2))?;
         let jerk_limit = match &self.jerk_limit {
             None => None,
             Some(value) => Some(in_steps(positive(source, value, "jerk_limit")?)),
         };
-        if start_speed > speed_limit
-            && let Some(start) = &self.start_speed
-        {
-            return Err(InputError::at(source, start.span(), "start_speed is over speed_limit")
+        if let Some(start) = start.as_ref().filter(|start| start.steps > speed.steps) {
+            let message = format!("{} is over {}", start.key, speed.key);
+            return Err(InputError::at(source, start.span.clone(), message)
                 .help("the start speed is part of the speed range: at most speed_limit"));
         }
+        let start_speed = start.map_or_else(BigDecimal::zero, |start| start.steps);
         let (pins_ns, pins) = self.pins(source, timebase)?;
         let stop = match &self.stop_accel {
             None => stop::at_the_limit(&accel_limit, timebase),
-            Some(value) => stop::units(source, value, &steps_per_unit, timebase)?,
+            Some(value) => stop::units(source, value, &steps_per_unit, &unit, timebase)?,
         };
         let axis = Axis {
             name,
             steps_per_unit,
+            unit,
             start_speed,
-            speed_limit,
+            speed_limit: speed.steps,
             accel_limit,
             jerk_limit,
             stop,
@@ -84,7 +91,7 @@ impl RawAxis {
             travel: None,
             home: None,
         };
-        axis.check_speed(source, self.speed_limit.span(), timebase)?;
+        axis.check_speed(source, speed.span, timebase)?;
         axis.check_acceleration(source, self.accel_limit.span(), timebase)?;
         Ok(axis)
     }
@@ -138,49 +145,40 @@ fn not_too_slow(
     span: Range<usize>,
     key: &str,
     limit: &BigDecimal,
-    unit: &str,
+    (unit, seconds): (&Unit, u32),
 ) -> Result<(), InputError> {
     let least = BigDecimal::new(1.into(), 3);
     if *limit >= least {
         return Ok(());
     }
-    let limit = decimal::to_f64(limit);
-    Err(InputError::at(source, span, format!("{key} is {limit} {unit}: under {least} {unit}"))
+    let limit = unit.both(decimal::to_f64(limit), seconds);
+    let least = Unit::new(None, 1.0).own(decimal::to_f64(&least), seconds);
+    Err(InputError::at(source, span, format!("{key} is {limit}: under {least}"))
         .help("check steps_per_unit and the unit of the limit; a moving axis makes a step in a quarter of an hour"))
 }
 
 impl Axis {
     /// Under half a step per tick, and a period that the driver's width and gap allow.
     fn check_speed(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
-        let limit = decimal::to_f64(&self.speed_limit);
-        let per_unit = decimal::to_f64(&self.steps_per_unit);
-        let half = 0.5e9 / timebase.tick_ns() as f64;
+        let limit = self.unit.both(decimal::to_f64(&self.speed_limit), 1);
         let doubled = &self.speed_limit * BigDecimal::from(2 * timebase.tick_ns());
         if doubled >= 1_000_000_000 {
-            return Err(InputError::at(
-                source,
-                span,
-                format!("speed_limit is {limit} steps/s: half a step per tick or more"),
-            )
-            .help(format!(
-                "with ticks of {} ns stay under {half} steps/s, {} units/s",
-                timebase.tick_ns(),
-                half / per_unit
-            )));
+            let half = self.unit.at_most(0.5e9 / timebase.tick_ns() as f64, 1);
+            return Err(InputError::at(source, span, format!("speed_limit is {limit}: half a step per tick or more"))
+                .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
         }
         let PinTiming { width, gap, .. } = self.pins;
         let clocks = u64::from(width) + u64::from(gap) + u64::from(timebase.clocks_per_phase());
         if &self.speed_limit * BigDecimal::from(clocks) > timebase.clock_hz() {
-            let most = timebase.clock_hz() as f64 / clocks as f64;
+            let most = self.unit.at_most(timebase.clock_hz() as f64 / clocks as f64, 1);
             return Err(InputError::at(
                 source,
                 span,
-                format!("speed_limit is {limit} steps/s: over what the driver's width and gap allow"),
+                format!("speed_limit is {limit}: over what the driver's width and gap allow"),
             )
             .help(format!(
-                "a pulse takes {width} + {gap} clocks and one phase of {}: at most {most:.0} steps/s, {:.6} units/s",
-                timebase.clocks_per_phase(),
-                most / per_unit
+                "a pulse takes {width} + {gap} clocks and one phase of {}: at most {most}",
+                timebase.clocks_per_phase()
             )));
         }
         Ok(())
@@ -190,18 +188,14 @@ impl Axis {
     fn check_acceleration(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
         let tick = BigDecimal::from(timebase.tick_ns());
         if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {
-            let limit = decimal::to_f64(&self.accel_limit);
-            let half = 0.5e18 / (timebase.tick_ns() as f64).powi(2);
+            let limit = self.unit.both(decimal::to_f64(&self.accel_limit), 2);
+            let half = self.unit.at_most(0.5e18 / (timebase.tick_ns() as f64).powi(2), 2);
             return Err(InputError::at(
                 source,
                 span,
-                format!("accel_limit is {limit} steps/s^2: half a step per tick^2 or more"),
+                format!("accel_limit is {limit}: half a step per tick^2 or more"),
             )
-            .help(format!(
-                "with ticks of {} ns stay under {half} steps/s^2, {} units/s^2",
-                timebase.tick_ns(),
-                half / decimal::to_f64(&self.steps_per_unit)
-            )));
+            .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
         }
         Ok(())
     }

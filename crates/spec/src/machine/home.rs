@@ -124,7 +124,8 @@ pub(super) fn check(
         axis.travel = travel.map(|travel| travel_of(source, axis, travel)).transpose()?;
         let Some(home) = home else { continue };
         if guard.limits == Limits::None {
-            let message = format!("axis '{}' has no limit switch to home with: [machine.guard] limits is \"none\"", axis.name);
+            let message =
+                format!("axis '{}' has no limit switch to home with: [machine.guard] limits is \"none\"", axis.name);
             return Err(InputError::at(source, home.span(), message)
                 .help("limits = \"pair\", \"each\" or \"one\" says how the switches are wired"));
         }
@@ -253,8 +254,12 @@ impl Checked<'_> {
     }
 
     fn missing(&self, key: &str) -> InputError {
-        InputError::at(self.source, self.span.clone(), format!("the home table of axis '{}' has no {key}", self.axis.name))
-            .help(format!("give {key}, or travel = [LOW, HIGH] in the axis' table, from which it follows"))
+        InputError::at(
+            self.source,
+            self.span.clone(),
+            format!("the home table of axis '{}' has no {key}", self.axis.name),
+        )
+        .help(format!("give {key}, or travel = [LOW, HIGH] in the axis' table, from which it follows"))
     }
 
     /// What a limit stop at full speed runs over its switch, and a hundredth of the travel.
@@ -266,7 +271,9 @@ impl Checked<'_> {
             Ok(steps) if i64::from(steps) <= (high - low) / 2 => Ok(steps),
             _ => {
                 let units = self.units(steps);
-                let message = format!("move_off would be {units:.6} units, from speed_limit and stop_accel: over half of the travel");
+                let message = format!(
+                    "move_off would be {units:.6} units, from speed_limit and stop_accel: over half of the travel"
+                );
                 Err(InputError::at(self.source, self.span.clone(), message).help("give move_off in the home table"))
             }
         }
@@ -295,7 +302,8 @@ impl Checked<'_> {
         }
         let seconds = ticks as f64 * self.timebase.tick_ns() as f64 * 1e-9;
         let most = 1.0 / seconds / decimal::to_f64(&self.axis.steps_per_unit);
-        let message = "slow_speed is over a step between two looks at the switch: two homes could differ by more than a step";
+        let message =
+            "slow_speed is over a step between two looks at the switch: two homes could differ by more than a step";
         Err(self.at(&raw.slow_speed, message).help(format!(
             "at most {most:.6} units/s; or a shorter watchdog_ms, enable_ms or debounce_us: the longest of them says how often \
              a limit is looked at"

@@ -4,6 +4,7 @@ use crate::build::Timebase;
 use crate::decimal;
 use crate::error::{InputError, Source};
 use crate::number::positive;
+use crate::unit::Unit;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
 use toml::Spanned;
 
@@ -15,6 +16,7 @@ pub(super) fn units(
     source: &Source,
     value: &Spanned<f64>,
     steps_per_unit: &BigDecimal,
+    unit: &Unit,
     timebase: &Timebase,
 ) -> Result<u64, InputError> {
     let exact = positive(source, value, "stop_accel")? * steps_per_unit;
@@ -23,19 +25,14 @@ pub(super) fn units(
     if let Some(fine) = units.to_u64().filter(|units| (least..=most).contains(units)) {
         return Ok(fine);
     }
-    let in_units = |units: u64| steps_per_s2(units, timebase) / decimal::to_f64(steps_per_unit);
-    let steps = decimal::to_f64(&exact);
-    Err(InputError::at(
-        source,
-        value.span(),
-        format!("stop_accel is {steps} steps/s^2: not from 2^-64 to 1/4 step per tick^2"),
-    )
-    .help(format!(
-        "with ticks of {} ns from {:e} to {:e} units/s^2 can be counted",
-        timebase.tick_ns(),
-        in_units(least),
-        in_units(most)
-    )))
+    let given = unit.both(decimal::to_f64(&exact), 2);
+    Err(InputError::at(source, value.span(), format!("stop_accel is {given}: not from 2^-64 to 1/4 step per tick^2"))
+        .help(format!(
+            "with ticks of {} ns from {} to {} can be counted",
+            timebase.tick_ns(),
+            unit.both(steps_per_s2(least, timebase), 2),
+            unit.at_most(steps_per_s2(most, timebase), 2)
+        )))
 }
 
 /// The stop acceleration where the file gives none: the acceleration limit in steps/s^2, as far as it goes.
