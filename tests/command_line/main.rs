@@ -18,6 +18,8 @@ mod engine;
 mod interrupts;
 mod json_names;
 mod profile;
+#[cfg(unix)]
+mod stops;
 mod sweeps;
 mod table;
 #[cfg(unix)]

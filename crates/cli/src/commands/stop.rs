@@ -51,7 +51,7 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
         }
         // At the baud rate at which the other command has spoken, where there was one.
         let baud = stopped.as_ref().map_or(arguments.peer.baud, |holder| holder.baud);
-        match connection::try_peer(&arguments.peer, baud, "stop") {
+        match connection::to_peer(&arguments.peer, baud, "stop") {
             Ok(connection) => return Ok((connection, stopped)),
             Err(refused) if refused.busy && begin.elapsed() < BUSY + ENDED => {
                 if stopped.is_none() && begin.elapsed() > BUSY {
