@@ -2,7 +2,7 @@
 //! killed, ports that are held, and lines that die.
 
 use crate::command::{Folder, Ran};
-use crate::virtual_boards::{Board, document, folder, passed};
+use crate::virtual_boards::{Board, MACHINE, document, folder, passed};
 use serde_json::Value;
 use serialport::{SerialPort as _, TTYPort};
 use std::io::{Read as _, Write as _};
@@ -76,6 +76,26 @@ fn stop_reaches_the_command_that_holds_the_port() {
             board.port
         )));
     }
+}
+
+#[test]
+fn stop_reaches_a_run_that_waits_for_the_drivers_power() {
+    let folder = folder();
+    folder.write("machine.toml", MACHINE.replace("debounce_us", "enable_ms = 3000\ndebounce_us"));
+    let board = Board::new(&folder, "");
+    let child = drives(&folder, "run long.toml", &board.port);
+    while folder.run(&format!("status --port {} --machine machine.toml", board.port)).stdout.contains("at rest") {
+        // It has connected where it is the one that answers.
+        if status(&folder, &board.port)["held_by"]["pid"] == child.id() {
+            break;
+        }
+    }
+    let begun = Instant::now();
+    let ran = stop(&folder, &board.port, "");
+    passed(&ran);
+    assert!(ran.stdout.contains("was stopped") && begun.elapsed() < Duration::from_millis(2500), "{}", ran.stdout);
+    let told = document(child);
+    assert_eq!((&told["stopped_by"], &told["axes"][0]["position"]), (&"stop".into(), &0.into()), "{told}");
 }
 
 #[test]
