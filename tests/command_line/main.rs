@@ -27,6 +27,8 @@ mod machine_new;
 #[cfg(unix)]
 mod outputs;
 mod profile;
+#[cfg(unix)]
+mod stops;
 mod sweeps;
 mod table;
 #[cfg(unix)]

@@ -13,6 +13,10 @@ use carrystep_spec::link::{BuildId, Line, Uart};
 use carrystep_spec::{Axis, Machine, decimal};
 use std::io;
 use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// For so long a command waits for one that only looks or stops: those give the port back by themselves.
+const SOON: Duration = Duration::from_secs(2);
 
 /// A board on a serial port.
 pub type Board = Host<SerialLine, SystemClock>;
@@ -65,13 +69,8 @@ pub fn to_machine(port: &Port, machine: &Machine, name: &Path, command: &'static
     Ok(machines(port, machine, name, command, true)?)
 }
 
-/// Connects to whatever carrystep board there is, or to the one of a machine, only to look or to stop.
-pub fn to_peer(peer: &Peer, command: &'static str) -> Result<Connection, Failure> {
-    Ok(try_peer(peer, peer.baud, command)?)
-}
-
-/// The same, at this baud rate where no machine is given; the caller sees whether the port is busy.
-pub fn try_peer(peer: &Peer, baud: u32, command: &'static str) -> Result<Connection, Refused> {
+/// Connects to whatever carrystep board there is, at this baud rate, or to the one of a machine, only to look or to stop.
+pub fn to_peer(peer: &Peer, baud: u32, command: &'static str) -> Result<Connection, Refused> {
     let fine = |failure| Refused { busy: false, failure };
     if let Some(path) = &peer.machine {
         let machine = Machine::load(path).map_err(|error| fine(error.into()))?;
@@ -119,8 +118,17 @@ fn connect(
     // From here on Ctrl-C is a stop that is waited for.
     interrupt::watch();
     let unclaimed = |error: io::Error| fine(format!("no lock for the serial port {port} can be made: {error}"));
-    let Some(claim) = control::claim(port, baud, command, drives).map_err(unclaimed)? else {
-        let by = control::holder(port).map_or_else(|| "another carrystep command".to_owned(), |by| by.to_string());
+    let begin = Instant::now();
+    let claim = loop {
+        if let Some(claim) = control::claim(port, baud, command, drives).map_err(unclaimed)? {
+            break claim;
+        }
+        let holder = control::holder(port);
+        if !holder.as_ref().is_some_and(|holder| holder.listens) && begin.elapsed() < SOON {
+            std::thread::sleep(Duration::from_millis(5));
+            continue;
+        }
+        let by = holder.map_or_else(|| "another carrystep command".to_owned(), |by| by.to_string());
         let help = "wait for its end, or stop it with `carrystep stop`";
         return Err(busy(format!("serial port {port} is in use by {by}: {help}")));
     };
