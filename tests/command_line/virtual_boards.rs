@@ -1,4 +1,4 @@
-//! The commands that drive a board, on a virtual one: moves from file to capture, stops of every kind, homing.
+//! The commands that drive a board, on a virtual one: moves from file to capture, stops of every kind.
 
 use crate::command::{Folder, Ran, edit};
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
@@ -47,14 +47,14 @@ to = { x = -12.2 }
 const LONG: &str = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trapezoid\"\nto = { x = 1_000_000 }\n";
 
 /// `carrystep virtual-board`, until it is ended.
-struct Board {
+pub struct Board {
     child: Child,
     said: BufReader<ChildStdout>,
-    port: String,
+    pub port: String,
 }
 
 impl Board {
-    fn new(folder: &Folder, options: &str) -> Self {
+    pub fn new(folder: &Folder, options: &str) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
         command.args(["virtual-board", "--machine", "machine.toml"]).args(options.split_whitespace());
         command.current_dir(folder.path("")).stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -66,12 +66,12 @@ impl Board {
         Self { port: port.to_owned(), child, said }
     }
 
-    fn press(&mut self, line: &str) {
+    pub fn press(&mut self, line: &str) {
         writeln!(self.child.stdin.as_mut().unwrap(), "{line}").unwrap();
     }
 
     /// Ends it, and gives what it said.
-    fn end(mut self) -> String {
+    pub fn end(mut self) -> String {
         self.press("end");
         let mut said = String::new();
         self.said.read_to_string(&mut said).unwrap();
@@ -96,7 +96,7 @@ fn folder() -> Folder {
 }
 
 #[track_caller]
-fn passed(ran: &Ran) {
+pub fn passed(ran: &Ran) {
     assert_eq!(ran.status, 0, "{}{}", ran.stdout, ran.stderr);
 }
 
@@ -104,9 +104,10 @@ fn passed(ran: &Ran) {
 fn begin(folder: &Folder, board: &Board, file: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(["run", file, "--port", &board.port, "--json"]).current_dir(folder.path(""));
+    command.env("CARRYSTEP_STATE", folder.state());
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let has_begun = |name: &String| {
-        let known = ["home.toml", "long.toml", "machine.toml", "move.toml"].contains(&name.as_str());
+        let known = ["long.toml", "machine.toml", "move.toml"].contains(&name.as_str());
         !known && folder.path(name).metadata().is_ok_and(|file| file.len() > 0)
     };
     // Nobody else can ask the board while that one has the port.
@@ -250,27 +251,6 @@ fn an_emergency_stop_is_told_and_stays_until_it_is_released_and_cleared() {
     let ran = folder.run(&format!("stop --port {port} --baud 3000000 --clear"));
     passed(&ran);
     passed(&folder.run(&format!("run move.toml --port {port}")));
-}
-
-#[test]
-fn homing_finds_the_switch() {
-    let folder = folder();
-    let home = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"constant\"\ntime = 4\nto = { x = -200 }\n";
-    folder.write("home.toml", home);
-    let board = Board::new(&folder, "--fast --min x=-150");
-    let ran = folder.run(&format!("home home.toml --port {} --json", board.port));
-    passed(&ran);
-    let told: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
-    let latched = told["axes"][0]["latched"].as_i64().unwrap();
-    // The switch is believed a little later than it is reached.
-    assert!((-155..=-150).contains(&latched), "{told}");
-    assert!(told["axes"][0]["position"].as_i64().unwrap() <= latched);
-    drop(board);
-
-    let board = Board::new(&folder, "--fast");
-    let ran = folder.run(&format!("home home.toml --port {}", board.port));
-    assert_eq!(ran.status, 1);
-    assert!(ran.stderr.contains("no limit was met by x\n"), "{}", ran.stderr);
 }
 
 #[test]
