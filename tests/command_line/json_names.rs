@@ -34,11 +34,12 @@ const PLAN: &str = "passed tick_ns moves
 const RUN: &str = "passed core level clocks run_s faults positions files";
 
 const STATUS: &str = "passed port build clock_hz tick_ns phases watchdog_ticks ready idle armed fault halted cause
-    axes axes[].axis axes[].position axes[].discarded axes[].homing axes[].culprit";
+    meaning remedy held_by stopped
+    axes axes[].axis axes[].position axes[].place axes[].discarded axes[].homing axes[].culprit";
 
 const SERVED: &str = "passed seconds clocks fault files axes axes[].axis axes[].position axes[].discarded";
 
-const DRIVEN: &str = "passed port build ended cause planned_s run_s
+const DRIVEN: &str = "passed port build ended stopped_by cause culprits meaning remedy planned_s run_s
     axes axes[].axis axes[].before axes[].position axes[].steps_planned";
 
 const BOARDS: &str = "passed tried_on_hardware boards boards[].name boards[].title boards[].family

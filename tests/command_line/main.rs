@@ -20,6 +20,8 @@ mod homing;
 mod interrupts;
 mod json_names;
 mod profile;
+#[cfg(unix)]
+mod stops;
 mod sweeps;
 mod table;
 #[cfg(unix)]

@@ -6,7 +6,7 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
 /// Two axes; a host may be held up for long, for the machine that runs these tests may be busy.
-const MACHINE: &str = r#"[machine]
+pub const MACHINE: &str = r#"[machine]
 tick_ns = 2000
 
 [machine.guard]
@@ -48,7 +48,7 @@ const LONG: &str = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trape
 
 /// `carrystep virtual-board`, until it is ended.
 pub struct Board {
-    child: Child,
+    pub child: Child,
     said: BufReader<ChildStdout>,
     pub port: String,
 }
@@ -88,7 +88,7 @@ impl Drop for Board {
     }
 }
 
-fn folder() -> Folder {
+pub fn folder() -> Folder {
     let folder = Folder::with_move(MOVES);
     folder.write("machine.toml", MACHINE);
     folder.write("long.toml", LONG);
@@ -118,7 +118,7 @@ fn begin(folder: &Folder, board: &Board, file: &str) -> Child {
     child
 }
 
-fn document(child: Child) -> serde_json::Value {
+pub fn document(child: Child) -> serde_json::Value {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
@@ -184,7 +184,7 @@ fn a_host_that_is_killed_leaves_a_machine_that_stands_and_says_why() {
     let board = Board::new(&folder, "--fast --vcd a.vcd");
     let mut child = begin(&folder, &board, "long.toml");
     let status = format!("status --port {} --machine machine.toml", board.port);
-    folder.run(&status).refuses("in use by");
+    assert!(folder.run(&status).stdout.contains("`carrystep run`"));
     child.kill().unwrap();
     child.wait().unwrap();
     // A fast board waits for its host, and goes on by itself after a second without one.
@@ -203,7 +203,7 @@ fn a_host_that_is_killed_leaves_a_machine_that_stands_and_says_why() {
     let ran = folder.run(&run);
     assert_eq!(ran.status, 1);
     assert!(ran.stderr.starts_with("error: the machine has stopped: "), "{}", ran.stderr);
-    assert!(ran.stderr.ends_with("; `carrystep stop --clear` resumes\n"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("`carrystep stop --clear`"), "{}", ran.stderr);
     passed(&folder.run(&format!("stop --clear --port {} --machine machine.toml", board.port)));
     passed(&folder.run(&run));
 }
@@ -218,7 +218,7 @@ fn a_board_that_is_gone_is_named() {
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{said}");
     assert!(said.starts_with("error: the line to the board is gone: "), "{said}");
-    assert!(said.ends_with("; what moves stops by its watchdog\n"), "{said}");
+    assert!(said.contains("; the board's watchdog ramps the axes down 400"), "{said}");
     folder.run(&format!("run move.toml --port {}", board.port)).refuses("there is no serial port");
 }
 
@@ -229,9 +229,10 @@ fn a_limit_that_was_met_is_told_with_its_axis() {
     let on = format!("--machine machine.toml --port {}", board.port);
     let ran = folder.run(&format!("jog y 5 {on}"));
     assert_eq!(ran.status, 1);
-    assert!(ran.stdout.contains("STOPPED by the machine: limit;"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("STOPPED by the machine: limit, axis y"), "{}", ran.stdout);
     let ran = folder.run(&format!("jog x 1 {on}"));
-    assert_eq!(ran.stderr, "error: the machine has stopped: limit, from y; `carrystep stop --clear` resumes\n");
+    let says = "error: the machine has stopped: limit, from y; `carrystep stop --clear`, then jog that axis away";
+    assert!(ran.stderr.starts_with(says), "{}", ran.stderr);
 }
 
 #[test]
@@ -245,7 +246,7 @@ fn an_emergency_stop_is_told_and_stays_until_it_is_released_and_cleared() {
     let stop = |options: &str| folder.run(&format!("stop --port {} --baud 3000000 {options}", board.port));
     let ran = stop("--clear");
     assert_eq!(ran.status, 1, "{}", ran.stdout);
-    assert!(ran.stderr.contains("the machine stands because of: e-stop"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("the e-stop is still pressed"), "{}", ran.stderr);
     let port = board.port.clone();
     board.press("estop 0");
     let ran = folder.run(&format!("stop --port {port} --baud 3000000 --clear"));

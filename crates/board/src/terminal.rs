@@ -48,7 +48,11 @@ impl Terminal {
     pub fn give(&mut self, bytes: &[u8]) -> io::Result<()> {
         match self.port.write_all(bytes) {
             Err(error)
-                if !matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::WriteZero) =>
+                // The pipe is broken for as long as no host has the other end open: one was killed, and another comes.
+                if !matches!(
+                    error.kind(),
+                    ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::WriteZero | ErrorKind::BrokenPipe
+                ) =>
             {
                 Err(error)
             }

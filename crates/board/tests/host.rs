@@ -131,7 +131,7 @@ fn a_stop_of_the_machine_is_named<B: Kind>() {
     press(true);
     end.wait(10);
     let said = host.clear().unwrap_err().to_string();
-    assert_eq!(said, "the clear has not come in 100 ms; the machine stands because of: e-stop");
+    assert_eq!(said, "the e-stop is still pressed, so nothing can be cleared: release it");
     press(false);
     host.clear().unwrap();
 }

@@ -56,7 +56,8 @@ pub enum Subcommand {
     Home(Home),
     /// Say what a board does, where its axes are, and why it stands.
     Status(Status),
-    /// Stop what moves on a board; resume after a stop (--clear), take the power away (--off).
+    /// Stop what moves on a board, also while another terminal's `run`, `jog` or `home` drives it; resume after a stop
+    /// (--clear), take the power away (--off).
     Stop(Stop),
     /// Be a board: the gateware of a machine behind a pseudo-terminal, for `run` and the others. On standard input
     /// `estop 1`, `min x 1`, `max x 0` press and release switches; Ctrl-C or `end` ends it.

@@ -1,7 +1,7 @@
 //! The line to a board: opened, known, and what went wrong with it.
 
 use crate::arguments::{Peer, Port};
-use crate::control::{self, Control, Holder};
+use crate::control::{self, Control, Holder, Request};
 use crate::failure::Failure;
 use crate::found::{Known, names};
 use crate::interrupt;
@@ -10,9 +10,13 @@ use carrystep_link::line::serial::{OpenError, SerialLine};
 use carrystep_link::{Facts, Host, HostError, Patience};
 use carrystep_spec::engine::CAUSES;
 use carrystep_spec::link::{BuildId, Line, Uart};
-use carrystep_spec::{Axis, Machine};
+use carrystep_spec::{Axis, Machine, decimal};
 use std::io;
 use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// For so long a command waits for one that only looks or stops: those give the port back by themselves.
+const SOON: Duration = Duration::from_secs(2);
 
 /// A board on a serial port.
 pub type Board = Host<SerialLine, SystemClock>;
@@ -65,19 +69,14 @@ pub fn to_machine(port: &Port, machine: &Machine, name: &Path, command: &'static
     Ok(machines(port, machine, name, command, true)?)
 }
 
-/// Connects to whatever carrystep board there is, or to the one of a machine, only to look or to stop.
-pub fn to_peer(peer: &Peer, command: &'static str) -> Result<Connection, Failure> {
-    Ok(try_peer(peer, command)?)
-}
-
-/// The same; the caller sees whether the port is busy.
-pub fn try_peer(peer: &Peer, command: &'static str) -> Result<Connection, Refused> {
+/// Connects to whatever carrystep board there is, at this baud rate, or to the one of a machine, only to look or to stop.
+pub fn to_peer(peer: &Peer, baud: u32, command: &'static str) -> Result<Connection, Refused> {
     let fine = |failure| Refused { busy: false, failure };
     if let Some(path) = &peer.machine {
         let machine = Machine::load(path).map_err(|error| fine(error.into()))?;
         return machines(&peer.port, &machine, path, command, false);
     }
-    let (board, control) = connect(&peer.port.name, peer.baud, None, command, false)?;
+    let (board, control) = connect(&peer.port.name, baud, None, command, false)?;
     let axes = (0..board.facts().axes).map(|axis| axis.to_string()).collect();
     Ok(known(Connection { board, axes, steps_per_unit: Vec::new(), port: peer.port.name.clone(), control }))
 }
@@ -93,7 +92,7 @@ fn machines(
     let (board, control) = connect(&port.name, uart.baud(), Some(id), command, drives)?;
     let axes = machine.axes.iter().map(|axis| axis.name.clone()).collect();
     // For the eye only: a float decides nothing here.
-    let steps = |axis: &Axis| axis.steps_per_unit.to_string().parse().unwrap_or(1.0);
+    let steps = |axis: &Axis| decimal::to_f64(&axis.steps_per_unit);
     let steps_per_unit = machine.axes.iter().map(steps).collect();
     Ok(known(Connection { board, axes, steps_per_unit, port: port.name.clone(), control }))
 }
@@ -119,8 +118,17 @@ fn connect(
     // From here on Ctrl-C is a stop that is waited for.
     interrupt::watch();
     let unclaimed = |error: io::Error| fine(format!("no lock for the serial port {port} can be made: {error}"));
-    let Some(claim) = control::claim(port, command, drives).map_err(unclaimed)? else {
-        let by = control::holder(port).map_or_else(|| "another carrystep command".to_owned(), |by| by.to_string());
+    let begin = Instant::now();
+    let claim = loop {
+        if let Some(claim) = control::claim(port, baud, command, drives).map_err(unclaimed)? {
+            break claim;
+        }
+        let holder = control::holder(port);
+        if !holder.as_ref().is_some_and(|holder| holder.listens) && begin.elapsed() < SOON {
+            std::thread::sleep(Duration::from_millis(5));
+            continue;
+        }
+        let by = holder.map_or_else(|| "another carrystep command".to_owned(), |by| by.to_string());
         let help = "wait for its end, or stop it with `carrystep stop`";
         return Err(busy(format!("serial port {port} is in use by {by}: {help}")));
     };
@@ -183,11 +191,12 @@ fn watchdog((ticks, tick_ns): (u32, u32)) -> String {
     )
 }
 
-/// What to tell where the command that drives the board does not `answer`, or does not `end`.
-pub fn hangs(port: &str, holder: &Holder, what: &str) -> String {
+/// What to tell where the command that drives the board was asked for this, and does not `answer`, or does not `end`.
+pub fn hangs(port: &str, holder: &Holder, asked: Request, what: &str) -> String {
     let pid = holder.pid;
     let asleep = if suspended(pid) {
-        format!("; it is suspended, and `kill -CONT {pid}` wakes it: then it stops the axes as it was asked to")
+        let then = if asked == Request::Stop { ": then it stops the axes, as it was asked to" } else { "" };
+        format!("; it is suspended, and `kill -CONT {pid}` wakes it{then}")
     } else {
         String::new()
     };

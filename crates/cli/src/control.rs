@@ -44,6 +44,8 @@ pub struct Holder {
     pub pid: u32,
     /// Its subcommand: `run`, `jog`, `home`, `status`, `stop`.
     pub command: String,
+    /// The baud rate that it speaks.
+    pub baud: u32,
     /// Whether it listens on its socket.
     pub listens: bool,
     /// Ticks of the board's watchdog and the tick's length in ns, as the board said when this command connected;

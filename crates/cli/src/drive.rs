@@ -43,6 +43,8 @@ pub struct Driven {
     pub cause: Option<&'static str>,
     /// The axes that this stop came from.
     pub culprits: Vec<Culprit>,
+    /// The cause in a sentence.
+    pub meaning: Option<&'static str>,
     /// What to do about it.
     pub remedy: Option<&'static str>,
     /// Seconds that the plan takes.
@@ -101,7 +103,8 @@ impl fmt::Display for Driven {
                     write!(f, "{} {axis}{way}", if number == 0 { ", axis" } else { " and" })?;
                 }
                 f.write_str("; the positions are true\n")?;
-                self.remedy.map_or(Ok(()), |remedy| writeln!(f, "to do: {remedy}"))
+                let words = self.meaning.zip(self.remedy);
+                words.map_or(Ok(()), |(meaning, remedy)| writeln!(f, "why:   {meaning}\nto do: {remedy}"))
             }
         }
     }
@@ -250,6 +253,7 @@ pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> R
         stopped_by: control.stopped_by().filter(|_| ended == How::Stopped),
         cause: end.answer.cause_name().filter(|_| ended == How::Fault),
         culprits,
+        meaning: cause.map(Cause::meaning),
         remedy: cause.map(Cause::remedy),
         planned_s: streamed.seconds,
         run_s: begun.elapsed().as_secs_f64(),

@@ -47,7 +47,7 @@ static bool hand_over(carrystep_session *session, carrystep_feeder *feeder, int 
     return carrystep_put(session, (uint8_t)axis, &segment);
 }
 
-typedef enum { NOT_YET, STARTED, WRONG } started;
+typedef enum { NOT_YET, STARTED, WRONG, UNPOWERED } started;
 
 /* A start is sent when each of its axes has the first segment of its move. */
 static started start(carrystep_session *session, carrystep_feeder *feeder)
@@ -61,6 +61,9 @@ static started start(carrystep_session *session, carrystep_feeder *feeder)
                 return feeder->axes[axis].dry ? WRONG : NOT_YET;
             }
         }
+    }
+    if (!carrystep_may_start(session)) {
+        return UNPOWERED;
     }
     for (int axis = 0; axis < (int)CARRYSTEP_MOST_AXES; axis++) {
         feeder->axes[axis].waiting -= (uint32_t)(feeder->start >> axis & 1);
@@ -94,6 +97,9 @@ carrystep_fed carrystep_feed(carrystep_session *session, carrystep_feeder *feede
             started outcome = start(session, feeder);
             if (outcome == WRONG) {
                 return CARRYSTEP_BAD_SOURCE;
+            }
+            if (outcome == UNPOWERED) {
+                return CARRYSTEP_NO_POWER;
             }
             if (outcome == NOT_YET) {
                 break;

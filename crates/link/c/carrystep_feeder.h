@@ -34,9 +34,10 @@ typedef struct {
 } carrystep_feeder;
 
 typedef enum {
-    CARRYSTEP_FEEDING,   /* there is more */
-    CARRYSTEP_FED,       /* all was handed over */
-    CARRYSTEP_BAD_SOURCE /* a segment of no ticks, or a start without a move: what was queued will run dry, so stop */
+    CARRYSTEP_FEEDING,    /* there is more */
+    CARRYSTEP_FED,        /* all was handed over */
+    CARRYSTEP_BAD_SOURCE, /* a segment of no ticks, or a start without a move: what was queued will run dry, so stop */
+    CARRYSTEP_NO_POWER    /* a start is due and the drivers have no power: write CONTROL = 1, wait for `ready`, go on */
 } carrystep_fed;
 
 /* A program from its beginning. */

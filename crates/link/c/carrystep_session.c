@@ -34,6 +34,7 @@ void carrystep_adopt(carrystep_session *session, uint8_t next, uint8_t axes)
     session->has_refused = false;
     session->busy = false;
     session->starting = false;
+    session->powering = false;
     session->axes = axes < CARRYSTEP_MOST_AXES ? axes : (uint8_t)CARRYSTEP_MOST_AXES;
     memset(session->under_way, 0, sizeof session->under_way);
     memset(session->room, 0, sizeof session->room);
@@ -57,9 +58,17 @@ static void settle(carrystep_session *session, const carrystep_request *request)
     }
 }
 
+bool carrystep_may_start(const carrystep_session *session)
+{
+    return session->powering || !session->unpowered;
+}
+
 static bool push(carrystep_session *session, const carrystep_request *request)
 {
     if (session->axes == 0 || session->length == CARRYSTEP_SLOTS) {
+        return false;
+    }
+    if (request->address == WRITES(CARRYSTEP_START) && !carrystep_may_start(session)) {
         return false;
     }
     session->slots[slot(session, session->length)] = *request;
@@ -72,6 +81,8 @@ static bool push(carrystep_session *session, const carrystep_request *request)
         }
     } else if (request->address == WRITES(CARRYSTEP_START)) {
         session->starting = true;
+    } else if (request->address == WRITES(CARRYSTEP_CONTROL)) {
+        session->powering = (request->word & CARRYSTEP_CONTROL_ENABLE) != 0;
     }
     return true;
 }
@@ -141,11 +152,22 @@ static void refusal(carrystep_session *session, uint8_t behind, uint32_t now)
     session->refused = behind;
 }
 
+/* Whether this answers a write that was sent from here, as far as that can be known: of writes that were executed
+ * already only the number is left, so a late answer to one of them is believed. */
+static bool own(const carrystep_session *session, const carrystep_answer *answer)
+{
+    uint8_t behind = (uint8_t)(answer->sequence - session->first);
+    if ((answer->address & CARRYSTEP_WRITE) == 0 || behind > CARRYSTEP_WINDOW) {
+        return true;
+    }
+    return behind < session->reached && session->slots[slot(session, behind)].address == answer->address;
+}
+
 /* Takes what an answer says of the writes before `next`. */
 static bool count(carrystep_session *session, const carrystep_answer *answer, uint32_t now)
 {
     uint8_t advance = (uint8_t)(answer->next - session->first);
-    if (advance > session->reached) {
+    if (!own(session, answer) || advance > session->reached) {
         return false;
     }
     for (uint8_t done = 0; done < advance; done++) {
@@ -261,6 +283,7 @@ carrystep_event carrystep_receive(carrystep_session *session, uint8_t byte, uint
             session->room[axis] = (uint8_t)(answer->free > under_way ? answer->free - under_way : 0);
         }
     }
+    session->unpowered = !answer->ready && !answer->fault;
     answered(session, answer);
     return CARRYSTEP_HEARD;
 }

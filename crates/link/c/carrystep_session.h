@@ -58,13 +58,15 @@ typedef struct {
     uint8_t room[CARRYSTEP_MOST_AXES];
     bool starting;
     bool armed;
+    bool unpowered; /* the last answer came from drivers without power */
+    bool powering;  /* this host has asked for power */
 } carrystep_session;
 
 typedef enum {
     CARRYSTEP_QUIET,      /* no answer has ended */
     CARRYSTEP_HEARD,      /* *answer is one */
     CARRYSTEP_DAMAGED,    /* a damaged frame: it will be asked for again */
-    CARRYSTEP_OUT_OF_STEP /* the gateware was restarted, or another host writes to it: begin anew */
+    CARRYSTEP_OUT_OF_STEP /* the gateware was restarted, or another host writes to it or is answered: begin anew */
 } carrystep_event;
 
 typedef enum {
@@ -87,7 +89,11 @@ void carrystep_adopt(carrystep_session *session, uint8_t next, uint8_t axes);
 /* Reads a register: its answer comes out of carrystep_receive. False: eight are being read already. */
 bool carrystep_read(carrystep_session *session, uint8_t address);
 
-/* Writes a register. False: no room, or not adopted yet. */
+/* Whether a START is taken, at once or after a while. False: the drivers have no power, and the gateware would refuse the
+ * START, and all that is behind it, for as long as they have none: write CONTROL = 1 and wait for `ready`. */
+bool carrystep_may_start(const carrystep_session *session);
+
+/* Writes a register. False: no room, not adopted yet, or a START where carrystep_may_start says no. */
 bool carrystep_write(carrystep_session *session, uint8_t address, uint32_t word);
 
 /* Puts a segment into the queue of an axis; mind session->room. False: no room on the way, no such axis, no ticks, or not

@@ -76,36 +76,38 @@ impl<S: Source> Feeder<S> {
             return Ok(Some(Body::Segment { axis: number, segment }));
         }
         match self.start {
-            Some(mask) if may_start => self.start_of(axes, mask),
+            Some(mask) if may_start && self.start_is_due(axes)? => {
+                for (_, axis) in self.axes.iter_mut().enumerate().filter(|(number, _)| mask >> number & 1 == 1) {
+                    axis.waiting -= 1;
+                }
+                self.start = None;
+                Ok(Some(Body::Write { address: START, word: mask.into() }))
+            }
             _ => Ok(None),
         }
     }
 
-    fn start_of(&mut self, axes: u8, mask: u8) -> Result<Option<Body>, ProgramError> {
+    /// Whether the first segments of all axes of the next start were handed over, so that only the gateware keeps it
+    /// back.
+    ///
+    /// # Errors
+    /// [`ProgramError`] where the start can never be sent.
+    pub fn start_is_due(&self, axes: u8) -> Result<bool, ProgramError> {
+        let Some(mask) = self.start else { return Ok(false) };
         for (number, axis) in (0..MOST_AXES).zip(&self.axes).filter(|(number, _)| mask >> number & 1 == 1) {
             if number >= axes {
                 return Err(ProgramError::Axis { axis: number, axes });
             }
             if axis.waiting == 0 {
-                return if axis.dry { Err(ProgramError::NoMove { axis: number, mask }) } else { Ok(None) };
+                return if axis.dry { Err(ProgramError::NoMove { axis: number, mask }) } else { Ok(false) };
             }
         }
-        for (_, axis) in self.axes.iter_mut().enumerate().filter(|(number, _)| mask >> number & 1 == 1) {
-            axis.waiting -= 1;
-        }
-        self.start = None;
-        Ok(Some(Body::Write { address: START, word: mask.into() }))
+        Ok(true)
     }
 
     /// Whether an axis has a segment that could not be sent yet.
     pub fn wants(&self, axis: u8) -> bool {
         self.axes.get(usize::from(axis)).is_some_and(|axis| axis.ahead.is_some())
-    }
-
-    /// Whether the next start has the first segments of all its axes, so that only the gateware keeps it back.
-    pub fn start_is_due(&self) -> bool {
-        let fed = |mask: u8| (0..).zip(&self.axes).all(|(number, axis)| mask >> number & 1 == 0 || axis.waiting > 0);
-        self.start.is_some_and(fed)
     }
 
     /// Whether a start is still to be sent.

@@ -23,7 +23,7 @@ use crate::slip;
 /// The e-stop's place in [`map::CAUSES`].
 const ESTOP: u8 = 0;
 /// For so long after its release an e-stop may bounce, ms.
-const RELEASED_MS: u32 = 50;
+const RELEASED_MS: u32 = 20;
 
 /// What a machine does, as of the last answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -232,7 +232,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// Resumes after a stop of any cause; queues are empty then. Does nothing where there was none.
     ///
     /// # Errors
-    /// [`HostError::StillPressed`], within 50 ms; [`HostError::TooLong`] where the fault stays for another reason.
+    /// [`HostError::StillPressed`], some 20 ms after the first try; [`HostError::TooLong`] where the fault stays for another reason.
     pub fn clear(&mut self) -> Result<(), HostError<L::Error>> {
         let begin = self.clock.milliseconds();
         self.look()?;

@@ -168,9 +168,9 @@ impl<const N: usize> Session<N> {
     /// [`ProgramError`]; after [`ProgramError::NoPower`] the program may go on once CONTROL = 1 was written.
     pub fn feed<S: Source>(&mut self, feeder: &mut Feeder<S>) -> Result<bool, ProgramError> {
         while self.window.room() > 0 {
-            let may_start = !self.starting && !self.armed && self.may_start();
-            let Some(body) = feeder.next(self.axes, &self.room, may_start)? else {
-                if !self.may_start() && feeder.start_is_due() {
+            let free = !self.starting && !self.armed;
+            let Some(body) = feeder.next(self.axes, &self.room, free && self.may_start())? else {
+                if free && !self.may_start() && feeder.start_is_due(self.axes)? {
                     return Err(ProgramError::NoPower);
                 }
                 break;

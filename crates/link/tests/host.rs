@@ -4,7 +4,9 @@
 
 mod support;
 
-use carrystep_link::{Command, Host, HostError, Patience, Program, ProgramError, Refusal, Segment, Timing, Wish};
+use carrystep_link::{
+    Command, Ended, Host, HostError, Patience, Program, ProgramError, Refusal, Segment, Timing, Wish,
+};
 use std::convert::Infallible;
 use support::bench_line::{End, Peer};
 use support::device::Device;
@@ -62,7 +64,7 @@ fn nobody_answers_any_more() {
     end.0.borrow_mut().peer = Peer::Nobody;
     let commands = program(&mut Random(11), 6, 100, 20 * TICKS);
     let error = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap_err();
-    assert!(matches!(error, HostError::Silence { .. }), "{error}");
+    assert!(matches!(error, HostError::Lost { bytes: 0, .. }), "{error}");
     // An idle hour in between is no silence.
     end.0.borrow_mut().peer = Peer::Gateware;
     end.0.borrow_mut().now += 3_600_000;
@@ -87,4 +89,63 @@ fn a_program_that_no_gateware_takes_is_refused_before_it_is_sent() {
 #[test]
 fn refusals_are_errors_of_their_own() {
     assert_eq!(HostError::<Infallible>::from(Refusal::Identity(1)), HostError::Refused(Refusal::Identity(1)));
+}
+
+/// The last exchanges of a host before a write of CONTROL with bit 1 was executed.
+#[test]
+fn a_stop_is_on_the_line_within_three_exchanges_of_the_wish() {
+    let end = End::new();
+    let mut host = connect(&end, Some(BUILD)).unwrap();
+    host.enable().unwrap();
+    let commands = program(&mut Random(5), 6, 400, 20 * TICKS);
+    for wished in [1, 2, 3, 5, 8, 13, 21, 34, 55] {
+        let (mut exchanges, mut asked) = (0, 0);
+        let program = Program::new(&commands, 6).unwrap();
+        let ended = host.stream(program, |_| {
+            exchanges += 1;
+            if exchanges < wished {
+                return Wish::GoOn;
+            }
+            if exchanges == wished {
+                asked = end.0.borrow().now;
+            }
+            Wish::Stop
+        });
+        assert_eq!(ended, Ok(Ended::Stopped));
+        let stopped = end.0.borrow().stopped.expect("a stop");
+        // An exchange is a millisecond of this line.
+        assert!(stopped - asked <= 3, "wished at {asked} ms, executed at {stopped} ms");
+        host.clear().unwrap();
+        end.0.borrow_mut().stopped = None;
+    }
+}
+
+#[test]
+fn a_start_without_power_is_refused_before_anything_is_sent() {
+    let end = End::new();
+    let mut host = connect(&end, Some(BUILD)).unwrap();
+    let segment = Segment { ticks: 9, v: 0, a: 0, j: 0, last: true };
+    let commands = [Command::Segment { axis: 0, segment }, Command::Start { mask: 1 }];
+    let error = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap_err();
+    assert_eq!(error, HostError::Program(ProgramError::NoPower));
+    assert!(error.to_string().starts_with("the drivers have no power: write CONTROL = 1 and wait for `ready`"));
+    assert_eq!(host.write(carrystep_link::registers::START, 1), Err(HostError::Program(ProgramError::NoPower)));
+    assert!(end.0.borrow().device.log.is_empty(), "something was written");
+    host.enable().unwrap();
+    assert_eq!(host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn), Ok(Ended::Done));
+}
+
+#[test]
+fn a_clear_with_the_e_stop_pressed_says_so_at_once() {
+    let end = End::new();
+    let mut host = connect(&end, Some(BUILD)).unwrap();
+    host.enable().unwrap();
+    end.0.borrow_mut().device.press(true);
+    host.look().unwrap();
+    let begun = end.0.borrow().now;
+    assert_eq!(host.clear(), Err(HostError::StillPressed));
+    let took = end.0.borrow().now - begun;
+    assert!(took < 200, "{took} ms");
+    end.0.borrow_mut().device.press(false);
+    host.clear().unwrap();
 }

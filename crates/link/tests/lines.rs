@@ -49,6 +49,25 @@ fn spi_sends_end_while_there_is_nothing_to_say() {
     assert_eq!(line.free().0, expected.concat());
 }
 
+/// Two hosts would take each other's acknowledgements for their own.
+#[cfg(unix)]
+#[test]
+fn a_port_is_one_hosts_by_all_of_its_names() {
+    let (_board, port) = TTYPort::pair().unwrap();
+    let name = port.name().unwrap();
+    drop(port);
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("port");
+    std::os::unix::fs::symlink(&name, &link).unwrap();
+    let first = SerialLine::open(&name, 921_600).unwrap();
+    for other in [name.as_str(), link.to_str().unwrap()] {
+        let refused = SerialLine::open(other, 921_600).err().unwrap();
+        assert!(matches!(&refused, OpenError::Busy { .. }), "{refused}");
+    }
+    drop(first);
+    SerialLine::open(link.to_str().unwrap(), 921_600).unwrap();
+}
+
 #[test]
 fn a_port_that_cannot_be_opened_says_why() {
     let absent = SerialLine::open("/dev/carrystep-none", 921_600).err().unwrap();

@@ -11,7 +11,7 @@ use support::soak::{Soak, TICKS, soak};
 use support::wire::Faults;
 
 /// Name, right text (it stands once in its file), wrong text; in the C library.
-const IN_C: [(&str, &str, &str); 20] = [
+const IN_C: [(&str, &str, &str); 25] = [
     ("CRC is not looked at", "|| carrystep_crc(frame, content) != word_at(frame, content)", ""),
     ("length is not looked at", "length != CARRYSTEP_ANSWER_BYTES || ", ""),
     ("END is not escaped", "if (frame[at] == CARRYSTEP_END) {", "if (false) {"),
@@ -25,6 +25,19 @@ const IN_C: [(&str, &str, &str); 20] = [
     ),
     ("ticks are not less one", "segment->ticks - 1u", "segment->ticks"),
     ("the count of others is believed", "advance > session->reached", "false && advance > session->reached"),
+    ("answers to other hosts are believed", "!own(session, answer) || ", ""),
+    (
+        "answers to writes that were never sent are believed",
+        "behind < session->reached && session->slots",
+        "session->slots",
+    ),
+    (
+        "answers to another host's write of the same number are believed",
+        " && session->slots[slot(session, behind)].address == answer->address",
+        "",
+    ),
+    ("a start is fed without power", "return UNPOWERED;", ""),
+    ("a start is written without power", "WRITES(CARRYSTEP_START) && !carrystep_may_start(session)", "0"),
     ("what was never sent may be executed", "advance > session->reached", "advance > session->length"),
     ("every refusal begins a new round", "!session->has_refused || behind <= session->refused", "true"),
     (

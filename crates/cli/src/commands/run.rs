@@ -6,7 +6,7 @@ use crate::drive::{Driven, Streamed, drive};
 use crate::failure::{Failure, refused};
 use crate::{job, output};
 use carrystep_plan::plan;
-use carrystep_spec::{Machine, MoveFile, Source};
+use carrystep_spec::{Machine, MoveFile, Source, decimal};
 use std::path::Path;
 
 /// Makes the moves of a file.
@@ -25,6 +25,9 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
     let time = time.map_or_else(String::new, |seconds| format!("time = {seconds:?}\n"));
     let text = format!("[[move]]\nprofile = \"trapezoid\"\n{time}to = {{ {axis} = {distance:?} }}\n");
     let file = MoveFile::of_moves(machine, Source { path: "jog".into(), text: text.into() })?;
+    if let Some(failure) = nothing_to_do(&file, arguments) {
+        return Err(failure);
+    }
     told(&moved(&file, &arguments.machine, &arguments.port, "jog", arguments.into_limit)?, arguments.json)
 }
 
@@ -40,6 +43,19 @@ fn moved(
     let streamed = Streamed::new(file, &plan, file.machine.baud)?;
     let connection = connection::to_machine(port, &file.machine, name, command)?;
     drive(connection, &streamed, into_limit)
+}
+
+/// A jog of less than half a step, with the size of a step.
+fn nothing_to_do(file: &MoveFile, arguments: &Jog) -> Option<Failure> {
+    let first = file.moves.first().filter(|only| only.steps.iter().all(|&steps| steps == 0))?;
+    let (number, axis) = (0..).zip(&file.machine.axes).find(|(_, axis)| axis.name == arguments.axis)?;
+    let part = first.rounding.get(number).copied().unwrap_or_default().abs();
+    let step = 1.0 / decimal::to_f64(&axis.steps_per_unit);
+    let Jog { axis, distance, .. } = arguments;
+    Some(Failure::input(format!(
+        "jog {axis} {distance} is {part:.3} step, which rounds to no step at all: nothing would move. One step of {axis} \
+         is {step} of its units"
+    )))
 }
 
 fn told(driven: &Driven, json: bool) -> Result<(), Failure> {

@@ -9,29 +9,38 @@ use crate::memory::Memory;
 use crate::output;
 use carrystep_link::frame;
 use carrystep_link::registers::DISCARDED;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A command that drives a board looks at its socket every few milliseconds; a busy computer may hold it up.
 const ANSWER: Duration = Duration::from_secs(2);
 
 /// Tells what a board does; while another command drives it, that command is asked.
 pub fn status(arguments: &Status) -> Result<(), Failure> {
-    let port = &arguments.peer.port.name;
-    if let Some(mut caller) = control::call(port) {
-        match caller.ask(Request::Status, ANSWER) {
-            // It has not connected yet, or has ended meanwhile: then the port says more.
-            Reply::Line(line) if line.is_empty() => {}
-            Reply::Ended => {}
-            Reply::Line(line) => {
-                let found: Found = serde_json::from_str(&line)
-                    .map_err(|error| Failure::Run(format!("{} answers with {line:?}: {error}", caller.holder)))?;
-                return tell(&found, arguments.json);
-            }
-            Reply::Silent => return Err(Failure::Run(connection::hangs(port, &caller.holder, "answer"))),
+    let begin = Instant::now();
+    loop {
+        if let Some(found) = asked(&arguments.peer.port.name)? {
+            return tell(&found, arguments.json);
+        }
+        match connection::to_peer(&arguments.peer, arguments.peer.baud, "status") {
+            Ok(connection) => return tell(&look(connection)?, arguments.json),
+            // A command that has just begun will listen, or one that has just ended will give the port back.
+            Err(refused) if refused.busy && begin.elapsed() < ANSWER => std::thread::sleep(Duration::from_millis(5)),
+            Err(refused) => return Err(refused.failure),
         }
     }
-    let connection = connection::to_peer(&arguments.peer, "status")?;
-    tell(&look(connection)?, arguments.json)
+}
+
+/// What the command says that drives the board at this port; nothing where none does, or knows the board yet.
+fn asked(port: &str) -> Result<Option<Found>, Failure> {
+    let Some(mut caller) = control::call(port) else { return Ok(None) };
+    match caller.ask(Request::Status, ANSWER) {
+        Reply::Line(line) if line.is_empty() => Ok(None),
+        Reply::Ended => Ok(None),
+        Reply::Silent => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Status, "answer"))),
+        Reply::Line(line) => serde_json::from_str(&line)
+            .map(Some)
+            .map_err(|error| Failure::Run(format!("{} answers with {line:?}: {error}", caller.holder))),
+    }
 }
 
 /// Prints it.
@@ -42,7 +51,8 @@ pub fn tell(found: &Found, json: bool) -> Result<(), Failure> {
 /// Asks the board for everything, and gives the port back.
 pub fn look(connection: Connection) -> Result<Found, Failure> {
     let memory = Memory::recall(&connection);
-    let Connection { mut board, axes, steps_per_unit, port, control: _control } = connection;
+    // The port is closed before the control gives up its claim: what is bound first is dropped last.
+    let Connection { control: _control, mut board, axes, steps_per_unit, port } = connection;
     let failed = |error| connection::broken(&error, &axes);
     let status = board.look().map_err(failed)?;
     let mut discarded = Vec::new();

@@ -5,8 +5,10 @@ use crate::commands::status::{look, tell};
 use crate::connection::{self, Connection};
 use crate::control::{self, Caller, Holder, Reply, Request};
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::memory::Memory;
 use carrystep_link::HostError;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 /// So long the command that drives may take until it has read the request. It looks every few milliseconds; a busy
@@ -45,23 +47,38 @@ pub fn stop(arguments: &Stop) -> Result<(), Failure> {
 /// Makes whoever drives the board stop and end, and takes the port; says whom it has stopped.
 fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
     let port = &arguments.peer.port.name;
-    let mut stopped = None;
-    let begin = Instant::now();
+    let mut stopped: Option<Holder> = None;
+    let mut begin = Instant::now();
     loop {
         if let Some(mut caller) = control::call(port)
             && ask(port, &mut caller)?
         {
             stopped = Some(caller.holder);
+            begin = Instant::now();
         }
-        match connection::try_peer(&arguments.peer, "stop") {
+        // At the baud rate at which the other command has spoken, where there was one.
+        let baud = stopped.as_ref().map_or(arguments.peer.baud, |holder| holder.baud);
+        match connection::to_peer(&arguments.peer, baud, "stop") {
             Ok(connection) => return Ok((connection, stopped)),
-            Err(refused) if refused.busy && begin.elapsed() < BUSY + ENDED => {
-                if stopped.is_none() && begin.elapsed() > BUSY {
-                    return Err(refused.failure);
+            // A command that was stopped is about to give the port back; one that has just begun is about to listen.
+            Err(refused) if refused.busy && begin.elapsed() < BUSY => {
+                if interrupt::watch().load(Ordering::Relaxed) {
+                    return Err(Failure::Run("interrupted".to_owned()));
                 }
                 std::thread::sleep(Duration::from_millis(5));
             }
-            Err(refused) => return Err(refused.failure),
+            Err(refused) if refused.busy && cfg!(not(unix)) => {
+                let help = "press Ctrl-C in its terminal: on this system `stop` reaches no other command";
+                return Err(Failure::Run(format!("{}; {help}", refused.failure.message())));
+            }
+            Err(refused) => {
+                return Err(match stopped {
+                    Some(holder) => {
+                        Failure::Run(format!("{holder} was stopped; but then {}", refused.failure.message()))
+                    }
+                    None => refused.failure,
+                });
+            }
         }
     }
 }
@@ -70,8 +87,8 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
 fn ask(port: &str, caller: &mut Caller) -> Result<bool, Failure> {
     match caller.ask(Request::Stop, TAKEN) {
         Reply::Line(_) if caller.ends(ENDED) => Ok(true),
-        Reply::Line(_) => Err(Failure::Run(connection::hangs(port, &caller.holder, "end"))),
-        Reply::Silent => Err(Failure::Run(connection::hangs(port, &caller.holder, "answer"))),
+        Reply::Line(_) => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Stop, "end"))),
+        Reply::Silent => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Stop, "answer"))),
         Reply::Ended => Ok(false),
     }
 }

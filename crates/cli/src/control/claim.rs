@@ -19,10 +19,17 @@ pub struct Claim {
 ///
 /// # Errors
 /// The system gives no folder or no file for the lock.
-pub fn claim(port: &str, command: &'static str, listens: bool) -> io::Result<Option<Claim>> {
-    let holder = Holder { pid: std::process::id(), command: command.to_owned(), listens, watchdog: None };
+pub fn claim(port: &str, baud: u32, command: &'static str, listens: bool) -> io::Result<Option<Claim>> {
+    claim_in(
+        folder::folder,
+        port,
+        Holder { pid: std::process::id(), command: command.to_owned(), baud, listens, watchdog: None },
+    )
+}
+
+fn claim_in(folder: impl Fn() -> io::Result<PathBuf>, port: &str, holder: Holder) -> io::Result<Option<Claim>> {
     let Some(name) = device(port) else { return Ok(Some(Claim { lock: None, holder })) };
-    let path = folder::folder()?.join(name).with_extension("lock");
+    let path = folder()?.join(name).with_extension("lock");
     loop {
         let mut options = OpenOptions::new();
         let file = options.read(true).write(true).create(true).truncate(false).mode(0o600).open(&path)?;
@@ -99,4 +106,44 @@ pub(super) fn device(port: &str) -> Option<String> {
     let there = std::fs::metadata(port).ok().filter(|there| there.file_type().is_char_device())?;
     let number = there.rdev();
     Some(format!("{}-{}", rustix::fs::major(number), rustix::fs::minor(number)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_of_a_device_leads_to_its_number() {
+        let folder = tempfile::tempdir().unwrap();
+        let link = folder.path().join("port");
+        std::os::unix::fs::symlink("/dev/null", &link).unwrap();
+        if cfg!(target_os = "linux") {
+            assert_eq!(device("/dev/null").unwrap(), "1-3");
+        }
+        assert_eq!(device(link.to_str().unwrap()), device("/dev/null"));
+        assert_eq!(device(folder.path().to_str().unwrap()), None);
+        assert_eq!(device("/dev/carrystep-none"), None);
+    }
+
+    #[test]
+    fn a_port_has_one_holder_at_a_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let who =
+            |command: &str| Holder { pid: 7, command: command.to_owned(), baud: 9600, listens: true, watchdog: None };
+        let take = |command| claim_in(|| Ok(folder.path().to_owned()), "/dev/null", who(command)).unwrap();
+        let mut first = take("run").expect("nobody has it");
+        let path = first.lock.as_ref().unwrap().1.clone();
+        assert!(take("jog").is_none());
+        first.connected(&Facts { watchdog_ticks: 50_000, tick_ns: 2000, ..Facts::default() });
+        assert_eq!(held(&path), Some(Holder { watchdog: Some((50_000, 2000)), ..who("run") }));
+        drop(first);
+        assert_eq!(held(&path), None);
+        // What a holder that was killed has left: a file that nobody has locked.
+        std::fs::write(&path, serde_json::to_string(&who("run")).unwrap()).unwrap();
+        assert_eq!(held(&path), None);
+        let second = take("jog").expect("nobody has it");
+        assert_eq!(held(&path), Some(who("jog")));
+        drop(second);
+        assert!(!path.exists());
+    }
 }

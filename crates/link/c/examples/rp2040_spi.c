@@ -151,7 +151,7 @@ static bool run(void)
             return true;
         }
         fed = carrystep_feed(&session, &program);
-        if (fed == CARRYSTEP_BAD_SOURCE) {
+        if (fed == CARRYSTEP_BAD_SOURCE || fed == CARRYSTEP_NO_POWER) {
             return false;
         }
         /* A look now and then: it keeps the watchdog quiet and tells the position. */

@@ -48,8 +48,10 @@ pub enum HostError<E> {
     /// Another host is answered on this line.
     #[error(transparent)]
     Foreign(#[from] Foreign),
-    /// The gateware has forgotten that the drivers are powered.
-    #[error("the gateware was restarted: power, position and queue are lost; connect again, and home")]
+    /// The drivers' power is gone, and this host has not taken it away.
+    #[error(
+        "the drivers have lost their power without a stop: the gateware was restarted (position and queue are lost: connect again, and home), or another host has taken the power away"
+    )]
     Restarted,
     /// A program for a machine that is not at rest.
     #[error("the machine moves, or another host has left segments in its queues: stop and clear it first")]

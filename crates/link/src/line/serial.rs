@@ -58,9 +58,18 @@ pub enum OpenError {
     },
 }
 
-/// An open serial port: 8 data bits, no parity, one stop bit, of this program alone.
+/// Most of the line's time that bytes may wait in the system, ms: a stop goes out behind them.
+const AHEAD_MS: u64 = 20;
+/// So many bytes may always wait: more than a frame.
+const LEAST_AHEAD: usize = 96;
+
+/// An open serial port: 8 data bits, no parity, one stop bit, of this program alone. On Unix it is locked twice: by
+/// `TIOCEXCL`, which keeps away every program but the administrator's, and by an advisory lock (`flock`) on the
+/// device's file, which every carrystep host tries; both hold for all symbolic links to the device.
 pub struct SerialLine {
     port: Box<dyn SerialPort>,
+    /// Bytes that may wait in the system.
+    ahead: usize,
 }
 
 impl SerialLine {
@@ -72,13 +81,19 @@ impl SerialLine {
         let opened = serialport::new(port, baud).timeout(WAIT).open().map_err(|error| refusal(port, baud, &error))?;
         // Old answers do no harm, so a port that cannot be emptied is as good.
         let _ = opened.clear(serialport::ClearBuffer::Input);
-        Ok(Self { port: opened })
+        Ok(Self { port: opened, ahead: ahead(baud) })
     }
 
     /// A port that is open already.
     pub fn from_port(port: Box<dyn SerialPort>) -> Self {
-        Self { port }
+        let ahead = port.baud_rate().map_or(usize::MAX, ahead);
+        Self { port, ahead }
     }
+}
+
+/// Bytes of [`AHEAD_MS`] at this baud rate, ten bits each.
+fn ahead(baud: u32) -> usize {
+    usize::try_from(u64::from(baud) * AHEAD_MS / 10_000).unwrap_or(usize::MAX).max(LEAST_AHEAD)
 }
 
 fn refusal(port: &str, baud: u32, error: &serialport::Error) -> OpenError {
@@ -113,6 +128,9 @@ impl Line for SerialLine {
     type Error = io::Error;
 
     fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> io::Result<Exchanged> {
+        // Where the system does not say how much waits, it is trusted.
+        let waits = if out.is_empty() { 0 } else { self.port.bytes_to_write().map_or(0, |count| count as usize) };
+        let out = out.get(..self.ahead.saturating_sub(waits)).unwrap_or(out);
         let sent = if out.is_empty() { 0 } else { nothing_yet(self.port.write(out))? };
         if sent > 0 && self.port.bytes_to_read()? == 0 {
             return Ok(Exchanged { sent, received: 0 });
@@ -139,6 +157,11 @@ fn nothing_yet(done: io::Result<usize>) -> io::Result<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_waits_in_the_system_takes_20_ms_of_the_line() {
+        assert_eq!([9_600, 115_200, 921_600, 3_000_000].map(ahead), [96, 230, 1843, 6000]);
+    }
 
     /// What a port's driver says of a port that is there, but for the last.
     #[test]

@@ -108,7 +108,7 @@ static void take_bytes(uint32_t now, char *text)
 
 static const char *feed(void)
 {
-    static const char *const words[] = {"feeding", "fed", "bad"};
+    static const char *const words[] = {"feeding", "fed", "bad", "unpowered"};
     return loaded ? words[carrystep_feed(&session, &feeder)] : "fed";
 }
 

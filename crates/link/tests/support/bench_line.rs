@@ -1,6 +1,6 @@
 //! A line and a clock with a gateware in miniature behind them, or with something else.
 
-use super::device::Device;
+use super::device::{Device, Done};
 use super::soak::TICKS;
 use carrystep_link::{Clock, Exchanged, Line};
 use std::cell::RefCell;
@@ -24,6 +24,8 @@ pub struct World {
     pub device: Device,
     pub peer: Peer,
     pub now: u32,
+    /// When the gateware executed a stop.
+    pub stopped: Option<u32>,
     /// What has come and was not taken yet.
     inbox: VecDeque<u8>,
 }
@@ -35,7 +37,13 @@ pub struct End(pub Rc<RefCell<World>>);
 impl End {
     pub fn new() -> Self {
         let device = Device::new(6, 1);
-        Self(Rc::new(RefCell::new(World { device, peer: Peer::Gateware, now: 1_000_000, inbox: VecDeque::new() })))
+        Self(Rc::new(RefCell::new(World {
+            device,
+            peer: Peer::Gateware,
+            now: 1_000_000,
+            stopped: None,
+            inbox: VecDeque::new(),
+        })))
     }
 }
 
@@ -50,11 +58,18 @@ impl Line for End {
 
     /// A millisecond, in which at most 300 bytes go out.
     fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> Result<Exchanged, Infallible> {
-        let World { device, peer, now, inbox } = &mut *self.0.borrow_mut();
+        let World { device, peer, now, stopped, inbox } = &mut *self.0.borrow_mut();
         *now += 1;
         let sent = out.len().min(300);
         match peer {
-            Peer::Gateware => inbox.extend(out[..sent].iter().flat_map(|&byte| device.byte(byte))),
+            Peer::Gateware => {
+                let done = device.log.len();
+                inbox.extend(out[..sent].iter().flat_map(|&byte| device.byte(byte)));
+                let is_stop = |done: &Done| matches!(*done, Done::Write(0x20, word) if word & 2 != 0);
+                if device.log[done..].iter().any(is_stop) {
+                    stopped.get_or_insert(*now);
+                }
+            }
             Peer::Nobody => {}
             Peer::Chatter(words) => inbox.extend(words.iter()),
             Peer::Echo => inbox.extend(&out[..sent]),

@@ -7,7 +7,7 @@
 //! read ADDRESS                yes or no                     addresses, words and masks in hex
 //! write ADDRESS WORD          yes or no
 //! segment AXIS TICKS V A J LAST     of the program; start MASK likewise; load: the program is whole
-//! feed                        feeding, fed or bad
+//! feed                        feeding, fed, bad or unpowered
 //! withdraw
 //! send NOW                    bytes of one request, or -
 //! take NOW BYTES              one word for each frame: the answer's fields, `damaged` or `step`
@@ -17,7 +17,7 @@
 //! ```
 
 use super::{hex, unhex};
-use carrystep_link::{Answer, Body, Command, Facts, Feeder, Refusal, Segment, Session, Timing, slip};
+use carrystep_link::{Answer, Body, Command, Facts, Feeder, ProgramError, Refusal, Segment, Session, Timing, slip};
 
 pub trait Client {
     fn say(&mut self, words: &str) -> String;
@@ -120,6 +120,7 @@ impl RustClient {
         match self.session.feed(feeder) {
             Ok(true) => "fed",
             Ok(false) => "feeding",
+            Err(ProgramError::NoPower) => "unpowered",
             Err(_) => "bad",
         }
     }

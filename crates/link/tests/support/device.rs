@@ -60,7 +60,8 @@ pub struct Device {
     escaped: bool,
     broken: bool,
     next: u8,
-    powered: bool,
+    pub powered: bool,
+    pressed: bool,
     armed: Option<u8>,
     queues: [VecDeque<(u32, bool)>; 8],
     running: [Option<(u32, bool)>; 8],
@@ -164,12 +165,20 @@ impl Device {
                 }
             }
             0x22 if self.fault.is_some() => {
-                self.fault = None;
+                self.fault = self.pressed.then_some(0);
                 self.queues.iter_mut().for_each(VecDeque::clear);
             }
             _ => {}
         }
         true
+    }
+
+    /// Presses the e-stop, or releases it.
+    pub fn press(&mut self, pressed: bool) {
+        self.pressed = pressed;
+        if pressed {
+            self.stop(0);
+        }
     }
 
     /// Ramps are over at once.

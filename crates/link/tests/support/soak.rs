@@ -43,6 +43,7 @@ pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result
     let first = seed as u8;
     let mut device = Device::new(axes, first);
     device.bugs = bugs;
+    device.powered = true;
     let (mut there, mut back) = (Wire::new(faults, seed), Wire::new(faults, !seed));
     client.say("begin 12 2");
     client.say(&format!("adopt {first:02x} {axes}"));

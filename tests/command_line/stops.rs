@@ -1,0 +1,331 @@
+//! `carrystep stop` and `status` from a second terminal while another command drives the board, hosts that hang or are
+//! killed, ports that are held, and lines that die.
+
+use crate::command::{Folder, Ran};
+use crate::virtual_boards::{Board, MACHINE, document, folder, passed};
+use serde_json::Value;
+use serialport::{SerialPort as _, TTYPort};
+use std::io::{Read as _, Write as _};
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// A command that drives the board at this port.
+fn drives(folder: &Folder, arguments: &str, port: &str) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
+    command.args(arguments.split(' ')).args(["--port", port, "--json"]).current_dir(folder.path(""));
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+fn status(folder: &Folder, port: &str) -> Value {
+    let ran = folder.run(&format!("status --port {port} --machine machine.toml --json"));
+    passed(&ran);
+    serde_json::from_str(&ran.stdout).unwrap()
+}
+
+/// Waits until that command has the port and something moves; what `status` says then.
+fn moving(folder: &Folder, child: &mut Child, port: &str) -> Value {
+    loop {
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended");
+        let ran = folder.run(&format!("status --port {port} --machine machine.toml --json"));
+        // Before the command listens the port is only busy.
+        let told: Value = serde_json::from_str(&ran.stdout).unwrap_or_default();
+        if told["held_by"]["pid"] == child.id() && told["axes"][0]["position"] != 0 {
+            return told;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn stop(folder: &Folder, port: &str, options: &str) -> Ran {
+    folder.run(&format!("stop --port {port} --machine machine.toml{options}"))
+}
+
+fn signal(child: &Child, name: &str) {
+    assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
+}
+
+const LONG_JOG: &str = "jog x 1000000 --machine machine.toml";
+
+#[test]
+fn stop_reaches_the_command_that_holds_the_port() {
+    let folder = folder();
+    let board = Board::new(&folder, "");
+    for (command, options) in
+        [("run long.toml", ""), (LONG_JOG, ""), ("run long.toml", " --clear"), (LONG_JOG, " --off")]
+    {
+        let mut child = drives(&folder, command, &board.port);
+        moving(&folder, &mut child, &board.port);
+        let pid = child.id();
+        let ran = stop(&folder, &board.port, options);
+        passed(&ran);
+        let name = command.split(' ').next().unwrap();
+        assert!(ran.stdout.contains(&format!("`carrystep {name}` (process {pid}) was stopped\n")), "{}", ran.stdout);
+        assert!(ran.stdout.contains("\nat rest; drivers "), "{}", ran.stdout);
+        assert_eq!(ran.stdout.contains("drivers without power"), options == " --off", "{}", ran.stdout);
+        let told = document(child);
+        assert_eq!((&told["ended"], &told["stopped_by"]), (&"stopped".into(), &"stop".into()), "{told}");
+        let position = status(&folder, &board.port)["axes"][0]["position"].clone();
+        assert_eq!(position, told["axes"][0]["position"]);
+        passed(&folder.run(&format!(
+            "jog x {} --machine machine.toml --port {}",
+            -position.as_f64().unwrap() / 5.0,
+            board.port
+        )));
+    }
+}
+
+#[test]
+fn stop_reaches_a_run_that_waits_for_the_drivers_power() {
+    let folder = folder();
+    folder.write("machine.toml", MACHINE.replace("debounce_us", "enable_ms = 3000\ndebounce_us"));
+    let board = Board::new(&folder, "");
+    let child = drives(&folder, "run long.toml", &board.port);
+    while folder.run(&format!("status --port {} --machine machine.toml", board.port)).stdout.contains("at rest") {
+        // It has connected where it is the one that answers.
+        if status(&folder, &board.port)["held_by"]["pid"] == child.id() {
+            break;
+        }
+    }
+    let begun = Instant::now();
+    let ran = stop(&folder, &board.port, "");
+    passed(&ran);
+    assert!(ran.stdout.contains("was stopped") && begun.elapsed() < Duration::from_millis(2500), "{}", ran.stdout);
+    let told = document(child);
+    assert_eq!((&told["stopped_by"], &told["axes"][0]["position"]), (&"stop".into(), &0.into()), "{told}");
+}
+
+#[test]
+fn status_asks_the_command_that_drives() {
+    let folder = folder();
+    let board = Board::new(&folder, "");
+    let mut child = drives(&folder, "run long.toml", &board.port);
+    let first = moving(&folder, &mut child, &board.port);
+    assert_eq!((&first["held_by"]["command"], &first["idle"]), (&"run".into(), &false.into()), "{first}");
+    let position = |told: &Value| told["axes"][0]["position"].as_i64().unwrap();
+    assert_eq!(first["axes"][0]["place"].as_f64().unwrap(), position(&first) as f64 / 5.0);
+    while position(&status(&folder, &board.port)) <= position(&first) {}
+    passed(&stop(&folder, &board.port, ""));
+    child.wait().unwrap();
+}
+
+#[test]
+fn a_run_that_was_killed_is_in_nobodys_way() {
+    let folder = folder();
+    let board = Board::new(&folder, "");
+    for _ in 0..2 {
+        let mut child = drives(&folder, "run long.toml", &board.port);
+        moving(&folder, &mut child, &board.port);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        // Its socket and its lock are still there, and nobody is behind them.
+        let ran = stop(&folder, &board.port, " --clear");
+        passed(&ran);
+        assert!(!ran.stdout.contains("was stopped"), "{}", ran.stdout);
+        passed(&folder.run(&format!("jog x -1 --machine machine.toml --port {}", board.port)));
+    }
+}
+
+#[test]
+fn a_run_that_hangs_is_named_with_what_stops_the_axes() {
+    let folder = folder();
+    let board = Board::new(&folder, "");
+    let mut child = drives(&folder, "run long.toml", &board.port);
+    moving(&folder, &mut child, &board.port);
+    signal(&child, "-STOP");
+    let ran = stop(&folder, &board.port, "");
+    let pid = child.id();
+    assert_eq!((ran.status, ran.stdout.as_str()), (1, ""));
+    for says in [
+        format!("`carrystep run` (process {pid}) holds {} and does not answer", board.port),
+        "the board's watchdog ramps the axes down 400".to_owned(),
+        "press the e-stop".to_owned(),
+    ] {
+        assert!(ran.stderr.contains(&says), "wanted: {says}\nfound: {}", ran.stderr);
+    }
+    if cfg!(target_os = "linux") {
+        assert!(ran.stderr.contains(&format!("`kill -CONT {pid}` wakes it: then it stops the axes")), "{}", ran.stderr);
+    }
+    // The request has stayed.
+    signal(&child, "-CONT");
+    let output = child.wait_with_output().unwrap();
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+    // Where this computer is so slow that the watchdog was first, that is told instead.
+    assert!(told["stopped_by"] == "stop" || told["cause"] == "watchdog", "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn a_port_that_is_held_is_refused_by_every_name() {
+    let folder = folder();
+    let board = Board::new(&folder, "");
+    std::os::unix::fs::symlink(&board.port, folder.path("port")).unwrap();
+    std::os::unix::fs::symlink(folder.path("port"), folder.path("again")).unwrap();
+    let mut child = drives(&folder, "run long.toml", &board.port);
+    moving(&folder, &mut child, &board.port);
+    for name in [board.port.as_str(), "port", "again"] {
+        let says = format!("serial port {name} is in use by `carrystep run` (process {})", child.id());
+        folder.run(&format!("run long.toml --port {name}")).refuses(&says);
+        folder.run(&format!("jog x 1 --machine machine.toml --port {name}")).refuses(&says);
+    }
+    // The other names lead to the same command.
+    let ran = stop(&folder, "again", "");
+    passed(&ran);
+    assert!(ran.stdout.contains("was stopped"), "{}", ran.stdout);
+    assert_eq!(document(child)["stopped_by"], "stop");
+}
+
+#[test]
+fn a_line_that_dies_in_mid_run_is_told_as_that() {
+    let folder = folder();
+    let board = Board::new(&folder, "");
+    let mut child = drives(&folder, "run long.toml", &board.port);
+    moving(&folder, &mut child, &board.port);
+    signal(&board.child, "-STOP");
+    let output = child.wait_with_output().unwrap();
+    signal(&board.child, "-CONT");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{said}");
+    assert!(said.contains("the line to the board is dead: it has answered until now"), "{said}");
+    assert!(said.contains("the board's watchdog ramps the axes down 400"), "{said}");
+    assert!(!said.contains("baud"), "{said}");
+}
+
+#[test]
+fn a_clear_with_the_e_stop_pressed_says_so_at_once() {
+    let folder = folder();
+    let mut board = Board::new(&folder, "--fast");
+    board.press("estop 1");
+    while status(&folder, &board.port)["cause"] != "e-stop" {}
+    let begun = Instant::now();
+    let ran = stop(&folder, &board.port, " --clear");
+    // It was five seconds before.
+    assert!(begun.elapsed() < Duration::from_millis(2500), "{:?}", begun.elapsed());
+    assert_eq!(ran.status, 1);
+    assert!(
+        ran.stderr.starts_with("error: the e-stop is still pressed, so nothing can be cleared: release it"),
+        "{}",
+        ran.stderr
+    );
+    board.press("estop 0");
+    std::thread::sleep(Duration::from_millis(100));
+    passed(&stop(&folder, &board.port, " --clear"));
+}
+
+#[test]
+fn status_says_why_the_machine_stands_and_what_to_do() {
+    let folder = folder();
+    let mut board = Board::new(&folder, "--fast --max y=100");
+    let port = board.port.clone();
+    let told = |folder: &Folder| folder.run(&format!("status --port {port} --machine machine.toml")).stdout;
+    board.press("estop 1");
+    while status(&folder, &port)["cause"] != "e-stop" {}
+    assert!(told(&folder).contains("\nSTOPPED: e-stop; "), "{}", told(&folder));
+    assert!(told(&folder).contains("\nto do: release it, then `carrystep stop --clear`"), "{}", told(&folder));
+    board.press("estop 0");
+    std::thread::sleep(Duration::from_millis(100));
+    passed(&stop(&folder, &port, " --clear"));
+    let ran = folder.run(&format!("jog y 5 --machine machine.toml --port {port}"));
+    assert_eq!(ran.status, 1);
+    assert!(ran.stdout.contains("STOPPED by the machine: limit, axis y moving forward; "), "{}", ran.stdout);
+    assert!(
+        ran.stdout.ends_with("\nto do: `carrystep stop --clear`, then jog that axis away from the switch\n"),
+        "{}",
+        ran.stdout
+    );
+    let said = told(&folder);
+    assert!(said.contains("\nSTOPPED: limit, from y; "), "{said}");
+    assert!(said.contains("\nto do: `carrystep stop --clear`, then jog that axis away from the switch\n"), "{said}");
+}
+
+#[test]
+fn a_jog_of_less_than_half_a_step_is_refused() {
+    let folder = folder();
+    // No board is asked.
+    let jog = |way: &str| folder.run(&format!("jog {way} --machine machine.toml --port none"));
+    jog("x 0.08").refuses(
+        "jog x 0.08 is 0.400 step, which rounds to no step at all: nothing would move. One step of x is 0.2 of",
+    );
+    jog("y -0.005").refuses("jog y -0.005 is 0.400 step");
+    jog("x 0").refuses("jog x 0 is 0.000 step");
+    jog("x 0.1").refuses("there is no serial port none");
+}
+
+/// A host's bytes on their way to a board, and when a write of CONTROL with its stop bit was among them.
+struct Spy {
+    port: String,
+    stops: Receiver<Instant>,
+    ends: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Spy {
+    fn new(board: &Board) -> Self {
+        let (mut host, other) = TTYPort::pair().unwrap();
+        let port = other.name().unwrap();
+        // The name stays after this end is closed: the host opens it anew.
+        drop(other);
+        host.set_timeout(Duration::from_millis(1)).unwrap();
+        let mut line = serialport::new(&board.port, 3_000_000).timeout(Duration::from_millis(1)).open().unwrap();
+        let (tell, stops) = mpsc::channel();
+        let ends = Arc::new(AtomicBool::new(false));
+        let over = Arc::clone(&ends);
+        let thread = std::thread::spawn(move || {
+            let (mut bytes, mut frame) = ([0; 512], Vec::new());
+            while !over.load(Ordering::Relaxed) {
+                let waits = |port: &dyn serialport::SerialPort| port.bytes_to_read().unwrap_or(0) > 0;
+                let (from_host, from_board) = (waits(&host), waits(&*line));
+                if from_host {
+                    let count = host.read(&mut bytes).unwrap_or(0);
+                    for &byte in &bytes[..count] {
+                        if byte != 0xc0 {
+                            frame.push(byte);
+                        } else if let [_, 0xa0, word, ..] = std::mem::take(&mut frame)[..]
+                            && word & 2 != 0
+                        {
+                            tell.send(Instant::now()).unwrap();
+                        }
+                    }
+                    line.write_all(&bytes[..count]).unwrap();
+                }
+                if from_board {
+                    let count = line.read(&mut bytes).unwrap_or(0);
+                    let _ = host.write_all(&bytes[..count]);
+                }
+                if !from_host && !from_board {
+                    std::thread::sleep(Duration::from_micros(200));
+                }
+            }
+        });
+        Self { port, stops, ends, thread: Some(thread) }
+    }
+}
+
+impl Drop for Spy {
+    fn drop(&mut self) {
+        self.ends.store(true, Ordering::Relaxed);
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}
+
+/// How many exchanges a stop takes at most is asserted without a clock, in crates/link/tests/host.rs. Here is the whole
+/// way from a second command to the wire; of several tries the best counts, for this computer may be busy.
+#[test]
+fn a_stop_from_a_second_terminal_is_on_the_wire_within_100_ms() {
+    let folder = folder();
+    let board = Board::new(&folder, "");
+    let spy = Spy::new(&board);
+    let mut took = Vec::new();
+    for _ in 0..5 {
+        let mut child = drives(&folder, "run long.toml", &spy.port);
+        moving(&folder, &mut child, &spy.port);
+        let asked = Instant::now();
+        passed(&stop(&folder, &spy.port, ""));
+        took.push(spy.stops.recv_timeout(Duration::from_secs(10)).unwrap() - asked);
+        assert_eq!(document(child)["stopped_by"], "stop");
+    }
+    println!("from the start of the command to its frame on the wire: {took:?}");
+    assert!(took.iter().min().unwrap() <= &Duration::from_millis(100), "{took:?}");
+}
