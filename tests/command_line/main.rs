@@ -19,6 +19,8 @@ mod curves;
 mod device;
 mod engine;
 #[cfg(unix)]
+mod homing;
+#[cfg(unix)]
 mod inputs;
 #[cfg(target_os = "linux")]
 mod interrupts;

@@ -166,17 +166,30 @@ fn random_machine(random: &mut Random, limits: &str) -> Machine {
     }
 }
 
-#[test]
-fn random_machines_home_from_random_starts() {
+/// Machines whose number leaves this rest, so that the wirings run side by side.
+fn random_machines(limits: &str, rest: u64) {
     let machines = std::env::var("CARRYSTEP_HOMING_MACHINES").map_or(300, |text| text.parse().unwrap());
-    let first = std::env::var("CARRYSTEP_HOMING_SEED").map_or(0, |text| text.parse().unwrap());
-    for seed in first..first + machines {
+    for seed in (rest..machines).step_by(3) {
         let mut random = Random(seed);
-        let limits = ["pair", "each", "one"][seed as usize % 3];
         let machine = random_machine(&mut random, limits);
         let starts: Vec<Start> = machine.axes.iter().map(|_| STARTS[random.below(3) as usize]).collect();
         twice::<Board>(&machine, &starts, seed);
     }
+}
+
+#[test]
+fn random_machines_with_a_switch_at_each_end_home_from_random_starts() {
+    random_machines("pair", 0);
+}
+
+#[test]
+fn random_machines_with_a_wire_for_each_axis_home_from_random_starts() {
+    random_machines("each", 1);
+}
+
+#[test]
+fn random_machines_with_one_wire_home_from_random_starts() {
+    random_machines("one", 2);
 }
 
 /// What homing came to where the switches are as `change` makes them.
