@@ -6,10 +6,15 @@ use std::time::{Duration, Instant};
 /// Calls between two looks at the time: a look takes longer than an edge.
 const CALLS: u32 = 1 << 14;
 
+/// Looks at the time in a run whose edges are rarer than that.
+const LOOKS: u64 = 1 << 10;
+
 /// Progress of one run, in clocks.
 pub struct Progress {
     bar: Option<ProgressBar>,
     calls: u32,
+    /// The clock from which on it looks at the time, however few calls there were.
+    next: u64,
     started: Instant,
     total: u64,
     what: &'static str,
@@ -18,16 +23,16 @@ pub struct Progress {
 impl Progress {
     /// A run of about `total` clocks.
     pub fn new(what: &'static str, total: u64) -> Self {
-        Self { bar: None, calls: 0, started: Instant::now(), total, what }
+        Self { bar: None, calls: 0, next: total / LOOKS, started: Instant::now(), total, what }
     }
 
     /// The run has come to this clock.
     pub fn at(&mut self, clock: u64) {
         self.calls += 1;
-        if self.calls < CALLS {
+        if self.calls < CALLS && clock < self.next {
             return;
         }
-        self.calls = 0;
+        (self.calls, self.next) = (0, clock + self.total / LOOKS);
         if self.bar.is_none() && self.started.elapsed() > Duration::from_secs(1) {
             // The target hides itself where standard error is no terminal.
             let bar = ProgressBar::with_draw_target(Some(self.total), ProgressDrawTarget::stderr_with_hz(10));

@@ -95,11 +95,7 @@ impl<'a> Planner<'a> {
     }
 
     /// All axes of a move, in a given time or as fast as the limits allow.
-    fn drafts<F: Real>(
-        &self,
-        index: usize,
-        time: Option<&BigDecimal>,
-    ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
+    fn drafts<F: Real>(&self, index: usize, time: Option<&BigDecimal>) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
         let (clock, profiles) = demand::<F>(self.file, index, time)?;
         let axes = &self.file.machine.axes;
         let drafts = profiles.into_iter().enumerate().map(|(axis, profile)| {
