@@ -17,6 +17,7 @@ mod device;
 mod engine;
 mod interrupts;
 mod json_names;
+mod plots;
 mod profile;
 mod sweeps;
 mod table;
