@@ -25,6 +25,8 @@ fn captures_that_are_none() {
     check("c.vcd: line 1 of the capture: ");
     folder.write("c.vcd", FOREIGN.replace("$timescale 1 us $end\n", ""));
     check("c.vcd: the capture has no $timescale");
+    folder.write("c.vcd", FOREIGN.replace("1 us", "3 ps"));
+    check("c.vcd: line 1 of the capture: a $timescale of 3; VCD has 1, 10 and 100");
     folder.write("c.vcd", FOREIGN.replace("#11", "#8"));
     folder
         .run("check c.vcd move.toml --map x.step=la.D0 --map x.dir=la.D1")
@@ -62,6 +64,39 @@ fn captures_without_the_signals_list_what_they_have() {
     check(" --map x.step=la.D0 --map x.step=la.D1", "this pin is already mapped");
     check(" --slack-ns -1", "unexpected argument '-1'");
     check(" --origin-ps soon", "invalid value 'soon' for '--origin-ps <PS>'");
+}
+
+#[test]
+fn pins_that_are_too_wide_are_refused() {
+    let (folder, _) = captured();
+    let check = |says: &str| folder.run("check c.vcd move.toml").refuses(says);
+    let named = FOREIGN.replace("module la", "module x").replace("D0", "step").replace("D1", "dir");
+    folder.write("c.vcd", named.replace("wire 1 ! step", "wire 2 ! step"));
+    check("c.vcd: the signal x.step of the capture has 2 bits, a pin has 1; name a bit of it with --map");
+    folder.write("c.vcd", named.replace("module x", "module la").replace("wire 1 ! step", "wire 2 ! step"));
+    check("c.vcd: the signal la.step of the capture has 2 bits, the machine has 1 axes; name a bit of it with --map");
+}
+
+#[test]
+fn offsets_and_uncertainties_that_check_nothing_are_refused() {
+    let (folder, _) = captured();
+    for origin in ["1000000000000000", "-1000000000000000", "9223372036854775807", "-9223372036854775808"] {
+        let says = format!("own.vcd: with --origin-ps {origin} the moves last from {origin} to ");
+        folder.run(&format!("check own.vcd move.toml --origin-ps {origin}")).refuses(&says);
+    }
+    for slack in ["100000000", "18446744073709551615"] {
+        let says = format!("--slack-ns {slack} is over half of the shortest period; at most ");
+        folder.run(&format!("check own.vcd move.toml --slack-ns {slack}")).refuses(&says);
+    }
+}
+
+#[test]
+fn a_check_ends_with_its_verdict() {
+    let (folder, _) = captured();
+    let good = folder.run("check own.vcd move.toml");
+    assert!(good.status == 0 && good.stdout.ends_with("\nALL HOLDS\n"), "{}", good.stdout);
+    let bad = folder.run("check own.vcd move.toml --origin-ps 0");
+    assert!(bad.status == 1 && bad.stdout.ends_with("\nFAILED\n"), "{}", bad.stdout);
 }
 
 #[test]

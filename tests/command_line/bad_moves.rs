@@ -129,6 +129,6 @@ fn moves_that_take_longer_than_any_capture() {
         .replace("start_speed = 200", "")
         .replace("speed_limit = 1000", "speed_limit = 2e-4")
         .replace("to = { x = 2 }", "to = { x = 1e5 }");
-    let says = "is over 2^40 ticks of 1000 ns; raise the limits that make it slow";
+    let says = "is over 2^42 ticks of 1000 ns; raise the limits that make it slow";
     Folder::with_move(crawling).run("plan move.toml").refuses_at("move.toml", (15, 1), says);
 }

@@ -28,6 +28,7 @@ mod json_names;
 mod machine_new;
 #[cfg(unix)]
 mod outputs;
+mod plots;
 mod profile;
 #[cfg(unix)]
 mod stops;

@@ -86,6 +86,22 @@ fn a_triangle_has_a_corner_and_a_trapezoid_two() {
     assert!(trapezoid.iter().all(|jump| (jump / 1000.0 - 1.0).abs() < 1e-12), "{trapezoid:?}");
 }
 
+/// Where jerk is nothing but impulses it has no greatest value; where there are none, nothing is jumped.
+#[test]
+fn impulses_are_no_number_and_nothing_is_zero() {
+    let all = json("profile trapezoid ranade scurve sine --steps 20000 --accel 500000 --jerk 5e6");
+    let figures = |kind: usize| all["profiles"][kind]["figures"].clone();
+    for kind in [0, 1] {
+        assert_eq!(figures(kind)["peak_jerk_steps_per_s3"], json!(null));
+        assert_eq!(figures(kind)["peak_jerk_reason"], "impulses where the acceleration jumps");
+    }
+    for kind in [2, 3] {
+        assert_eq!(figures(kind)["acceleration_jump_steps_per_s2"], json!(0.0));
+        assert!(figures(kind)["peak_jerk_steps_per_s3"].as_f64().unwrap() > 1e6);
+        assert_eq!(figures(kind).get("peak_jerk_reason"), None);
+    }
+}
+
 /// From rest at constant acceleration: 2 x = a t^2, and x = n - 1/2 in the middle of step n.
 #[test]
 fn half_phase_lists_the_middles_of_the_steps() {

@@ -30,12 +30,56 @@ fn shards_merge_to_the_whole_in_any_order() {
             folder.write(&format!("{shard}.json"), ran.stdout);
         }
         let merged = folder.run("sweep --json --merge 3.json 1.json 2.json");
-        assert_eq!(json(&merged.stdout), json(&whole.stdout));
+        assert_eq!(merged.stdout, whole.stdout, "byte for byte");
         folder.run("sweep --merge 1.json 3.json").refuses("each shard is needed once; here are 1/3, 3/3");
     }
     let report = json(&folder.run("sweep sweep.toml --json").stdout);
     assert_eq!(report["cases_passed"], 24);
     assert!(report["worst"]["step high"]["value"].as_f64().is_some_and(|part| part <= 1.0), "{report}");
+}
+
+/// A reader of JSON that scales by powers of ten loses the last digit of some.
+#[test]
+fn merged_figures_keep_their_last_digit() {
+    let folder = sweep("[\"a4988\", \"tmc2209\"]");
+    let mut one = json(&folder.run("sweep sweep.toml --json --shard 1/2").stdout);
+    folder.write("2.json", folder.run("sweep sweep.toml --json --shard 2/2").stdout);
+    let figures: Vec<f64> = (1..=1000).map(|k| (f64::from(k) * 0.618_033_988_749_894_9).fract()).collect();
+    let late = one["worst"]["late"].clone();
+    for (k, &value) in figures.iter().enumerate() {
+        one["worst"][format!("figure {k}")] = late.clone();
+        one["worst"][format!("figure {k}")]["value"] = value.into();
+    }
+    folder.write("1.json", one.to_string());
+    let merged = folder.run("sweep --json --merge 1.json 2.json").stdout;
+    for value in figures {
+        assert!(merged.contains(&format!("\"value\": {value:?},")), "{value:?}");
+    }
+}
+
+#[test]
+fn nothing_tried_is_not_passed() {
+    let folder = sweep("[\"a4988\"]");
+    folder.run("sweep sweep.toml --sample 0").refuses("--sample 0 tries nothing: give at least 1");
+    let mut shards = Vec::new();
+    for shard in 1..=13 {
+        let ran = folder.run(&format!("sweep sweep.toml --json --shard {shard}/13"));
+        // Twelve cases: the last shard is empty.
+        let (status, passed) = if shard == 13 { (4, Value::Null) } else { (0, true.into()) };
+        assert_eq!((ran.status, &json(&ran.stdout)["passed"]), (status, &passed), "{}", ran.stdout);
+        folder.write(&format!("{shard}.json"), ran.stdout);
+        shards.push(format!("{shard}.json"));
+    }
+    let text = folder.run("sweep sweep.toml --shard 13/13");
+    assert!(text.status == 4 && text.stdout.ends_with("NOTHING TRIED: no case ran\n"), "{}", text.stdout);
+    let merged = folder.run(&format!("sweep --json --merge {}", shards.join(" ")));
+    assert_eq!((merged.status, merged.stdout), (0, folder.run("sweep sweep.toml --json").stdout));
+    // Moves that are all impossible show nothing either.
+    let impossible =
+        std::fs::read_to_string(folder.path("sweep.toml")).unwrap().replacen("[[move]]", "[[move]]\ntime = 1e-6", 1);
+    folder.write("impossible.toml", impossible.replace("to = [0, 1, 2, 30]", "to = [1, 2, 30]"));
+    let refused = folder.run("sweep impossible.toml --json");
+    assert_eq!((refused.status, &json(&refused.stdout)["passed"]), (4, &Value::Null), "{}", refused.stdout);
 }
 
 #[test]

@@ -21,7 +21,7 @@ pub use table::{Table, TableKind};
 ///
 /// Begin with `carrystep demo`. A move file names a machine and moves; `carrystep simulate` says
 /// whether every pulse is where it should be. Exit status: 0 all is well, 1 the check or the run
-/// failed, 2 bad input or an impossible move, 3 a tool is missing.
+/// failed, 2 bad input or an impossible move, 3 a tool is missing, 4 no case of a sweep ran.
 #[derive(Debug, Parser)]
 #[command(name = "carrystep", version)]
 pub struct Arguments {

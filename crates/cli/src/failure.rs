@@ -24,6 +24,8 @@ pub enum Failure {
     Input(InputError),
     /// Status 3: a tool is missing.
     Tool(String),
+    /// Status 4: no case of a sweep ran, in an empty shard for one. It has been reported already.
+    NothingTried,
     /// Status 0: whoever read our output has gone.
     ReaderGone,
 }
@@ -38,6 +40,7 @@ impl Failure {
     pub fn message(&self) -> String {
         match self {
             Self::Check => "the check failed".to_owned(),
+            Self::NothingTried => "no case ran".to_owned(),
             Self::Run(message) | Self::Tool(message) => message.clone(),
             Self::Input(error) => error.to_string(),
             Self::ReaderGone => "nobody reads the output".to_owned(),
@@ -49,6 +52,7 @@ impl Failure {
         let (status, text) = match self {
             Self::ReaderGone => return ExitCode::SUCCESS,
             Self::Check => return ExitCode::from(1),
+            Self::NothingTried => return ExitCode::from(4),
             Self::Run(message) => (1, format!("error: {}", harmless(&message))),
             Self::Input(error) => (2, render(&error, std::io::stderr().is_terminal())),
             Self::Tool(message) => (3, format!("error: {message}")),

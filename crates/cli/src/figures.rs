@@ -16,7 +16,10 @@ pub struct FiguresJson {
     top_speed_steps_per_s: f64,
     peak_acceleration_steps_per_s2: f64,
     acceleration_jump_steps_per_s2: f64,
-    peak_jerk_steps_per_s3: f64,
+    /// `None`, with a reason, where all jerk is impulses: it has no greatest value.
+    peak_jerk_steps_per_s3: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_jerk_reason: Option<&'static str>,
     first_delay_s: f64,
     last_delay_s: f64,
 }
@@ -25,6 +28,7 @@ impl FiguresJson {
     /// Measures a curve.
     pub fn new(reference: &Reference) -> Self {
         let (figures, whole_steps) = (reference.figures(), reference.whole_steps());
+        let impulses = figures.peak_jerk <= 0.0 && figures.acceleration_jump > 0.0;
         Self {
             steps: figures.steps,
             whole_steps,
@@ -34,7 +38,8 @@ impl FiguresJson {
             top_speed_steps_per_s: figures.top_speed,
             peak_acceleration_steps_per_s2: figures.peak_acceleration,
             acceleration_jump_steps_per_s2: figures.acceleration_jump,
-            peak_jerk_steps_per_s3: figures.peak_jerk,
+            peak_jerk_steps_per_s3: (!impulses).then_some(figures.peak_jerk),
+            peak_jerk_reason: impulses.then_some("impulses where the acceleration jumps"),
             first_delay_s: reference.delay(0.0),
             last_delay_s: reference.delay(whole_steps - 1.0),
         }
@@ -86,9 +91,8 @@ fn in_unit<'a>(unit: &str, steps: f64) -> Vec<Line<'a>> {
     let line = |what: &str, power: &str, value: fn(&FiguresJson) -> f64| -> Line<'a> {
         (format!("{what}, {unit}/s{power}"), Box::new(move |_, f| number(value(f) / steps)))
     };
-    let jerk = move |reference: &Reference, f: &FiguresJson| {
-        let nothing_else = f.peak_jerk_steps_per_s3 <= 0.0 && reference.figures().acceleration_jump > 0.0;
-        if nothing_else { "impulses".to_owned() } else { number(f.peak_jerk_steps_per_s3 / steps) }
+    let jerk = move |_: &Reference, f: &FiguresJson| {
+        f.peak_jerk_steps_per_s3.map_or_else(|| "impulses".to_owned(), |jerk| number(jerk / steps))
     };
     vec![
         line("start jump", "", |f| f.start_speed_steps_per_s),

@@ -8,8 +8,8 @@ use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, rule};
 use carrystep_spec::{MoveFile, PathKind, ProfileKind, StartPhase, Timebase};
 use std::sync::Arc;
 
-/// Most ticks of a move, 12 days at 1 us: closed forms over it stay well inside i128, its segments in memory.
-const MOST_TICKS: u64 = 1 << 40;
+/// Most ticks of a move, 10^6 s at 250 ns: closed forms over it stay well inside i128, its segments in memory.
+const MOST_TICKS: u64 = 1 << 42;
 
 /// The time of a move, in ticks and seconds.
 #[derive(Debug, Clone, Copy)]

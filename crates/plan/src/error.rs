@@ -40,7 +40,7 @@ pub enum PlanError {
         rounded: f64,
     },
     /// More ticks than a plan counts.
-    #[error("move {}: {seconds} s is over 2^40 ticks of {tick_ns} ns; raise the limits that make it slow, or split it", index + 1)]
+    #[error("move {}: {seconds} s is over 2^42 ticks of {tick_ns} ns; raise the limits that make it slow, or split it", index + 1)]
     TooLong {
         /// Which move.
         index: usize,

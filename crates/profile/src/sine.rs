@@ -102,11 +102,18 @@ impl<F: Real> Profile<F> for SineRamp<F> {
     }
 
     fn acceleration(&self, t: F) -> F {
+        // The sine of the float nearest to pi is not 0.
+        if t >= self.duration {
+            return F::zero();
+        }
         let sine = self.angle(t).sin();
         self.peak_acceleration() * sine * sine
     }
 
     fn jerk(&self, t: F) -> F {
+        if t >= self.duration {
+            return F::zero();
+        }
         let y = self.angle(t);
         self.peak_jerk() * (y + y).sin()
     }

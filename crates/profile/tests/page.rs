@@ -41,7 +41,7 @@ fn row<R: Curve<f64>>(name: &str, ramped: &RampedMove<f64, R>) -> String {
     format!(
         "| {name} | {} | {} | {} | {:.6} | {:.6} |",
         grouped(figures.start_speed),
-        grouped(ramp.acceleration_jump),
+        grouped(figures.acceleration_jump),
         if ramp.peak_jerk > 0.0 { grouped(ramp.peak_jerk) } else { "impulses".into() },
         ramp.seconds,
         figures.seconds,

@@ -54,6 +54,9 @@ pub enum SweepError {
         /// What is wrong with it.
         message: String,
     },
+    /// A sample of no case.
+    #[error("--sample 0 tries nothing: give at least 1")]
+    NothingToTry,
     /// Reports that do not belong together.
     #[error("{0}")]
     Merge(String),
@@ -85,6 +88,9 @@ impl SweepFile {
     /// # Errors
     /// [`SweepError`] says what is wrong, with the line where there is one.
     pub fn load(path: &Path, sample: Option<u64>, seed: u64) -> Result<Self, SweepError> {
+        if sample == Some(0) {
+            return Err(SweepError::NothingToTry);
+        }
         let source = Source::read(path)?;
         let wrong = |message: String| SweepError::Format { path: path.display().to_string(), message };
         let raw: Raw = source.parse()?;

@@ -46,8 +46,9 @@ pub struct Failed {
 /// A sweep, or some shards of it.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Report {
-    /// All cases of all shards that are in here passed or were refused.
-    pub passed: bool,
+    /// Whether all cases of all shards that are in here passed or were refused; `None` where no case ran: an empty shard
+    /// shows nothing, and neither do moves that the planner refuses.
+    pub passed: Option<bool>,
     /// The same in all shards of a sweep.
     pub sweep: String,
     /// Which shards are in here.
@@ -68,7 +69,7 @@ impl Report {
     /// A report of no case yet.
     pub fn new(sweep: &SweepFile, shard: Shard) -> Self {
         Self {
-            passed: true,
+            passed: None,
             sweep: sweep.fingerprint(),
             shards: vec![shard],
             cases_passed: 0,
@@ -85,7 +86,6 @@ impl Report {
             Verdict::Refused(_) => self.cases_refused += 1,
             Verdict::Failed(message) => {
                 self.cases_failed += 1;
-                self.passed = false;
                 self.failures.push(Failed { case, values: values.clone(), message });
             }
             Verdict::Passed(figures) => {
@@ -95,6 +95,12 @@ impl Report {
                 }
             }
         }
+        self.judge();
+    }
+
+    fn judge(&mut self) {
+        let tried = self.cases_passed + self.cases_failed;
+        self.passed = (tried > 0).then_some(self.cases_failed == 0);
     }
 
     /// The worse of two stays; of two alike the earlier, so that the order of merging is all the same.
@@ -111,7 +117,6 @@ impl Report {
     /// The same with another part, in any order.
     #[must_use]
     pub(crate) fn with(mut self, other: Self) -> Self {
-        self.passed &= other.passed;
         self.cases_passed += other.cases_passed;
         self.cases_refused += other.cases_refused;
         self.cases_failed += other.cases_failed;
@@ -121,6 +126,7 @@ impl Report {
         self.failures.extend(other.failures);
         self.failures.sort_by_key(|failed| failed.case);
         self.failures.truncate(SPELLED_OUT);
+        self.judge();
         self
     }
 
@@ -182,6 +188,10 @@ impl fmt::Display for Report {
         for Failed { case, values, message } in &self.failures {
             writeln!(f, "  FAILED case {case}: {}\n    {message}", filled(values))?;
         }
-        Ok(())
+        f.write_str(match self.passed {
+            Some(true) => "ALL HOLDS\n",
+            Some(false) => "FAILED\n",
+            None => "NOTHING TRIED: no case ran\n",
+        })
     }
 }

@@ -58,6 +58,24 @@ pub enum ReadError {
     /// There is no `$timescale`.
     #[error("the capture has no $timescale: its unit of time is unknown")]
     NoTimescale,
+    /// A unit of time that VCD does not have.
+    #[error("line {line} of the capture: a $timescale of {quantity}; VCD has 1, 10 and 100")]
+    Timescale {
+        /// Line, from 1.
+        line: u64,
+        /// So many ps, ns, ...
+        quantity: u32,
+    },
+    /// A signal that is no pin, or a vector that is not one pin an axis.
+    #[error("the signal {signal} of the capture has {bits} bits, {wanted}; name a bit of it with --map")]
+    Width {
+        /// Its path.
+        signal: String,
+        /// As the capture declares it.
+        bits: u32,
+        /// What it should have.
+        wanted: String,
+    },
     /// A time before the one that came last.
     #[error("line {line} of the capture: time goes back from {from} to {to}")]
     TimeBackwards {

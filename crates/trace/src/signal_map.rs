@@ -2,6 +2,8 @@
 
 use crate::edge::Pin;
 use crate::error::ReadError;
+use carrystep_spec::AXES;
+use carrystep_spec::engine::MAX_AXES;
 use vcd::{IdCode, ReferenceIndex};
 
 /// Names of a foreign capture's signals: `x.step=top.la.D0`, `y.dir=bench.pins[3]`.
@@ -147,7 +149,7 @@ impl SignalMap {
         }
         let pin = |index: usize, axis: &str, pin: Pin| match self.path(axis, pin) {
             Some(path) => explicit(signals, path, axis, pin),
-            None => by_name(signals, index, axis, pin),
+            None => by_name(signals, (index, axes.len()), axis, pin),
         };
         let pair = |(index, axis): (usize, &&str)| Ok([pin(index, axis, Pin::Step)?, pin(index, axis, Pin::Dir)?]);
         axes.iter().enumerate().map(pair).collect()
@@ -172,16 +174,29 @@ fn explicit(signals: &[Signal], path: &str, axis: &str, pin: Pin) -> Result<Sour
     source.ok_or_else(|| missing(signals, wanted()))
 }
 
-fn by_name(signals: &[Signal], index: usize, axis: &str, pin: Pin) -> Result<Source, ReadError> {
+/// Axis `index` of so many.
+fn by_name(signals: &[Signal], (index, axes): (usize, usize), axis: &str, pin: Pin) -> Result<Source, ReadError> {
     let own = format!("{axis}.{pin}");
+    let width = |signal: &Signal, wanted: &str| ReadError::Width {
+        signal: signal.path.clone(),
+        bits: signal.bits,
+        wanted: wanted.to_owned(),
+    };
     let wires = signals.iter().filter(|s| s.bits == 1 && s.ends_with(&own));
     if let Some(signal) = topmost(wires, &own)? {
         return Ok(Source { code: signal.code, place: 0 });
+    }
+    if let Some(wide) = signals.iter().find(|s| s.bits != 1 && s.ends_with(&own)) {
+        return Err(width(wide, "a pin has 1"));
     }
     let name = pin.to_string();
     let bit = index as i64;
     let vectors = signals.iter().filter(|s| s.bits > 1 && s.ends_with(&name) && s.place(bit).is_some());
     if let Some(signal) = topmost(vectors, &format!("{name}[{index}]"))? {
+        // The gateware's own vectors may be wider than the machine.
+        if ![axes, AXES, MAX_AXES].contains(&(signal.bits as usize)) {
+            return Err(width(signal, &format!("the machine has {axes} axes")));
+        }
         return Ok(Source { code: signal.code, place: signal.place(bit).unwrap_or(0) });
     }
     Err(missing(signals, format!("{own} (nor a vector {name} with a bit {index})")))

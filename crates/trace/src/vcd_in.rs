@@ -109,6 +109,9 @@ impl<R: BufRead> VcdReader<R> {
             match command.map_err(|error| sorted(error, &mut parser, MISSING))? {
                 Command::Enddefinitions => break,
                 Command::Comment(text) => own = own.or_else(|| OwnCapture::from_comment(&text)),
+                Command::Timescale(quantity, _) if ![1, 10, 100].contains(&quantity) => {
+                    return Err(ReadError::Timescale { line, quantity });
+                }
                 Command::Timescale(quantity, scale) => unit = Some(Unit::new(quantity, scale)),
                 Command::ScopeDef(_, name) => {
                     scopes.push(name);

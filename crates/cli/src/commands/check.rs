@@ -27,7 +27,7 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
     if arguments.json {
         output::print_json(&Checked { passed: report.passed(), capture: &arguments.capture, check: &report })?;
     } else {
-        output::print(&report.to_string())?;
+        output::print(&format!("{report}{}\n", if report.passed() { "ALL HOLDS" } else { "FAILED" }))?;
     }
     if report.passed() { Ok(()) } else { Err(Failure::Check) }
 }
@@ -57,14 +57,43 @@ fn read(
         (None, Some(own)) => Origin::Known { ps: own.origin_ps },
         (None, None) => Origin::Midpoint,
     };
+    uncertain_by_less_than_a_period(arguments.slack_ns, plan)?;
     let mut setup = job::check_setup(file, plan, timelines, origin);
     setup.slack_ps = arguments.slack_ns.saturating_mul(1000);
     let mut checker = Checker::new(setup);
-    reader.play(&mut checker).map_err(|error| match error {
+    let played = reader.play(&mut checker).map_err(|error| match error {
         TraceError::Read(error) => unusable(error.to_string()),
         other => other.into(),
     })?;
+    if let Origin::Fixed { ps } = origin {
+        overlap(ps, played.end_ps, plan).map_err(unusable)?;
+    }
     Ok(checker.finish())
+}
+
+/// Refuses times so uncertain that a pulse could be another: then nothing is checked.
+fn uncertain_by_less_than_a_period(slack_ns: u64, plan: &carrystep_plan::Plan) -> Result<(), Failure> {
+    let axes = plan.moves.iter().flat_map(|planned| &planned.axes);
+    let fastest = axes.map(|axis| axis.peaks.steps_per_s(&plan.build.timebase)).fold(0.0, f64::max);
+    let most_ns = (0.5e9 / fastest).floor();
+    if fastest > 0.0 && slack_ns as f64 > most_ns {
+        let text =
+            format!("--slack-ns {slack_ns} is over half of the shortest period; at most {most_ns} can be checked");
+        return Err(Failure::input(text));
+    }
+    Ok(())
+}
+
+/// Whether moves that start at `origin_ps` are in a capture that ends at `end_ps`; if not, why.
+fn overlap(origin_ps: i64, end_ps: u64, plan: &carrystep_plan::Plan) -> Result<(), String> {
+    let length_ps = i128::from(plan.total_ticks()) * i128::from(plan.build.timebase.tick_ns()) * 1000;
+    let (from, to) = (i128::from(origin_ps), i128::from(origin_ps) + length_ps);
+    if from <= i128::from(end_ps) && to >= 0 {
+        return Ok(());
+    }
+    Err(format!(
+        "with --origin-ps {origin_ps} the moves last from {from} to {to} ps; the capture, from 0 to {end_ps} ps"
+    ))
 }
 
 /// What makes two builds' time the same.

@@ -32,7 +32,11 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
     } else {
         output::print(&report.to_string())?;
     }
-    if report.passed { Ok(()) } else { Err(Failure::Check) }
+    match report.passed {
+        Some(true) => Ok(()),
+        Some(false) => Err(Failure::Check),
+        None => Err(Failure::NothingTried),
+    }
 }
 
 fn read(path: &Path) -> Result<Report, Failure> {

@@ -1,6 +1,6 @@
 //! All axes through a window of clocks, one after the other, and their edges in order of time.
 
-use super::cubic::{Cubic, MOST_TICKS};
+use super::cubic::MOST_TICKS;
 use super::edges::{Edges, Window as EdgeWindow};
 use super::lane::{self, FaultIn, Moving, Window};
 use carrystep_spec::engine::MAX_AXES;
@@ -12,12 +12,11 @@ const DENSE_TICKS: u32 = 1 << 13;
 /// A speed, in 2^-64 step per tick, from which on edges are dense.
 const DENSE_SPEED: u64 = 1 << 58;
 
-/// Most ticks of a window in which every axis keeps a [`CALM_SPEED`]: closed forms without A and J hold in any number
-/// of ticks, and at most 2^8 edges an axis come in it.
+/// Most ticks of a window in which every axis keeps its speed: closed forms without A and J hold in any number of ticks.
 const CALM_TICKS: u32 = 1 << 28;
 
-/// A constant speed, in 2^-64 step per tick, up to which a window may be that long.
-const CALM_SPEED: u64 = 1 << 44;
+/// Edges an axis in such a window, as a power of two.
+const CALM_EDGES: u32 = 8;
 
 /// Where windows begin.
 #[derive(Debug, Clone, Copy)]
@@ -45,12 +44,7 @@ impl Passages {
         to: &mut impl Edges,
     ) -> (u64, u32) {
         let dense = axes.iter().any(|axis| axis.cubic.v.unsigned_abs() > DENSE_SPEED);
-        let calm = |Cubic { v, a, j }: Cubic| a == 0 && j == 0 && v.unsigned_abs() <= CALM_SPEED;
-        let ticks = match dense {
-            true => DENSE_TICKS,
-            false if axes.iter().all(|axis| calm(axis.cubic)) => CALM_TICKS,
-            false => MOST_TICKS,
-        };
+        let ticks = if dense { DENSE_TICKS } else { calm(axes).unwrap_or(MOST_TICKS) };
         let longest = u64::from(ticks) * u64::from(time.clocks_per_tick()) - 1 - from.clock_of_tick;
         let mut clocks = most.min(longest);
         let mut before = [None; MAX_AXES];
@@ -82,4 +76,12 @@ impl Passages {
         }
         Ok(())
     }
+}
+
+/// How many ticks a window may have in which every axis keeps its speed, if each does: so many that edges are few.
+fn calm(axes: &[Moving]) -> Option<u32> {
+    let level = axes.iter().all(|axis| axis.cubic.a == 0 && axis.cubic.j == 0);
+    let fastest = axes.iter().map(|axis| axis.cubic.v.unsigned_abs()).max().filter(|_| level)?;
+    let ticks = (1_u128 << (64 + CALM_EDGES)) / u128::from(fastest.max(1));
+    Some(u32::try_from(ticks).unwrap_or(CALM_TICKS).clamp(MOST_TICKS, CALM_TICKS))
 }

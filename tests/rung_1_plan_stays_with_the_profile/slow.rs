@@ -1,0 +1,167 @@
+//! Slow moves, up to 10^6 s or to the longest time that is accepted: every edge within the bound, in arithmetic of our
+//! own, and on the pins of the fast model by the product's checker.
+
+use crate::verify::verify;
+use carrystep_plan::{Plan, PlanError, plan};
+use carrystep_spec::{MoveFile, ProfileKind};
+use carrystep_tests::moves;
+use carrystep_tests::random_moves::file;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use std::cell::Cell;
+
+/// One axis and one move.
+#[derive(Debug, Clone)]
+struct SlowMove {
+    machine: String,
+    profile: ProfileKind,
+    steps: i64,
+    seconds: f64,
+}
+
+impl SlowMove {
+    fn file(&self, seconds: f64) -> MoveFile {
+        let Self { machine, profile, steps, .. } = self;
+        file(&format!("{machine}[[move]]\nprofile = \"{profile}\"\ntime = {seconds}\nto = {{ x = {steps} }}\n"))
+    }
+}
+
+fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
+    (low.ln()..high.ln()).prop_map(f64::exp)
+}
+
+fn slow_moves(profile: ProfileKind) -> impl Strategy<Value = SlowMove> {
+    let machine = (
+        prop::sample::select(&[500_u64, 1000, 4000][..]),
+        prop::sample::select(&[1_u32, 4, 16, 16, 16][..]),
+        prop::sample::select(&["half", "half", "zero"][..]),
+        decades(1.0, 5000.0),
+        decades(1.1e-3, 1e5),
+        prop_oneof![Just(0.0), decades(1e-3, 1.0)],
+    );
+    (machine, any::<bool>(), decades(1.0, 2000.0), decades(100.0, 1e6)).prop_map(
+        move |((tick_ns, phases, phase, speed, accel, start), backward, steps, seconds)| {
+            let start = if profile == ProfileKind::Constant { speed } else { start };
+            let machine = format!(
+                "[machine]\nclock_hz = 64_000_000\ntick_ns = {tick_ns}\nphases = {phases}\nphase = \"{phase}\"\n\
+                 [[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nstart_speed = {start:?}\nspeed_limit = {speed:?}\n\
+                 accel_limit = {accel:?}\njerk_limit = {:?}\nstep_ns = 100\ngap_ns = 100\nsetup_ns = 100\nhold_ns = 100\n",
+                10.0 * accel
+            );
+            let steps = if backward { -(steps as i64) } else { steps as i64 };
+            // Whole ticks, which phase zero needs.
+            SlowMove { machine, profile, steps, seconds: (seconds * 1e4).round() / 1e4 }
+        },
+    )
+}
+
+/// Both judges: edges from the integers, and pulses on the pins.
+fn holds(file: &MoveFile, plan: &Plan) -> Result<(), TestCaseError> {
+    verify(file, plan, Some(2e-9));
+    let report = moves::check(file, plan, &plan.lines(), &plan.program(), &plan.build);
+    prop_assert!(report.passed, "{report}\n{}", file.source.text);
+    Ok(())
+}
+
+/// What became of the moves.
+#[derive(Debug, Clone, Copy, Default)]
+struct Counts {
+    planned: u32,
+    /// Planned in the longest time that the refusal names.
+    shortened: u32,
+    /// A limit asks for more time, or no time would do.
+    impossible: u32,
+}
+
+fn two_hundred(profile: ProfileKind) {
+    let counts = Cell::new(Counts::default());
+    let mut runner = TestRunner::new(Config { cases: 200, failure_persistence: None, ..Config::default() });
+    let held = runner.run(&slow_moves(profile), |slow| {
+        let mut now = counts.get();
+        let file = slow.file(slow.seconds);
+        match plan::<f64>(&file) {
+            Ok(plan) => {
+                now.planned += 1;
+                holds(&file, &plan)?;
+            }
+            Err(PlanError::TooSlow { longest: Some(longest), .. }) => {
+                now.shortened += 1;
+                prop_assert!(longest < slow.seconds);
+                let file = slow.file(longest);
+                holds(&file, &plan::<f64>(&file).map_err(|error| TestCaseError::fail(error.to_string()))?)?;
+            }
+            Err(PlanError::TooSlow { .. } | PlanError::Refused { .. }) => now.impossible += 1,
+            Err(error) => return Err(TestCaseError::fail(format!("{error}\n{}", file.source.text))),
+        }
+        counts.set(now);
+        Ok(())
+    });
+    held.unwrap_or_else(|error| panic!("{error}"));
+    let counts = counts.get();
+    println!("{profile}: {counts:?}");
+    assert!(counts.planned > 100, "{profile}: hardly anything was planned: {counts:?}");
+}
+
+#[test]
+fn slow_constant_moves_hold() {
+    two_hundred(ProfileKind::Constant);
+}
+
+#[test]
+fn slow_trapezoids_hold() {
+    two_hundred(ProfileKind::Trapezoid);
+}
+
+#[test]
+fn slow_moves_by_ranades_rule_hold() {
+    two_hundred(ProfileKind::Ranade);
+}
+
+#[test]
+fn slow_scurves_hold() {
+    two_hundred(ProfileKind::Scurve);
+}
+
+#[test]
+fn slow_sines_hold() {
+    two_hundred(ProfileKind::Sine);
+}
+
+#[test]
+fn slow_logistic_moves_hold() {
+    two_hundred(ProfileKind::Logistic);
+}
+
+/// 400 steps on a machine with a4988 timing, either way.
+fn four_hundred_steps_in(seconds: u32) {
+    for steps in [400, -400] {
+        let text = format!(
+            "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nspeed_limit = 5000\naccel_limit = 25000\n\
+             driver = \"a4988\"\n[[move]]\nprofile = \"trapezoid\"\ntime = {seconds}\nto = {{ x = {steps} }}\n"
+        );
+        let file = file(&text);
+        let plan = plan::<f64>(&file).unwrap_or_else(|error| panic!("{error}"));
+        holds(&file, &plan).unwrap_or_else(|error| panic!("{error}"));
+        assert!(plan.moves[0].axes[0].segments.len() < 1000);
+    }
+}
+
+#[test]
+fn four_hundred_steps_in_5000_s() {
+    four_hundred_steps_in(5000);
+}
+
+#[test]
+fn four_hundred_steps_in_10_000_s() {
+    four_hundred_steps_in(10_000);
+}
+
+#[test]
+fn four_hundred_steps_in_100_000_s() {
+    four_hundred_steps_in(100_000);
+}
+
+#[test]
+fn four_hundred_steps_in_a_million_seconds() {
+    four_hundred_steps_in(1_000_000);
+}
