@@ -11,11 +11,14 @@ mod bad_outputs;
 mod boards;
 #[cfg(unix)]
 mod cache;
+#[cfg(target_os = "linux")]
+mod ci_action;
 mod command;
 mod curves;
 #[path = "../../crates/link/tests/support/device.rs"]
 #[allow(dead_code, reason = "the link's own tests use the rest")]
 mod device;
+mod documents;
 mod engine;
 #[cfg(unix)]
 mod inputs;

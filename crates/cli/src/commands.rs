@@ -3,11 +3,13 @@
 pub mod boards;
 pub mod build;
 pub mod check;
+pub mod completions;
 pub mod demo;
 pub mod doctor;
 pub mod plan;
 pub mod profile;
 pub mod run;
+pub mod schemas;
 pub mod simulate;
 pub mod status;
 pub mod sweep;

@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Found {
+pub struct Found {
     passed: bool,
     port: String,
     build: String,

@@ -16,7 +16,7 @@ const ENGINE_MACHINE: &str = include_str!("../../../../sim/engine.toml");
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Written {
+pub struct Written {
     passed: bool,
     top: &'static str,
     /// What stops the axes, as counted; the parallel core has no guard.
@@ -48,7 +48,7 @@ fn listed(files: &[PathBuf]) -> String {
 
 /// What `--json` prints of a board's gateware.
 #[derive(JsonSchema, Serialize)]
-struct WrittenForBoard<'a> {
+pub struct WrittenForBoard<'a> {
     passed: bool,
     top: String,
     board: &'a str,
