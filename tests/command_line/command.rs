@@ -1,5 +1,6 @@
 //! The command in a folder of its own.
 
+use crate::documents;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
 use tempfile::TempDir;
@@ -97,7 +98,8 @@ impl Folder {
         self.output(Command::new(env!("CARGO_BIN_EXE_carrystep")).args(arguments.split(' ')))
     }
 
-    /// Runs `carrystep` as it is set up.
+    /// Runs `carrystep` as it is set up. With `--json` it prints one document that its schema allows, whatever
+    /// its exit status.
     pub fn output(&self, command: &mut Command) -> Ran {
         let output = command.current_dir(self.0.path()).env("CARRYSTEP_STATE", self.state()).output().unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the command writes UTF-8");
@@ -107,17 +109,20 @@ impl Folder {
             stderr: text(output.stderr),
         };
         assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
+        if command.get_args().any(|argument| argument == "--json") {
+            documents::check(&ran.stdout);
+        }
         assert!(!ran.stderr.contains('\u{1b}'), "colours where no terminal is: {}", ran.stderr);
         ran
     }
 }
 
 impl Ran {
-    /// Bad input: status 2, nothing on standard output, and these words.
+    /// Bad input: status 2, nothing on standard output but a document of it, and these words.
     #[track_caller]
     pub fn refuses(&self, says: &str) {
         assert_eq!(self.status, 2, "{}{}", self.stdout, self.stderr);
-        assert_eq!(self.stdout, "");
+        assert!(self.stdout.is_empty() || documents::check(&self.stdout)["passed"] == false, "{}", self.stdout);
         assert!(self.stderr.contains(says), "wanted: {says}\nfound:\n{}", self.stderr);
     }
 

@@ -65,7 +65,7 @@ fn an_interrupted_run_says_so_and_leaves_nothing() {
             let child = begin(&folder, arguments);
             assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
             let ran = end(child);
-            assert_eq!((ran.status, ran.stdout.as_str()), (1, ""), "{arguments}");
+            assert_eq!((ran.status, ran.stdout.is_empty()), (1, !arguments.contains("--json")), "{arguments}");
             assert_eq!(ran.stderr, "error: interrupted: nothing is kept\n", "{arguments}");
             assert_eq!(folder.files(), ["move.toml"], "{arguments}");
         }

@@ -11,12 +11,15 @@ mod bad_outputs;
 mod boards;
 #[cfg(unix)]
 mod cache;
+#[cfg(target_os = "linux")]
+mod ci_action;
 mod clocks;
 mod command;
 mod curves;
 #[path = "../../crates/link/tests/support/device.rs"]
 #[allow(dead_code, reason = "the link's own tests use the rest")]
 mod device;
+mod documents;
 mod engine;
 #[cfg(unix)]
 mod homing;

@@ -73,6 +73,11 @@ pub enum Subcommand {
     Boards(Boards),
     /// Check tools, serial ports and permissions, and name the real cause.
     Doctor(Doctor),
+    /// Print the script that completes this command in a shell.
+    Completions(Completions),
+    /// Write the JSON Schemas of all documents.
+    #[command(hide = true)]
+    Schemas(Schemas),
 }
 
 /// Which gateware.
@@ -184,6 +189,9 @@ pub struct Check {
     /// How uncertain the capture's times are (a logic analyser: one sample period).
     #[arg(long, default_value_t = 0, value_name = "NS")]
     pub slack_ns: u64,
+    /// Also write the result as JUnit XML, a test case for each axis.
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
@@ -231,6 +239,9 @@ pub struct Sweep {
     /// Make one report of the JSON reports of all shards.
     #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "sample", "seed", "shard"])]
     pub merge: Vec<PathBuf>,
+    /// Also write the result as JUnit XML, a test case for the whole and one for each case that failed.
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
     /// One JSON document instead of the table; shards are merged from these.
     #[arg(long)]
     pub json: bool,
@@ -279,6 +290,22 @@ pub struct Doctor {
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
+}
+
+/// `carrystep completions`
+#[derive(Debug, Args)]
+pub struct Completions {
+    /// The shell.
+    #[arg(value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
+}
+
+/// `carrystep schemas`
+#[derive(Debug, Args)]
+pub struct Schemas {
+    /// Folder for all files.
+    #[arg(long, default_value = "docs/schemas", value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 fn core() -> impl clap::builder::TypedValueParser<Value = Core> {

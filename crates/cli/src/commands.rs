@@ -3,6 +3,7 @@
 pub mod boards;
 pub mod build;
 pub mod check;
+pub mod completions;
 pub mod demo;
 pub mod doctor;
 pub mod home;
@@ -10,6 +11,7 @@ pub mod machine;
 pub mod plan;
 pub mod profile;
 pub mod run;
+pub mod schemas;
 pub mod simulate;
 pub mod status;
 pub mod stop;

@@ -2,6 +2,7 @@
 
 use crate::colour;
 use crate::excerpt::Excerpt;
+use crate::output;
 use carrystep_export::ExportError;
 use carrystep_levels::LevelError;
 use carrystep_plan::PlanError;
@@ -10,7 +11,10 @@ use carrystep_spec::{InputError, MoveFile};
 use carrystep_synthesis::SynthesisError;
 use carrystep_trace::TraceError;
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, Report};
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::io::{IsTerminal as _, Write as _};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Why the command did not do what was asked.
@@ -47,8 +51,13 @@ impl Failure {
         }
     }
 
-    /// Tells the user, and gives the exit status.
+    /// Tells the user, and gives the exit status. Where `--json` is wanted and no report was printed, the failure is
+    /// the document.
     pub fn tell(self) -> ExitCode {
+        if let (true, Some(document)) = (output::lacks_json(), Document::of(&self)) {
+            // Where this fails, standard error still says what is wrong.
+            let _ = output::print_json(&document);
+        }
         let (status, text) = match self {
             Self::ReaderGone => return ExitCode::SUCCESS,
             Self::Check => return ExitCode::from(1),
@@ -61,6 +70,83 @@ impl Failure {
         let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
         ExitCode::from(status)
     }
+}
+
+/// What `--json` prints of a failure.
+#[derive(Debug, JsonSchema, Serialize)]
+pub struct Document {
+    /// Always false.
+    passed: bool,
+    error: ErrorJson,
+}
+
+#[derive(Debug, JsonSchema, Serialize)]
+struct ErrorJson {
+    kind: Kind,
+    /// What is wrong.
+    message: String,
+    /// The input file that is wrong.
+    file: Option<PathBuf>,
+    /// Line in that file, from 1.
+    line: Option<usize>,
+    /// Column in that line, in characters from 1.
+    column: Option<usize>,
+    /// What to do.
+    help: Option<String>,
+}
+
+/// What failed; each kind has its exit status.
+#[derive(Debug, Clone, Copy, JsonSchema, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Kind {
+    /// Exit status 1: the check or the run.
+    Run,
+    /// Exit status 2: the input, an impossible move included.
+    Input,
+    /// Exit status 2: the arguments.
+    Usage,
+    /// Exit status 3: a program is missing.
+    Tool,
+}
+
+impl Document {
+    fn new(kind: Kind, message: impl Into<String>) -> Self {
+        let error = ErrorJson { kind, message: message.into(), file: None, line: None, column: None, help: None };
+        Self { passed: false, error }
+    }
+
+    /// The document of a failure; a reader who has gone needs none.
+    fn of(failure: &Failure) -> Option<Self> {
+        Some(match failure {
+            Failure::ReaderGone => return None,
+            Failure::Check => Self::new(Kind::Run, failure.message()),
+            Failure::Run(message) => Self::new(Kind::Run, message),
+            Failure::Tool(message) => Self::new(Kind::Tool, message),
+            Failure::Input(error) => {
+                let (line, column) = error.line_column().unzip();
+                let mut document = Self::new(Kind::Input, &error.message);
+                document.error.file = error.place.as_ref().map(|(source, _)| source.path.clone());
+                (document.error.line, document.error.column) = (line, column);
+                document.error.help.clone_from(&error.help);
+                document
+            }
+        })
+    }
+}
+
+/// Tells what is wrong with the arguments, or prints the help that they ask for, and gives the exit status.
+pub fn usage(error: &clap::Error) -> ExitCode {
+    if error.use_stderr() && output::lacks_json() {
+        let text = error.render().to_string();
+        let (message, help) = text.trim().split_once("\n\n").unwrap_or((text.trim(), ""));
+        let mut document = Document::new(Kind::Usage, message.trim_start_matches("error: "));
+        document.error.help = Some(help.trim().to_owned()).filter(|help| !help.is_empty());
+        // Where this fails, standard error still says what is wrong.
+        let _ = output::print_json(&document);
+    }
+    // Nobody is left to tell if this fails.
+    let _ = error.print();
+    u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from)
 }
 
 /// What is wrong, then file, line and column, and the line itself with what is wrong in it.

@@ -7,6 +7,7 @@ mod connection;
 mod control;
 #[cfg(unix)]
 mod desk;
+mod documents;
 mod drive;
 mod excerpt;
 mod failure;
@@ -15,6 +16,7 @@ mod found;
 mod gateware;
 mod interrupt;
 mod job;
+mod junit;
 mod memory;
 mod output;
 mod progress;
@@ -28,7 +30,11 @@ use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    output::json_is_wanted(std::env::args_os());
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return failure::usage(&error),
+    };
     let result = match &arguments.command {
         Subcommand::Demo(demo) => commands::demo::run(demo),
         Subcommand::Profile(profile) => commands::profile::run(profile),
@@ -49,6 +55,8 @@ fn main() -> ExitCode {
         Subcommand::Build(build) => commands::build::run(build),
         Subcommand::Boards(boards) => commands::boards::run(boards),
         Subcommand::Doctor(doctor) => commands::doctor::run(doctor),
+        Subcommand::Completions(completions) => commands::completions::run(completions),
+        Subcommand::Schemas(schemas) => commands::schemas::run(schemas),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,13 +1,15 @@
 //! Where results go: standard output, and files that appear whole or not at all.
 
 use crate::colour;
+use crate::documents::{Document, Named};
 use crate::failure::Failure;
 use crate::interrupt;
 use carrystep_files::{Claim, NewFile, OutputFailure};
-use serde::Serialize;
 use std::borrow::Cow;
+use std::ffi::OsString;
 use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Prints text to standard output.
 pub fn print(text: &str) -> Result<(), Failure> {
@@ -19,9 +21,26 @@ pub fn print(text: &str) -> Result<(), Failure> {
     })
 }
 
-/// Prints one JSON document.
-pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(value).map_err(|error| Failure::Run(error.to_string()))?;
+/// `--json` is among the arguments.
+static JSON_WANTED: AtomicBool = AtomicBool::new(false);
+/// A document was printed: there is one for each run, on failure too.
+static JSON_PRINTED: AtomicBool = AtomicBool::new(false);
+
+/// Looks for `--json` before the arguments are parsed: it also holds for arguments that are refused.
+pub fn json_is_wanted(mut arguments: impl Iterator<Item = OsString>) {
+    let options = arguments.by_ref().take_while(|argument| argument != "--");
+    JSON_WANTED.store(options.into_iter().any(|argument| argument == "--json"), Ordering::Relaxed);
+}
+
+/// Whether a document is wanted that nobody has printed.
+pub fn lacks_json() -> bool {
+    JSON_WANTED.load(Ordering::Relaxed) && !JSON_PRINTED.load(Ordering::Relaxed)
+}
+
+/// Prints one JSON document, with the name and version of its schema.
+pub fn print_json(document: &impl Document) -> Result<(), Failure> {
+    JSON_PRINTED.store(true, Ordering::Relaxed);
+    let text = serde_json::to_string_pretty(&Named::new(document)).map_err(|error| Failure::Run(error.to_string()))?;
     print(&format!("{text}\n"))
 }
 

@@ -43,6 +43,13 @@ pub struct Failed {
     pub message: String,
 }
 
+impl Failed {
+    /// `name = value` of each blank.
+    pub fn filled(&self) -> String {
+        filled(&self.values)
+    }
+}
+
 /// A sweep, or some shards of it.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Report {

@@ -52,7 +52,7 @@ enum Chore {
         #[arg(long)]
         json: bool,
     },
-    /// Write `hdl-out/` anew from the Rust-HDL modules, the register map for its clients, and the boards' pages.
+    /// Write `hdl-out/` anew from the Rust-HDL modules, the register map for its clients, the boards' pages, and the JSON Schemas.
     Generate,
     /// Write the README's table and pictures anew from the demo (the waveform needs gtkwave and xvfb).
     Readme,

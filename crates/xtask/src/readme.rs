@@ -13,10 +13,11 @@ const WAVEFORM: &str = "docs/pictures/demo-waveform.png";
 const GRAB: &str =
     "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File docs/pictures/demo-waveform.png\nexit\n";
 
-/// Writes `hdl-out/` and what is made from tables anew: the register map's files, the boards' pages.
+/// Writes `hdl-out/` and what is made from tables anew: the register map's files, the boards' pages, the JSON Schemas.
 pub fn generate() -> Done {
     let write = ["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core", "--core"];
     ["parallel", "engine"].iter().try_for_each(|core| shell::run("cargo", &[write.as_slice(), &[core]].concat()))?;
+    shell::run("cargo", &["run", "--quiet", "--release", "--", "schemas", "--out", "docs/schemas"])?;
     shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-export", "--example", "generated"])
 }
 

@@ -18,7 +18,7 @@ const UNTRIED: &str = "None of these boards was at hand: nothing of carrystep wa
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Shown<'a> {
+pub struct Shown<'a> {
     passed: bool,
     /// Whether carrystep was ever run on a real one.
     tried_on_hardware: bool,

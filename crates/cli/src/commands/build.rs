@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Report {
+pub struct Report {
     /// Whether the clock is reached.
     passed: bool,
     /// Whether carrystep was ever run on a real one.

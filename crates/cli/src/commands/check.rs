@@ -2,6 +2,7 @@
 
 use crate::arguments::Check;
 use crate::failure::{Failure, refused};
+use crate::junit::JunitFile;
 use crate::{job, output};
 use carrystep_plan::plan;
 use carrystep_spec::{MoveFile, Timebase};
@@ -12,7 +13,7 @@ use std::io::BufReader;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Checked<'a> {
+pub struct Checked<'a> {
     passed: bool,
     capture: &'a std::path::Path,
     check: &'a Report,
@@ -23,7 +24,15 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
     let file = job::load(&arguments.file, arguments.fit_ns)?;
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
     let timelines = plan.timelines();
+    let name = format!("check {} {}", arguments.capture.display(), arguments.file.display());
+    let mut junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
     let report = read(arguments, &file, &plan, &timelines)?;
+    if let Some(mut junit) = junit.take() {
+        for axis in &report.axes {
+            junit.case(format!("axis {}", axis.axis), &axis.failures);
+        }
+        junit.keep()?;
+    }
     if arguments.json {
         output::print_json(&Checked { passed: report.passed(), capture: &arguments.capture, check: &report })?;
     } else {

@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Examined {
+pub struct Examined {
     passed: bool,
     #[serde(flatten)]
     report: Report,

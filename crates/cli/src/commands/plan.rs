@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Planned<'a> {
+pub struct Planned<'a> {
     passed: bool,
     tick_ns: u64,
     limits: Limits,

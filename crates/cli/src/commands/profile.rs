@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Profiles<'a> {
+pub struct Profiles<'a> {
     passed: bool,
     drive: &'a Drive,
     phase: StartPhase,

@@ -2,6 +2,7 @@
 
 use crate::arguments::{Core, Sweep};
 use crate::failure::Failure;
+use crate::junit::JunitFile;
 use crate::wanted::Wanted;
 use crate::{interrupt, job, output};
 use carrystep_levels::Level;
@@ -14,6 +15,8 @@ use std::path::Path;
 
 /// Runs a shard, or merges reports.
 pub fn run(arguments: &Sweep) -> Result<(), Failure> {
+    let name = arguments.file.as_ref().map_or("sweep".to_owned(), |file| format!("sweep {}", file.display()));
+    let junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
     let report = match &arguments.file {
         Some(file) => {
             let sweep = SweepFile::load(file, arguments.sample, arguments.seed)?;
@@ -27,6 +30,9 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
         }
         None => Report::merge(arguments.merge.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?)?,
     };
+    if let Some(junit) = junit {
+        cases(junit, &report)?;
+    }
     if arguments.json {
         output::print_json(&report)?;
     } else {
@@ -37,6 +43,18 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
         Some(false) => Err(Failure::Check),
         None => Err(Failure::NothingTried),
     }
+}
+
+/// The whole, and each case that failed and is spelled out.
+fn cases(mut junit: JunitFile, report: &Report) -> Result<(), Failure> {
+    let Report { passed, cases_passed, cases_refused, cases_failed, .. } = report;
+    let counts = format!("{cases_passed} passed, {cases_refused} refused, {cases_failed} failed");
+    let wrong = if *passed { Vec::new() } else { vec![counts] };
+    junit.case("all cases", &wrong);
+    for failed in &report.failures {
+        junit.case(format!("case {}", failed.case), &[format!("{}: {}", failed.filled(), failed.message)]);
+    }
+    junit.keep()
 }
 
 fn read(path: &Path) -> Result<Report, Failure> {

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Tabled<'a> {
+pub struct Tabled<'a> {
     passed: bool,
     #[serde(flatten)]
     table: &'a Table,

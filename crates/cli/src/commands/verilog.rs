@@ -16,7 +16,7 @@ const ENGINE_MACHINE: &str = include_str!("../../../../sim/engine.toml");
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Written {
+pub struct Written {
     passed: bool,
     top: &'static str,
     /// The tick that is built in, ns.
@@ -54,7 +54,7 @@ fn listed(files: &[PathBuf], note: Option<&str>) -> String {
 
 /// What `--json` prints of a board's gateware.
 #[derive(JsonSchema, Serialize)]
-struct WrittenForBoard<'a> {
+pub struct WrittenForBoard<'a> {
     passed: bool,
     top: String,
     board: &'a str,

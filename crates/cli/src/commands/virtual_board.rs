@@ -26,7 +26,7 @@ const PART_OF_SECOND: u64 = 40;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-struct Served {
+pub struct Served {
     passed: bool,
     /// The board's own time.
     seconds: f64,

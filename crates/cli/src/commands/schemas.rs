@@ -1,0 +1,20 @@
+//! `carrystep schemas`: the JSON Schemas of all documents, as `docs/schemas/` has them.
+
+use crate::arguments::Schemas;
+use crate::documents;
+use crate::failure::Failure;
+use crate::output::{self, write_file};
+use std::fmt::Write as _;
+
+/// Writes a file for each document.
+pub fn run(arguments: &Schemas) -> Result<(), Failure> {
+    let mut wrote = String::new();
+    for (name, schema) in documents::schemas() {
+        let text = serde_json::to_string_pretty(&schema).map_err(|error| Failure::Run(error.to_string()))?;
+        let file = arguments.out.join(format!("{name}.json"));
+        write_file(&file, &format!("{text}\n"))?;
+        // Writing to a string cannot fail.
+        let _ = writeln!(wrote, "wrote {}", file.display());
+    }
+    output::print(&wrote)
+}

@@ -1,0 +1,95 @@
+//! The documents of `--json`: each has a name and a version, and a JSON Schema that is made from its Rust type.
+//!
+//! A new document is one line in [`documents!`] below; its types derive `JsonSchema`. `cargo xtask generate` writes
+//! `docs/schemas/` anew. New fields leave the version as it is; a field that goes, or means something else, raises it.
+
+use crate::commands::{boards, build, check, doctor, plan, profile, status, table, verilog};
+use crate::{drive, failure, job};
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema, json_schema};
+use serde::Serialize;
+
+/// A document that `--json` prints.
+pub trait Document: Serialize + JsonSchema {
+    /// Its name behind `carrystep.`: that of its schema's file.
+    const NAME: &'static str;
+    /// Raised where a field goes, or means something else.
+    const VERSION: u32;
+}
+
+macro_rules! documents {
+    ($($(#[$only:meta])* $name:literal, $version:literal: $document:ty;)*) => {
+        $($(#[$only])* impl Document for $document {
+            const NAME: &'static str = $name;
+            const VERSION: u32 = $version;
+        })*
+
+        /// Name and JSON Schema of every document.
+        pub fn schemas() -> Vec<(&'static str, Schema)> {
+            vec![$($(#[$only])* ($name, schema::<$document>()),)*]
+        }
+    };
+}
+
+documents! {
+    "boards", 1: boards::Shown<'_>;
+    "build", 1: build::Report;
+    "check", 1: check::Checked<'_>;
+    "doctor", 1: doctor::Examined;
+    "drive", 1: drive::Driven;
+    "failure", 1: failure::Document;
+    "plan", 1: plan::Planned<'_>;
+    "profile", 1: profile::Profiles<'_>;
+    "simulate", 1: job::Done;
+    "status", 1: status::Found;
+    "sweep", 1: carrystep_sweep::Report;
+    "table", 1: table::Tabled<'_>;
+    "verilog", 1: verilog::Written;
+    "verilog-board", 1: verilog::WrittenForBoard<'_>;
+    #[cfg(unix)]
+    "virtual-board", 1: crate::commands::virtual_board::Served;
+}
+
+/// A document with the name and the version of its schema before it.
+#[derive(Serialize)]
+pub struct Named<'a, D: Document> {
+    schema: Name,
+    #[serde(flatten)]
+    document: &'a D,
+}
+
+#[derive(Serialize)]
+struct Name {
+    name: String,
+    version: u32,
+}
+
+impl<'a, D: Document> Named<'a, D> {
+    /// Names a document.
+    pub fn new(document: &'a D) -> Self {
+        Self { schema: Name { name: format!("carrystep.{}", D::NAME), version: D::VERSION }, document }
+    }
+}
+
+/// The schema of a [`Named`] document.
+fn schema<D: Document>() -> Schema {
+    let mut schema = SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<D>();
+    let name = json_schema!({
+        "description": "What document this is, and which version of it.",
+        "type": "object",
+        "properties": {
+            "name": { "const": format!("carrystep.{}", D::NAME) },
+            "version": { "const": D::VERSION },
+        },
+        "required": ["name", "version"],
+    });
+    let fields = schema.ensure_object();
+    fields.insert("title".to_owned(), format!("carrystep.{}", D::NAME).into());
+    if let Some(properties) = fields.entry("properties").or_insert_with(|| serde_json::json!({})).as_object_mut() {
+        properties.insert("schema".to_owned(), name.to_value());
+    }
+    if let Some(required) = fields.entry("required").or_insert_with(|| serde_json::json!([])).as_array_mut() {
+        required.insert(0, "schema".into());
+    }
+    schema
+}

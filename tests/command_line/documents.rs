@@ -1,0 +1,151 @@
+//! `--json`: one document for each run, on failure too, that the schemas in `docs/schemas/` allow.
+
+use crate::command::{Folder, GOOD, Ran};
+use jsonschema::Validator;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::process::Command;
+use std::sync::{LazyLock, Mutex};
+
+const SCHEMAS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/schemas");
+
+/// The committed schemas that were compiled so far, by their names.
+static VALIDATORS: LazyLock<Mutex<BTreeMap<String, Validator>>> = LazyLock::new(Mutex::default);
+
+/// A text that is one document, which its own schema allows.
+#[track_caller]
+pub fn check(text: &str) -> Value {
+    let document: Value = serde_json::from_str(text).unwrap_or_else(|error| panic!("no document: {error}\n{text}"));
+    let name = document["schema"]["name"].as_str().and_then(|name| name.strip_prefix("carrystep."));
+    let name = name.unwrap_or_else(|| panic!("no schema is named: {text}")).to_owned();
+    let mut validators = VALIDATORS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let validator = validators.entry(name.clone()).or_insert_with(|| {
+        let schema = std::fs::read_to_string(format!("{SCHEMAS}/{name}.json")).expect("a committed schema");
+        jsonschema::validator_for(&serde_json::from_str(&schema).unwrap()).expect("a schema")
+    });
+    let wrong: Vec<String> =
+        validator.iter_errors(&document).map(|error| format!("{}: {error}", error.instance_path())).collect();
+    assert!(wrong.is_empty(), "{name}: {wrong:#?}\n{text}");
+    document
+}
+
+#[test]
+fn the_committed_schemas_are_those_of_the_structs() {
+    let folder = Folder::new();
+    assert_eq!(folder.run("schemas --out schemas").status, 0);
+    let names = |folder: &std::path::Path| {
+        let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let made = folder.path("schemas");
+    assert_eq!(names(SCHEMAS.as_ref()), names(&made), "run `cargo xtask generate`");
+    for name in names(&made) {
+        let text = |folder: &std::path::Path| std::fs::read_to_string(folder.join(&name)).unwrap();
+        assert!(text(SCHEMAS.as_ref()) == text(&made), "{}: run `cargo xtask generate`", name.display());
+    }
+}
+
+#[test]
+fn a_schema_refuses_what_is_no_document_of_it() {
+    let folder = Folder::with_move(GOOD);
+    let mut document = check(&folder.run("plan move.toml --json").stdout);
+    for (field, wrong) in [("passed", json!("yes")), ("tick_ns", json!(-1)), ("moves", json!({}))] {
+        let mut other = document.clone();
+        other[field] = wrong;
+        assert!(std::panic::catch_unwind(|| check(&other.to_string())).is_err(), "{field}");
+    }
+    document["schema"]["version"] = json!(0);
+    assert!(std::panic::catch_unwind(|| check(&document.to_string())).is_err());
+}
+
+/// Every report that no other test asks for as a document.
+#[test]
+fn reports_are_documents() {
+    let folder = Folder::with_move(GOOD);
+    for (arguments, name) in [
+        ("boards", "boards"),
+        ("boards icebreaker", "boards"),
+        ("verilog --core engine --out engine", "verilog"),
+        ("verilog --board papilio-pro --out board", "verilog-board"),
+        ("table sine --ramp-steps 100 --clock-hz 16000000 --top-speed 4000", "table"),
+        ("table sine --ramp-steps 100 --clock-hz 16000000 --top-speed 4000 --out table", "table"),
+        ("profile ranade trapezoid --steps 1000 --accel 1e5 --timer-hz 1e6", "profile"),
+        ("profile logistic --steps 1000 --time 1", "profile"),
+        ("simulate move.toml", "simulate"),
+        ("plan move.toml", "plan"),
+    ] {
+        let ran = folder.run(&format!("{arguments} --json"));
+        assert_eq!(ran.status, 0, "{arguments}: {}", ran.stderr);
+        assert_eq!(check(&ran.stdout)["schema"], json!({"name": format!("carrystep.{name}"), "version": 1}));
+    }
+}
+
+/// The error of a run that failed.
+#[track_caller]
+fn error(ran: &Ran, status: i32) -> Value {
+    assert_eq!(ran.status, status, "{}", ran.stderr);
+    let document = check(&ran.stdout);
+    assert_eq!((&document["schema"]["name"], &document["passed"]), (&json!("carrystep.failure"), &json!(false)));
+    let error = document["error"].clone();
+    assert!(error["message"].as_str().is_some_and(|message| !message.is_empty()), "{error}");
+    error
+}
+
+#[test]
+fn bad_input_is_a_document_with_its_place() {
+    let folder = Folder::with_move(GOOD.replace("a4988", "a4989"));
+    let found = error(&folder.run("plan move.toml --json"), 2);
+    assert_eq!((&found["kind"], &found["file"]), (&json!("input"), &json!("move.toml")));
+    assert_eq!((&found["line"], &found["column"]), (&json!(13), &json!(10)));
+    assert_eq!(found["message"], "no driver is called 'a4989'; did you mean 'a4988'?");
+    assert!(found["help"].as_str().unwrap().starts_with("known: a4988"), "{found}");
+
+    folder.write("move.toml", GOOD.replace("time = 0.05", "time = 0.0005"));
+    let found = error(&folder.run("simulate move.toml --json --vcd a.vcd"), 2);
+    assert_eq!((&found["kind"], &found["line"]), (&json!("input"), &json!(19)));
+    let found = error(&folder.run("sweep nowhere.toml --json"), 2);
+    assert_eq!((&found["kind"], &found["file"], &found["line"]), (&json!("input"), &Value::Null, &Value::Null));
+    error(&folder.run("boards iceraker --json"), 2);
+    error(&folder.run("status --port nowhere --json"), 2);
+    error(&folder.run("jog x 1 --machine nowhere.toml --port nowhere --json"), 2);
+    error(&folder.run("doctor nowhere --json"), 2);
+}
+
+#[test]
+fn arguments_that_are_refused_are_a_document() {
+    let folder = Folder::new();
+    for (arguments, says) in [
+        ("plan --json", "required arguments were not provided"),
+        ("--json", "'--json'"),
+        ("simulat --json", "unrecognized subcommand 'simulat'"),
+        ("simulate m.toml --level slow --json", "invalid value 'slow'"),
+        ("sweep --json --shard 0/3 s.toml", "'0/3' is no shard"),
+    ] {
+        let found = error(&folder.run(arguments), 2);
+        assert_eq!(found["kind"], "usage");
+        assert!(found["message"].as_str().unwrap().contains(says), "{found}");
+    }
+    let ran = folder.output(Command::new(env!("CARGO_BIN_EXE_carrystep")).args(["plan", "--help"]));
+    assert!(ran.status == 0 && ran.stdout.contains("Usage:"), "{}", ran.stdout);
+    // Behind `--` it is the name of a file.
+    let ran = Command::new(env!("CARGO_BIN_EXE_carrystep")).args(["plan", "--", "--json"]).output().unwrap();
+    assert_eq!((ran.status.code(), ran.stdout.len()), (Some(2), 0));
+}
+
+#[test]
+fn a_missing_tool_is_a_document() {
+    let folder = Folder::with_move(GOOD);
+    let without_tools = |arguments: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
+        folder.output(command.args(arguments.split(' ')).env("PATH", folder.path("no-tools")))
+    };
+    for arguments in ["simulate move.toml --level icarus --json", "build --board icestick --out out --json"] {
+        let found = error(&without_tools(arguments), 3);
+        assert_eq!(found["kind"], "tool");
+        assert!(found["message"].as_str().unwrap().contains("is not installed"), "{found}");
+    }
+    // The doctor has reported already: there is no second document.
+    let ran = without_tools("doctor --json");
+    assert_eq!((ran.status, &check(&ran.stdout)["schema"]["name"]), (3, &json!("carrystep.doctor")));
+}
