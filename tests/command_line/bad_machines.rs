@@ -76,8 +76,16 @@ fn numbers_that_are_none_or_of_the_wrong_sign() {
     }
     all_refused(&[
         ("driver", "jerk_limit = ^0\ndriver", "jerk_limit = 0: must be over zero"),
-        ("speed_limit = 1000", "speed_limit = ^1e-4", "speed_limit is 0.0001 units/s (0.0005 steps/s): under 0.001 steps/s"),
-        ("accel_limit = 5000", "accel_limit = ^1e-4", "accel_limit is 0.0001 units/s^2 (0.0005 steps/s^2): under 0.001 steps/s^2"),
+        (
+            "speed_limit = 1000",
+            "speed_limit = ^1e-4",
+            "speed_limit is 0.0001 units/s (0.0005 steps/s): under 0.001 steps/s",
+        ),
+        (
+            "accel_limit = 5000",
+            "accel_limit = ^1e-4",
+            "accel_limit is 0.0001 units/s^2 (0.0005 steps/s^2): under 0.001 steps/s^2",
+        ),
     ]);
 }
 
@@ -107,7 +115,11 @@ fn clocks_that_do_not_divide() {
 #[test]
 fn speeds_that_the_gateware_or_the_driver_cannot_take() {
     all_refused(&[
-        ("speed_limit = 1000", "speed_limit = ^100_000", "speed_limit is 100000 units/s (500000 steps/s): half a step per tick or more"),
+        (
+            "speed_limit = 1000",
+            "speed_limit = ^100_000",
+            "speed_limit is 100000 units/s (500000 steps/s): half a step per tick or more",
+        ),
         ("speed_limit = 1000", "speed_limit = ^96_970", "over what the driver's width and gap allow"),
         (
             "speed_limit = 1000",

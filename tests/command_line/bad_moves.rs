@@ -53,10 +53,18 @@ fn curves_in_a_time_that_is_too_short() {
 #[test]
 fn distances_beyond_the_position_register() {
     all_refused(&[
-        ("x = 2 ", "x = ^429496730 ", "axis 'x' would stand at 429496730 units (2147483650 steps), beyond its register"),
+        (
+            "x = 2 ",
+            "x = ^429496730 ",
+            "axis 'x' would stand at 429496730 units (2147483650 steps), beyond its register",
+        ),
         ("x = 2 ", "x = ^-429496730 ", "would stand at -429496730 units (-2147483650 steps)"),
         ("x = 2 ", "x = ^1e29 ", "beyond its register"),
-        ("x = 2 ", "x = ^1e29 ", "the sum of all moves must stay within +-429496729 units (2147483647 steps) of the start"),
+        (
+            "x = 2 ",
+            "x = ^1e29 ",
+            "the sum of all moves must stay within +-429496729 units (2147483647 steps) of the start",
+        ),
         // each move fits, their sum does not
         ("x = -1.3", "x = ^429496728", "would stand at 429496730 units"),
     ]);
@@ -91,7 +99,11 @@ fn times_that_are_too_short_name_the_limit_and_the_least_time() {
     ]);
     let (rest, times) = (GOOD.replace("start_speed = 200", "start_speed = 0"), "profile = \"constant\"\ntime = 1");
     let ran = Folder::with_move(rest.replacen("profile = \"ranade\"", times, 1)).run("plan move.toml");
-    ran.refuses_at("move.toml", (15, 1), "needs a start_speed over 0 units/s (0 steps/s); raise it, or take another profile");
+    ran.refuses_at(
+        "move.toml",
+        (15, 1),
+        "needs a start_speed over 0 units/s (0 steps/s); raise it, or take another profile",
+    );
 }
 
 #[test]

@@ -12,7 +12,9 @@ fn at(mhz: u64) -> String {
 
 #[test]
 fn common_clocks_plan_simulate_and_export_with_the_shortest_tick_and_say_so() {
-    for (mhz, tick_ns, proposed) in [(25, 1280, false), (27, 16_000, true), (50, 640, false), (100, 320, false), (125, 256, false)] {
+    for (mhz, tick_ns, proposed) in
+        [(25, 1280, false), (27, 16_000, true), (50, 640, false), (100, 320, false), (125, 256, false)]
+    {
         let folder = Folder::with_move(at(mhz));
         let note = format!("tick_ns = {tick_ns}, the shortest at {mhz} MHz in 16 phases with 1 axis");
         let proposal = "16000 ns is long: `phases = 4` would allow 4000 ns";

@@ -132,9 +132,11 @@ fn an_error_begins_with_the_word_and_not_with_a_cross() {
 /// A step in a quarter of an hour, clock by clock: no edge comes, and still it is said how far it is.
 #[test]
 fn progress_is_shown_at_the_speed_of_the_level_even_where_no_edge_comes() {
-    let crawl = GOOD
-        .replace("start_speed = 200", "start_speed = 1")
-        .replacen("profile = \"ranade\"\nto = { x = 2 }", "profile = \"constant\"\ntime = 1_000_000\nto = { x = 200 }", 1);
+    let crawl = GOOD.replace("start_speed = 200", "start_speed = 1").replacen(
+        "profile = \"ranade\"\nto = { x = 2 }",
+        "profile = \"constant\"\ntime = 1_000_000\nto = { x = 200 }",
+        1,
+    );
     let folder = Folder::with_move(crawl);
     for arguments in ["simulate move.toml --level model", "simulate move.toml --core engine --level rust-hdl"] {
         let mut screen = Screen::start(&mut command(&folder, arguments));
@@ -152,7 +154,12 @@ fn tables_fit_into_80_columns() {
     let folder = Folder::new();
     let demo = folder.run("demo --out demo");
     assert_eq!(demo.status, 0, "{}", demo.stderr);
-    for ran in [demo, folder.run("plan demo/demo.toml"), folder.run("plan demo/demo.toml --segments"), folder.run("simulate demo/demo.toml --core engine --level model")] {
+    for ran in [
+        demo,
+        folder.run("plan demo/demo.toml"),
+        folder.run("plan demo/demo.toml --segments"),
+        folder.run("simulate demo/demo.toml --core engine --level model"),
+    ] {
         for line in ran.stdout.lines() {
             assert!(line.chars().count() <= 80, "{} columns: {line}", line.chars().count());
         }

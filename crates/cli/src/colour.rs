@@ -1,7 +1,7 @@
 //! Verdicts in colour, on a terminal that wants it.
 
-use anstream::{AutoStream, ColorChoice};
 use anstream::stream::RawStream;
+use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
 
 const BAD: Style = AnsiColor::Red.on_default().bold();

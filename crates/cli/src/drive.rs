@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use carrystep_link::{Command, Ended, HostError, Program, Status, Wish, supply};
 use carrystep_plan::Plan;
-use carrystep_spec::MoveFile;
+use carrystep_spec::{MoveFile, Unit};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::fmt;
@@ -56,6 +56,10 @@ pub struct AxisDriven {
     pub position: i32,
     /// Steps of the plan.
     pub steps_planned: i64,
+    /// What the axis is measured in.
+    pub unit: String,
+    /// Steps in one of these, as the nearest float.
+    pub steps_per_unit: f64,
     /// Position at the limit, where the axis was sent home.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latched: Option<i32>,
@@ -64,10 +68,16 @@ pub struct AxisDriven {
 impl fmt::Display for Driven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: build {}", self.port, self.build)?;
-        writeln!(f, "{:<6}  {:>11}  {:>11}  {:>11}", "axis", "before", "planned", "position")?;
-        for AxisDriven { axis, before, position, steps_planned, latched } in &self.axes {
+        let head = ["before", "planned", "position", "distance", "at"].map(|head| format!("  {head:>11}")).concat();
+        writeln!(f, "{:<6}{head}", "axis")?;
+        for AxisDriven { axis, before, position, steps_planned, unit, steps_per_unit, latched } in &self.axes {
+            let unit = Unit { name: unit.clone(), steps: *steps_per_unit };
             let limit = latched.map_or_else(String::new, |at| format!("  limit at {at}"));
-            writeln!(f, "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}{limit}")?;
+            let [planned, at] = [*steps_planned as f64, f64::from(*position)].map(|steps| unit.own(steps, 0));
+            writeln!(
+                f,
+                "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}  {planned:>11}  {at:>11}{limit}"
+            )?;
         }
         match (self.ended, self.passed) {
             (How::Done, true) => f.write_str("DONE\n"),
@@ -86,6 +96,7 @@ impl fmt::Display for Driven {
 pub struct Streamed {
     commands: Vec<Command>,
     steps: Vec<i64>,
+    units: Vec<Unit>,
     seconds: f64,
 }
 
@@ -97,7 +108,8 @@ impl Streamed {
         supply::check(&commands, axes as u8, plan.build.timebase.tick_ns(), baud)
             .map_err(|error| Failure::input(format!("{}: {error}", file.source.path.display())))?;
         let steps = (0..axes).map(|axis| plan.moves.iter().map(|planned| planned.axes[axis].steps).sum()).collect();
-        Ok(Self { commands, steps, seconds: plan.total_ticks() as f64 * plan.build.timebase.tick_seconds() })
+        let units = file.machine.axes.iter().map(|axis| axis.unit.clone()).collect();
+        Ok(Self { commands, steps, units, seconds: plan.total_ticks() as f64 * plan.build.timebase.tick_seconds() })
     }
 
     /// Segments of the axis that has most, and which it is.
@@ -156,6 +168,8 @@ pub fn drive(connection: Connection, port: &str, streamed: &Streamed, homing: Op
         before: start.positions[number],
         position: end.positions[number],
         steps_planned: streamed.steps[number],
+        unit: streamed.units[number].name.clone(),
+        steps_per_unit: streamed.units[number].steps,
         latched: latched.filter(|_| homing.is_some_and(|mask| mask >> number & 1 == 1)).map(|at| at[number]),
     };
     let axes: Vec<AxisDriven> = axes.iter().cloned().enumerate().map(axis).collect();

@@ -136,7 +136,9 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
     let how_far = Some(progress.how_far());
     let gateware = match &engine {
         None => Gateware::Parallel(Job { halt, how_far, ..Job::new(&plan.build, &program, plan.total_ticks()) }),
-        Some(engine) => Gateware::Engine(EngineJob { halt, how_far, ..EngineJob::new(engine, &program, plan.total_ticks()) }),
+        Some(engine) => {
+            Gateware::Engine(EngineJob { halt, how_far, ..EngineJob::new(engine, &program, plan.total_ticks()) })
+        }
     };
     let load = gateware.origin()?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks()).cast_signed();

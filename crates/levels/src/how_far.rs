@@ -1,6 +1,6 @@
 //! How far a run is, for whoever watches it from another thread.
 
-use std::sync::atomic::{AtomicU64, AtomicU8, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 
 /// What a run does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -229,8 +229,10 @@ impl Board {
     /// # Errors
     /// [`BoardError::Clock`] names the nearest that it can.
     pub fn clock(&self, clock_hz: u64) -> Result<ClockManager, BoardError> {
-        self.family.clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| {
-            BoardError::Clock { board: self.name.clone(), source, proposed: self.proposed(None) }
+        self.family.clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
+            board: self.name.clone(),
+            source,
+            proposed: self.proposed(None),
         })
     }
 

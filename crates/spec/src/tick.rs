@@ -141,8 +141,10 @@ pub(crate) fn nearest_ticks(clock_hz: u64, tick_ns: u64, phases: u32, axes: usiz
         (None, None) => "there is no tick".to_owned(),
     };
     let engine = ticks.shortest(engine::least_clocks(axes, phases));
-    let engine = engine.map_or_else(String::new, |ns| format!("; an engine of {} takes {ns} ns or more", counted(axes)));
-    let finer = Ticks::of(clock_hz, FEWER_PHASES).filter(|finer| phases > FEWER_PHASES && finer.grain_ns < ticks.grain_ns);
+    let engine =
+        engine.map_or_else(String::new, |ns| format!("; an engine of {} takes {ns} ns or more", counted(axes)));
+    let finer =
+        Ticks::of(clock_hz, FEWER_PHASES).filter(|finer| phases > FEWER_PHASES && finer.grain_ns < ticks.grain_ns);
     let finer = finer.map_or_else(String::new, |finer| {
         format!("; `phases = {FEWER_PHASES}` allows multiples of {} ns", finer.grain_ns)
     });
@@ -179,11 +181,14 @@ mod tests {
 
     #[test]
     fn the_chosen_tick_is_the_shortest_of_all_that_fit() {
-        for clock_hz in [1_000_000, 12_000_000, 12_288_000, 25_000_000, 27_000_000, 33_300_000, 125_000_000, 999_000_000] {
+        for clock_hz in
+            [1_000_000, 12_000_000, 12_288_000, 25_000_000, 27_000_000, 33_300_000, 125_000_000, 999_000_000]
+        {
             for phases in [1, 4, 16] {
                 for axes in 1..=8 {
                     let fits = |ns: &u64| {
-                        Timebase::new(clock_hz, *ns, phases).is_ok_and(|time| engine::check_schedule(axes, &time).is_ok())
+                        Timebase::new(clock_hz, *ns, phases)
+                            .is_ok_and(|time| engine::check_schedule(axes, &time).is_ok())
                     };
                     let searched = (1..=200_000_u64).find(fits);
                     assert_eq!(Ticks::for_engine(clock_hz, phases, axes), searched, "{clock_hz} Hz, {phases}, {axes}");

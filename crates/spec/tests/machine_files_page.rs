@@ -87,8 +87,11 @@ fn the_page_s_ticks_are_those_that_are_chosen() {
     let rows = PAGE.lines().filter_map(|line| line.strip_prefix("| ")?.split_once(" MHz | "));
     let mut seen = 0;
     for (mhz, rest) in rows {
-        let ticks: Vec<u64> =
-            rest.trim_end_matches(" |").split(" | ").map(|cell| cell.trim_end_matches(" ns").parse().unwrap()).collect();
+        let ticks: Vec<u64> = rest
+            .trim_end_matches(" |")
+            .split(" | ")
+            .map(|cell| cell.trim_end_matches(" ns").parse().unwrap())
+            .collect();
         let chosen = |phases| ChosenTick::new(mhz.parse::<u64>().unwrap() * 1_000_000, phases, 6).unwrap().tick_ns;
         assert_eq!(ticks, [chosen(16), chosen(4)], "{mhz} MHz");
         seen += 1;

@@ -74,8 +74,16 @@ fn what_is_said_twice_or_by_halves_is_refused_where_it_stands() {
         ("steps_per_rev = 200\nmicrosteps = 4\nspeed_limit = 1\n", 6, "missing field: lead"),
         ("speed_limit = 1\n", 2, "missing field `steps_per_unit`"),
         ("steps_per_unit = 80\n", 2, "missing field `speed_limit`"),
-        ("steps_per_unit = 80\nspeed_limit = 1\nspeed_limit_per_min = 60\n", 8, "both speed_limit and speed_limit_per_min"),
-        ("steps_per_unit = 80\nspeed_limit_per_min = 60\nstart_speed_per_min = 61\n", 8, "start_speed_per_min is over speed_limit_per_min"),
+        (
+            "steps_per_unit = 80\nspeed_limit = 1\nspeed_limit_per_min = 60\n",
+            8,
+            "both speed_limit and speed_limit_per_min",
+        ),
+        (
+            "steps_per_unit = 80\nspeed_limit_per_min = 60\nstart_speed_per_min = 61\n",
+            8,
+            "start_speed_per_min is over speed_limit_per_min",
+        ),
         ("lead = 0\nsteps_per_rev = 200\nmicrosteps = 4\nspeed_limit = 1\n", 6, "lead = 0: must be over zero"),
         ("lead = 4\nsteps_per_rev = 0\nmicrosteps = 4\nspeed_limit = 1\n", 7, "steps_per_rev = 0: must be over zero"),
         ("unit = \"mm per turn\"\nsteps_per_unit = 80\nspeed_limit = 1\n", 6, "\"mm per turn\" cannot name a unit"),
@@ -112,7 +120,11 @@ fn the_proposal_of_fewer_phases_stands_where_the_long_tick_forbids_a_speed() {
 #[test]
 fn a_tick_is_chosen_where_none_is_given_and_not_at_the_default_clock() {
     let at = |head: &str, axes: usize| {
-        let axis = |i| format!("[[machine.axis]]\nname = \"x{i}\"\nsteps_per_unit = 1\nspeed_limit = 9\naccel_limit = 9\ndriver = \"a4988\"\n");
+        let axis = |i| {
+            format!(
+                "[[machine.axis]]\nname = \"x{i}\"\nsteps_per_unit = 1\nspeed_limit = 9\naccel_limit = 9\ndriver = \"a4988\"\n"
+            )
+        };
         let text = format!("[machine]\n{head}\n{}", (0..axes).map(axis).collect::<String>());
         Machine::from_source(&Source { path: "m".into(), text: text.into() })
     };

@@ -7,8 +7,8 @@ use crate::output;
 use crate::progress::Stages;
 use carrystep_export::{Gateware, TextFile};
 use carrystep_spec::board::{Board, Toolchain};
-use carrystep_spec::{InputError, Machine};
 use carrystep_spec::clock::mhz;
+use carrystep_spec::{InputError, Machine};
 use carrystep_synthesis::board::{Built, Job, build};
 use carrystep_synthesis::ice40;
 use serde::Serialize;
@@ -155,8 +155,6 @@ fn told(report: &Report, built: &Built, proposed: &str) -> String {
             file.display(),
             report.load
         ),
-        None => format!(
-            "{head}THE CLOCK IS NOT REACHED: no bitstream. The board is proposed to run at {proposed}.\n"
-        ),
+        None => format!("{head}THE CLOCK IS NOT REACHED: no bitstream. The board is proposed to run at {proposed}.\n"),
     }
 }

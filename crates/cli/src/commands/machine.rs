@@ -32,7 +32,7 @@ struct Written<'a> {
 
 /// Where the clock comes from.
 pub enum Clock {
-    Board(Cow<'static, Board>),
+    Board(Box<Cow<'static, Board>>),
     Hz(u64),
 }
 
@@ -57,7 +57,7 @@ fn new(arguments: &MachineNew) -> Result<(), Failure> {
         let message = format!("{} is there already", path.display());
         return Err(Failure::Input(InputError::new(message).help("take another name, or replace it with --force")));
     }
-    let board = arguments.board.as_deref().map(boards::find).transpose()?.map(Clock::Board);
+    let board = arguments.board.as_deref().map(boards::find).transpose()?.map(|board| Clock::Board(Box::new(board)));
     let mut wishes = Wishes {
         clock: board.or(arguments.clock_hz.map(Clock::Hz)),
         limits: arguments.limits.clone(),
@@ -184,7 +184,9 @@ impl Wishes {
                 let chosen = ChosenTick::new(hz, 16, axes).ok_or_else(|| no_tick(hz))?;
                 let why = "the shortest that these axes take".to_owned();
                 match chosen.fewer_phases_ns {
-                    Some(shorter) => Ok((hz, shorter, 4, format!("{why}; in 16 phases it would be {}", chosen.tick_ns))),
+                    Some(shorter) => {
+                        Ok((hz, shorter, 4, format!("{why}; in 16 phases it would be {}", chosen.tick_ns)))
+                    }
                     None => Ok((hz, chosen.tick_ns, 16, why)),
                 }
             }

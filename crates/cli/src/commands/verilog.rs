@@ -117,7 +117,14 @@ fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Writte
         Core::Engine => {
             let build = machine.engine();
             let files = carrystep_export::write_engine(out, &build, name).map_err(refused)?;
-            Ok(Written { passed: true, top: ENGINE_NAME, tick_ns, tick_note, guard: Some(build.guard_figures()), files })
+            Ok(Written {
+                passed: true,
+                top: ENGINE_NAME,
+                tick_ns,
+                tick_note,
+                guard: Some(build.guard_figures()),
+                files,
+            })
         }
     }
 }

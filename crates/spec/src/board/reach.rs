@@ -61,7 +61,10 @@ mod tests {
         let icebreaker = board("icebreaker").unwrap();
         let refused = |axes| icebreaker.may_reach(&icebreaker.parts[0], 48_000_000, axes).unwrap_err().to_string();
         let said = refused(6);
-        assert!(said.ends_with("37.5 MHz (ticks of 2560 ns in 16 phases) or 30 MHz (ticks of 3200 ns in 16 phases)"), "{said}");
+        assert!(
+            said.ends_with("37.5 MHz (ticks of 2560 ns in 16 phases) or 30 MHz (ticks of 3200 ns in 16 phases)"),
+            "{said}"
+        );
         // The turns of eight axes need 105 clocks.
         assert!(refused(8).contains("37.5 MHz (ticks of 3840 ns"), "{}", refused(8));
     }

@@ -37,12 +37,7 @@ pub(super) struct RawAxis {
 
 impl RawAxis {
     /// The axis; `table` is where its table stands.
-    pub(super) fn check(
-        self,
-        source: &Source,
-        table: Range<usize>,
-        timebase: &Timebase,
-    ) -> Result<Axis, InputError> {
+    pub(super) fn check(self, source: &Source, table: Range<usize>, timebase: &Timebase) -> Result<Axis, InputError> {
         let name = self.name.as_ref().clone();
         let fit = |c: char| c.is_ascii_alphanumeric() || c == '_';
         if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(fit) || name.len() > 32 {
@@ -183,8 +178,12 @@ impl Axis {
         if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {
             let limit = self.unit.both(decimal::to_f64(&self.accel_limit), 2);
             let half = self.unit.at_most(0.5e18 / (timebase.tick_ns() as f64).powi(2), 2);
-            return Err(InputError::at(source, span, format!("accel_limit is {limit}: half a step per tick^2 or more"))
-                .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
+            return Err(InputError::at(
+                source,
+                span,
+                format!("accel_limit is {limit}: half a step per tick^2 or more"),
+            )
+            .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
         }
         Ok(())
     }

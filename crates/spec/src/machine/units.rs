@@ -15,7 +15,8 @@ const PLACES: i64 = 60;
 /// Most characters in the name of a unit.
 const LONGEST_NAME: usize = 12;
 
-const MECHANICS: &str = "give steps_per_unit, or lead (units that one turn of the motor moves), steps_per_rev and microsteps";
+const MECHANICS: &str =
+    "give steps_per_unit, or lead (units that one turn of the motor moves), steps_per_rev and microsteps";
 
 /// A speed of the file in steps/s, and where it stands.
 pub(super) struct Speed {
@@ -40,13 +41,18 @@ impl RawAxis {
         let given = turns.iter().find_map(|(key, span)| span.clone().map(|span| (key, span)));
         match (&self.steps_per_unit, given) {
             (Some(value), None) => positive(source, value, "steps_per_unit"),
-            (Some(_), Some((key, span))) => {
-                Err(InputError::at(source, span, format!("both steps_per_unit and {key} are given"))
-                    .help("steps_per_unit says it all: leave out lead, steps_per_rev and microsteps, or leave out steps_per_unit"))
-            }
+            (Some(_), Some((key, span))) => Err(InputError::at(
+                source,
+                span,
+                format!("both steps_per_unit and {key} are given"),
+            )
+            .help(
+                "steps_per_unit says it all: leave out lead, steps_per_rev and microsteps, or leave out steps_per_unit",
+            )),
             (None, None) => Err(InputError::at(source, table, "missing field `steps_per_unit`").help(MECHANICS)),
             (None, Some((_, span))) => {
-                let (Some(lead), Some(steps), Some(microsteps)) = (&self.lead, &self.steps_per_rev, &self.microsteps) else {
+                let (Some(lead), Some(steps), Some(microsteps)) = (&self.lead, &self.steps_per_rev, &self.microsteps)
+                else {
                     let absent = turns.iter().filter(|(_, span)| span.is_none()).map(|(key, _)| *key);
                     let absent = absent.collect::<Vec<_>>().join(" and ");
                     return Err(InputError::at(source, span, format!("missing field: {absent}")).help(MECHANICS));
@@ -65,13 +71,19 @@ impl RawAxis {
         if let (Some(text), Some(span)) = (name, self.unit.as_ref().map(Spanned::span))
             && !(text.chars().all(fits) && (1..=LONGEST_NAME).contains(&text.chars().count()))
         {
-            return Err(InputError::at(source, span, format!("{text:?} cannot name a unit"))
-                .help(format!("1 to {LONGEST_NAME} letters, digits, ° or _, as in unit = \"mm\"; \"/s\" is added by itself")));
+            return Err(InputError::at(source, span, format!("{text:?} cannot name a unit")).help(format!(
+                "1 to {LONGEST_NAME} letters, digits, ° or _, as in unit = \"mm\"; \"/s\" is added by itself"
+            )));
         }
         Ok(Unit::new(name, decimal::to_f64(steps_per_unit)))
     }
 
-    pub(super) fn speed_limit(&self, source: &Source, table: Range<usize>, scale: &BigDecimal) -> Result<Speed, InputError> {
+    pub(super) fn speed_limit(
+        &self,
+        source: &Source,
+        table: Range<usize>,
+        scale: &BigDecimal,
+    ) -> Result<Speed, InputError> {
         let keys = ("speed_limit", "speed_limit_per_min");
         let found = speed(source, keys, (&self.speed_limit, &self.speed_limit_per_min), positive, scale)?;
         found.ok_or_else(|| {
@@ -110,7 +122,8 @@ fn speed(
         }
         (Some(_), Some(value)) => {
             let message = format!("both {} and {} are given", keys.0, keys.1);
-            Err(InputError::at(source, value.span(), message).help("keep one of them: the first is per second, the other per minute"))
+            Err(InputError::at(source, value.span(), message)
+                .help("keep one of them: the first is per second, the other per minute"))
         }
     }
 }

@@ -17,9 +17,10 @@ pub fn complete(wishes: &mut Wishes) -> Result<(), Failure> {
     }
     if wishes.limits.is_none() {
         let known = ["pair", "each", "one", "none"];
-        let limits = ask("Limit switches: pair (two an axis), each (one an axis), one (for all), none", Some("each"), |text| {
-            if known.contains(&text) { Ok(()) } else { Err(format!("one of {} is expected", known.join(", "))) }
-        })?;
+        let limits =
+            ask("Limit switches: pair (two an axis), each (one an axis), one (for all), none", Some("each"), |text| {
+                if known.contains(&text) { Ok(()) } else { Err(format!("one of {} is expected", known.join(", "))) }
+            })?;
         wishes.limits = Some(limits);
     }
     let new = wishes.axes.is_empty();
@@ -40,7 +41,7 @@ fn clock(text: &str) -> Result<Clock, String> {
     };
     match carrystep_spec::decimal::parse(text) {
         Some(mhz) => hz(mhz).map(Clock::Hz).ok_or_else(|| format!("{text} MHz is no whole number of Hz")),
-        None => boards::find(text).map(Clock::Board).map_err(|failure| failure.message()),
+        None => boards::find(text).map(|board| Clock::Board(Box::new(board))).map_err(|failure| failure.message()),
     }
 }
 
@@ -83,7 +84,11 @@ fn put(axis: &mut Axis, key: &str, question: &str, default: Option<&str>) -> Res
 }
 
 /// One question; an empty answer is the default. An answer that is refused is asked for again.
-fn ask(question: &str, default: Option<&str>, mut take: impl FnMut(&str) -> Result<(), String>) -> Result<String, Failure> {
+fn ask(
+    question: &str,
+    default: Option<&str>,
+    mut take: impl FnMut(&str) -> Result<(), String>,
+) -> Result<String, Failure> {
     loop {
         let shown = default.map_or_else(String::new, |default| format!(" [{default}]"));
         let mut out = std::io::stderr().lock();
