@@ -41,7 +41,7 @@ const STATUS: &str = "passed port build clock_hz tick_ns phases watchdog_ticks r
 const SERVED: &str = "passed seconds clocks fault files axes axes[].axis axes[].position axes[].discarded";
 
 const DRIVEN: &str = "passed port build ended stopped_by cause culprits meaning remedy planned_s run_s
-    axes axes[].axis axes[].before axes[].position axes[].steps_planned";
+    axes axes[].axis axes[].before axes[].position axes[].steps_planned axes[].unit axes[].steps_per_unit";
 
 const BOARDS: &str = "passed tried_on_hardware boards boards[].name boards[].title boards[].family
     boards[].parts boards[].parts[].name boards[].parts[].package boards[].parts[].block_rams

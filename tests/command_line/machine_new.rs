@@ -98,12 +98,11 @@ fn without_a_terminal_all_that_is_missing_is_named_and_nothing_is_written() {
         // What only our own reader knows is refused by it, at the line that would have been written.
         (format!("9x,{BELT}"), "\"9x\" cannot name an axis"),
         (format!("x,{BELT},start_speed=1e5"), "start_speed is over speed_limit"),
-        (format!("x,{},steps_per_unit=3", BELT), "both steps_per_unit and lead are given"),
+        (format!("x,{BELT},steps_per_unit=3"), "both steps_per_unit and lead are given"),
     ] {
         new(&folder, &format!("{whole} {axis}")).refuses(says);
     }
     new(&folder, &format!("--board atlantis --limits none --axis x,{BELT}")).refuses("no board is called 'atlantis'");
-    new(&folder, &format!("--board icestick --limits pair {}", format!("--axis x,{BELT} ").trim_end()));
     let many: String = (0..9).map(|i| format!("--axis x{i},{BELT} ")).collect();
     new(&folder, &format!("--clock-hz 50000000 --limits none {}", many.trim_end()))
         .refuses("an engine drives at most 8");

@@ -5,7 +5,8 @@ mod support;
 
 use carrystep_board::{Board, VerilatedBoard};
 use carrystep_link::registers::{
-    AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, DISCARDED, HOME, IDENTITY, LATCHED, POSITION, P_HIGH, P_LOW, SEGMENT, START, WATCHDOG_TICKS, WRITE,
+    AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, DISCARDED, HOME, IDENTITY, LATCHED, P_HIGH, P_LOW, POSITION, SEGMENT,
+    START, WATCHDOG_TICKS, WRITE,
 };
 use carrystep_link::{Answer, frame};
 use carrystep_spec::engine::Cause;
@@ -121,7 +122,11 @@ fn explore<B: Kind>() {
         let one = fresh.answer();
         fresh.send(&[&[fresh.next, address][..], &[0; 32]].concat());
         let eight = fresh.answer();
-        println!("write {address:02x}: one {:?}\n   eight {:?}", one.map(|a| (a.next, a.free, a.data, a.fault, a.cause, a.refused)), eight.map(|a| (a.next, a.free, a.data, a.fault, a.cause, a.refused)));
+        println!(
+            "write {address:02x}: one {:?}\n   eight {:?}",
+            one.map(|a| (a.next, a.free, a.data, a.fault, a.cause, a.refused)),
+            eight.map(|a| (a.next, a.free, a.data, a.fault, a.cause, a.refused))
+        );
     }
     for mask in [0_u32, 0x40, 0x80, 0xffff_ff00, 0x100] {
         let mut fresh = Talk::<B>::powered();

@@ -39,7 +39,7 @@ use std::fmt;
 use std::sync::atomic::Ordering;
 
 /// The command that holds a port, as its lock file says.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 pub struct Holder {
     /// Its process.
     pub pid: u32,

@@ -3,8 +3,8 @@
 //! A new document is one line in [`documents!`] below; its types derive `JsonSchema`. `cargo xtask generate` writes
 //! `docs/schemas/` anew. New fields leave the version as it is; a field that goes, or means something else, raises it.
 
-use crate::commands::{boards, build, check, doctor, plan, profile, status, table, verilog};
-use crate::{drive, failure, job};
+use crate::commands::{boards, build, check, doctor, home, machine, plan, profile, table, verilog};
+use crate::{drive, failure, found, job};
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, json_schema};
 use serde::Serialize;
@@ -38,10 +38,12 @@ documents! {
     "doctor", 1: doctor::Examined;
     "drive", 1: drive::Driven;
     "failure", 1: failure::Document;
+    "home", 1: home::Report;
+    "machine-new", 1: machine::Written<'_>;
     "plan", 1: plan::Planned<'_>;
     "profile", 1: profile::Profiles<'_>;
     "simulate", 1: job::Done;
-    "status", 1: status::Found;
+    "status", 1: found::Found;
     "sweep", 1: carrystep_sweep::Report;
     "table", 1: table::Tabled<'_>;
     "verilog", 1: verilog::Written;

@@ -8,7 +8,7 @@ use crate::memory::{self, Limit, Memory};
 use carrystep_link::{Command, Ended, HostError, Program, Status, supply};
 use carrystep_plan::Plan;
 use carrystep_spec::engine::{Cause, Guard};
-use carrystep_spec::{Axis, MoveFile};
+use carrystep_spec::{Axis, MoveFile, Unit};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -76,14 +76,21 @@ pub struct AxisDriven {
     pub position: i32,
     /// Steps of the plan.
     pub steps_planned: i64,
+    /// What the axis is measured in.
+    pub unit: String,
+    /// Steps in one of these, as the nearest float.
+    pub steps_per_unit: f64,
 }
 
 impl fmt::Display for Driven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: build {}", self.port, self.build)?;
-        writeln!(f, "{:<6}  {:>11}  {:>11}  {:>11}", "axis", "before", "planned", "position")?;
-        for AxisDriven { axis, before, position, steps_planned } in &self.axes {
-            writeln!(f, "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}")?;
+        let head = ["before", "planned", "position", "distance", "at"].map(|head| format!("  {head:>11}")).concat();
+        writeln!(f, "{:<6}{head}", "axis")?;
+        for AxisDriven { axis, before, position, steps_planned, unit, steps_per_unit } in &self.axes {
+            let unit = Unit { name: unit.clone(), steps: *steps_per_unit };
+            let [planned, at] = [*steps_planned as f64, f64::from(*position)].map(|steps| unit.own(steps, 0));
+            writeln!(f, "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}  {planned:>11}  {at:>11}")?;
         }
         match (self.ended, self.passed) {
             (How::Done, true) => f.write_str("DONE\n"),
@@ -115,6 +122,7 @@ impl fmt::Display for Driven {
 pub struct Streamed {
     commands: Vec<Command>,
     steps: Vec<i64>,
+    units: Vec<Unit>,
     seconds: f64,
     near: Vec<Near>,
     guard: Guard,
@@ -144,8 +152,9 @@ impl Streamed {
             }
         };
         let near = file.machine.axes.iter().enumerate().map(near).collect();
+        let units = file.machine.axes.iter().map(|axis| axis.unit.clone()).collect();
         let seconds = plan.total_ticks() as f64 * plan.build.timebase.tick_seconds();
-        Ok(Self { commands, steps, seconds, near, guard: file.machine.guard.clone() })
+        Ok(Self { commands, steps, units, seconds, near, guard: file.machine.guard.clone() })
     }
 
     /// Refuses a program that takes an axis further toward a limit that it has met and not left.
@@ -245,6 +254,8 @@ pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> R
         before: start.positions[number],
         position: end.positions[number],
         steps_planned: streamed.steps[number],
+        unit: streamed.units[number].name.clone(),
+        steps_per_unit: streamed.units[number].steps,
     };
     let axes: Vec<AxisDriven> = axes.iter().cloned().enumerate().map(axis).collect();
     let moved = |axis: &AxisDriven| i64::from(axis.position.wrapping_sub(axis.before)) == axis.steps_planned;

@@ -118,7 +118,8 @@ impl Document {
     /// The document of a failure; a reader who has gone needs none.
     fn of(failure: &Failure) -> Option<Self> {
         Some(match failure {
-            Failure::ReaderGone => return None,
+            // A sweep has printed its report already.
+            Failure::ReaderGone | Failure::NothingTried => return None,
             Failure::Check => Self::new(Kind::Run, failure.message()),
             Failure::Run(message) => Self::new(Kind::Run, message),
             Failure::Tool(message) => Self::new(Kind::Tool, message),

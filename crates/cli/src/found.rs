@@ -4,6 +4,7 @@
 use crate::control::Holder;
 use carrystep_link::{Answer, Facts, Status};
 use carrystep_spec::engine::{CAUSES, Cause};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -21,7 +22,7 @@ pub struct Known {
 }
 
 /// What `--json` prints.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize, Deserialize)]
 pub struct Found {
     /// It has answered.
     pub passed: bool,
@@ -63,7 +64,7 @@ pub struct Found {
 }
 
 /// One axis.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize, Deserialize)]
 pub struct AxisFound {
     /// Its name.
     pub axis: String,

@@ -131,7 +131,10 @@ fn refused(refusal: &Refusal, unit: &Unit, least_time: Option<f64>) -> String {
     match least_time {
         None => format!("needs a {limit} over {has}; raise it, or take another profile"),
         Some(least) if wanted.is_finite() => {
-            format!("needs {}, over {limit} {has}; at least {least} s would do", unit.both(*wanted, seconds))
+            let needs = unit.both(*wanted, seconds);
+            // Figures of six digits may be the same.
+            let needs = if needs == has { format!("a little more than {needs}") } else { needs };
+            format!("needs {needs}, over {limit} {has}; at least {least} s would do")
         }
         Some(least) => format!("no {} would do, {limit} is {has}; at least {least} s would do", unit.per(seconds)),
     }

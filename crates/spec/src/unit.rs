@@ -39,16 +39,16 @@ impl Unit {
 
     /// `95 mm/s (7600 steps/s)`; steps alone where they are the unit.
     pub fn both(&self, steps: f64, seconds: u32) -> String {
-        self.with_steps(self.own(steps, seconds), digits(steps), seconds)
+        self.with_steps(self.own(steps, seconds), &digits(steps), seconds)
     }
 
     /// As [`Unit::both`], but both figures rounded down: what a limit may be at most.
     pub fn at_most(&self, steps: f64, seconds: u32) -> String {
         let own = format!("{} {}", digits_below(steps / self.steps), self.per(seconds));
-        self.with_steps(own, digits_below(steps), seconds)
+        self.with_steps(own, &digits_below(steps), seconds)
     }
 
-    fn with_steps(&self, own: String, steps: String, seconds: u32) -> String {
+    fn with_steps(&self, own: String, steps: &str, seconds: u32) -> String {
         if self.is_step() { own } else { format!("{own} ({steps} {})", per(STEPS, seconds)) }
     }
 
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn figures_have_six_digits_and_no_more_zeros_than_they_need() {
-        let shown = [0.0, 0.95, 2061.855_67, 1_234_567.0, 12.5, -0.05, 320_000_000.0, 1e-9, 1e30].map(digits);
+        let shown = [0.0, 0.95, 2_061.855_67, 1_234_567.0, 12.5, -0.05, 320_000_000.0, 1e-9, 1e30].map(digits);
         assert_eq!(shown, ["0", "0.95", "2061.86", "1234567", "12.5", "-0.05", "320000000", "1e-9", "1e30"]);
         assert_eq!([2061.859, 500.0, 499.999_999_999_999_9, 0.3].map(digits_below), ["2061.85", "500", "500", "0.3"]);
     }

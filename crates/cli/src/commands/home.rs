@@ -12,13 +12,14 @@ use carrystep_spec::engine::{Cause, Limits};
 use carrystep_spec::machine::{End, Home as AxisHome};
 use carrystep_spec::{Axis, Machine};
 use indicatif::{ProgressBar, ProgressDrawTarget};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 use std::time::Instant;
 
 /// What `--json` prints.
-#[derive(Serialize)]
-struct Report {
+#[derive(JsonSchema, Serialize)]
+pub struct Report {
     passed: bool,
     port: String,
     build: String,
@@ -31,7 +32,7 @@ struct Report {
     axes: Vec<AxisReport>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct AxisReport {
     axis: String,
     /// Position registers before, where the limit was accepted in the slow approach, and after; steps.

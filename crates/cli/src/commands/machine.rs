@@ -13,14 +13,15 @@ use carrystep_spec::board::Board;
 use carrystep_spec::clock::mhz;
 use carrystep_spec::tick::Ticks;
 use carrystep_spec::{ChosenTick, InputError, Machine, Source, Timebase};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::io::IsTerminal as _;
 use std::path::Path;
 
 /// What `--json` prints.
-#[derive(Serialize)]
-struct Written<'a> {
+#[derive(JsonSchema, Serialize)]
+pub struct Written<'a> {
     passed: bool,
     file: &'a Path,
     clock_hz: u64,
@@ -32,7 +33,7 @@ struct Written<'a> {
 
 /// Where the clock comes from.
 pub enum Clock {
-    Board(Cow<'static, Board>),
+    Board(Box<Cow<'static, Board>>),
     Hz(u64),
 }
 
@@ -57,7 +58,7 @@ fn new(arguments: &MachineNew) -> Result<(), Failure> {
         let message = format!("{} is there already", path.display());
         return Err(Failure::Input(InputError::new(message).help("take another name, or replace it with --force")));
     }
-    let board = arguments.board.as_deref().map(boards::find).transpose()?.map(Clock::Board);
+    let board = arguments.board.as_deref().map(boards::find).transpose()?.map(|board| Clock::Board(Box::new(board)));
     let mut wishes = Wishes {
         clock: board.or(arguments.clock_hz.map(Clock::Hz)),
         limits: arguments.limits.clone(),

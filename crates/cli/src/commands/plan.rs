@@ -125,7 +125,8 @@ fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
 
 /// What rounding to whole steps added, where it did.
 fn rounded(axis: &Axis, rounding: f64) -> String {
-    if rounding == 0.0 {
+    // What four places do not show is not said.
+    if rounding.abs() < 5e-5 {
         return String::new();
     }
     let Axis { name, unit, .. } = axis;

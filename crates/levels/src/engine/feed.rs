@@ -162,7 +162,8 @@ mod tests {
         // A host that takes one command after the other is late.
         let build = build();
         let late = EngineHost::new(&build.guard, &begun, &Vec::new());
-        let fault = Recording::of(&build, late, 1_000_000, &[]).outputs.last().and_then(|(_, outputs)| outputs.fault);
+        let fault =
+            Recording::of(&build, late, 1_000_000, &[], None).outputs.last().and_then(|(_, outputs)| outputs.fault);
         assert_eq!(fault, Some((Cause::Underrun, 1)));
     }
 

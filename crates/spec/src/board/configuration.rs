@@ -1,5 +1,6 @@
 //! Configuration pins: what the FPGA itself does with a pin before the design has it, for each package (`data/packages.toml`).
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -8,7 +9,7 @@ use std::sync::LazyLock;
 const DATA: &str = include_str!("../../data/packages.toml");
 
 /// How an FPGA gets its bitstream. JTAG needs no user pin, so it is no mode here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
     /// The pin has its function in every mode.
@@ -95,7 +96,7 @@ pub(super) fn packages() -> &'static [Package] {
 }
 
 /// A port on a configuration pin: the board's page shows each of them.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Shared {
     /// `step[0]`, or `the oscillator`.
     pub port: String,
@@ -113,7 +114,7 @@ pub struct Shared {
 /// An input that says from when on lines of the board may be driven.
 ///
 /// The lines have high impedance until the input has been high for `wait_ns`, and again as soon as it is low.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Gate {
     /// Its port of the top level.
     pub port: String,

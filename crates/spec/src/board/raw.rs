@@ -6,8 +6,8 @@ use super::{Board, Clocking, Family, IoStandard, Oscillator, Part, Place, PllInp
 use crate::build::Timebase;
 use crate::engine::{MAX_AXES, check_schedule};
 use crate::error::{InputError, Source};
-use configuration::{Exception, RESERVED, RawGate};
 use carrystep_files::did_you_mean;
+use configuration::{Exception, RESERVED, RawGate};
 use pins::Pins;
 use serde::Deserialize;
 use std::collections::BTreeMap;

@@ -41,7 +41,7 @@ fn clock(text: &str) -> Result<Clock, String> {
     };
     match carrystep_spec::decimal::parse(text) {
         Some(mhz) => hz(mhz).map(Clock::Hz).ok_or_else(|| format!("{text} MHz is no whole number of Hz")),
-        None => boards::find(text).map(Clock::Board).map_err(|failure| failure.message()),
+        None => boards::find(text).map(|board| Clock::Board(Box::new(board))).map_err(|failure| failure.message()),
     }
 }
 

@@ -89,7 +89,7 @@ impl Axis {
     /// The keys that lack, each as the first way to give it; behind it, what would do instead.
     pub fn missing(&self) -> Vec<(Vec<&'static str>, String)> {
         let has = |set: &&[&str]| set.iter().all(|key| self.keys.contains_key(key));
-        let lacks = |ways: &&&[&[&'static str]]| !ways.iter().any(|set| has(set));
+        let lacks = |ways: &&&[&[&'static str]]| !ways.iter().any(has);
         let told = |ways: &&[&[&'static str]]| {
             let first = ways[0].iter().copied().filter(|key| !self.keys.contains_key(key)).collect();
             (first, ways.iter().map(|set| set.join(", ")).collect::<Vec<_>>().join("; or "))
@@ -104,7 +104,7 @@ impl Axis {
 
     /// Its table.
     pub fn text(&self) -> String {
-        let quoted = |text: &str| format!("{:?}", text);
+        let quoted = |text: &str| format!("{text:?}");
         let mut lines = vec!["[[machine.axis]]".to_owned(), format!("name = {}", quoted(&self.name))];
         for (key, kind, comment) in KEYS {
             let Some(value) = self.keys.get(key) else { continue };
