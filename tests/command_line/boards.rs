@@ -181,10 +181,14 @@ fn a_machine_that_stands_is_left_alone_until_it_is_told_to_resume() {
     let name = port.name.clone();
     for ran in movers(&folder, &name) {
         assert_eq!((ran.status, ran.stdout.as_str()), (1, ""), "{}", ran.stderr);
-        assert_eq!(ran.stderr, "error: the machine has stopped: underrun; `carrystep stop --clear` resumes\n");
+        assert_eq!(
+            ran.stderr,
+            "error: the machine has stopped: underrun; `carrystep stop --clear`, plan anew from the positions, and relieve the computer or raise the baud rate\n"
+        );
     }
     let status = folder.run(&format!("status --port {name}"));
-    assert!(status.stdout.contains("STOPPED: underrun; `carrystep stop --clear` resumes"), "{}", status.stdout);
+    assert!(status.stdout.contains("STOPPED: underrun; drivers "), "{}", status.stdout);
+    assert!(status.stdout.contains("to do: `carrystep stop --clear`, plan anew"), "{}", status.stdout);
     let stop = folder.run(&format!("stop --clear --off --port {name} --json"));
     assert_eq!(stop.status, 0, "{}", stop.stderr);
     let found: serde_json::Value = serde_json::from_str(&stop.stdout).unwrap();
