@@ -141,7 +141,11 @@ fn what_is_remembered_is_dropped_when_the_board_is_another_or_was_moved() {
     assert_eq!(coordinates(&folder, &board), [None, None, None]);
     // Another machine file with other steps; the gateware is the same.
     home(&folder, &board, "y ");
-    let half = [("\"pair\"", "\"each\""), ("steps_per_unit = 50", "steps_per_unit = 25"), ("accel_limit = 2000", "accel_limit = 4000")];
+    let half = [
+        ("\"pair\"", "\"each\""),
+        ("steps_per_unit = 50", "steps_per_unit = 25"),
+        ("accel_limit = 2000", "accel_limit = 4000"),
+    ];
     folder.write("machine.toml", half.iter().fold(MACHINE.to_owned(), |text, (old, new)| text.replace(old, new)));
     assert_eq!(coordinates(&folder, &board), [None, None, None]);
     drop(board);
@@ -192,7 +196,10 @@ fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
         passed(&jog("1"));
         jog("-0.1").refuses("jog it forward by 1");
         // A file of moves is no way round it.
-        folder.write("move.toml", "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trapezoid\"\nto = { y = -1 }\n");
+        folder.write(
+            "move.toml",
+            "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trapezoid\"\nto = { y = -1 }\n",
+        );
         folder.run(&format!("run move.toml --port {}", board.port)).refuses("axis y has met its limit");
         passed(&on(&folder, &board, "jog x 1"));
         passed(&jog("3"));

@@ -2,15 +2,18 @@
 //! switch closes, twice the same, and never runs further over a closed switch than the ramp explains.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+#[path = "support/asked.rs"]
+mod asked;
 #[path = "support/axes.rs"]
 mod axes;
 #[path = "../../link/tests/support/random.rs"]
 #[allow(dead_code)]
 mod random;
 
-use axes::{Bench, Make, Start, homing_of, machine};
+use asked::homing_of;
+use axes::{Bench, Make, Start, machine};
 use carrystep_board::{Board, Gateware, VerilatedBoard};
-use carrystep_link::{AxisHoming, Homed, HostError, HomingFault, Stage, Wish};
+use carrystep_link::{AxisHoming, Homed, HomingFault, HostError, Stage, Wish};
 use carrystep_spec::Machine;
 use carrystep_spec::engine::Cause;
 use carrystep_spec::machine::{End, overrun};
@@ -79,12 +82,20 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
         let ticks = u128::from(guard.debounce) * u128::from(guard.round) + 4 + u128::from(bench.slice_ticks());
         let late = ((u128::from(home.slow) * ticks) >> 64) as i32;
         let beyond = (edge - switch) * sign;
-        assert!((0..=late + 1).contains(&beyond), "{what}: axis {number} at {edge}, its switch at {switch}, {late} late");
+        assert!(
+            (0..=late + 1).contains(&beyond),
+            "{what}: axis {number} at {edge}, its switch at {switch}, {late} late"
+        );
         assert_eq!(host.status().positions[number], edge - sign * home.pull_off as i32, "{what}: axis {number}");
         // No pulse has gone further into the switch than the search runs on, or than where the axis had stood.
-        let ran = overrun(home.seek, axis.stop, guard) + 1 + ((u128::from(home.seek) * u128::from(bench.slice_ticks())) >> 64) as u64;
+        let ran = overrun(home.seek, axis.stop, guard)
+            + 1
+            + ((u128::from(home.seek) * u128::from(bench.slice_ticks())) >> 64) as u64;
         let (deepest, stood) = (bench.deepest(number), bench.stood(number));
-        assert!(deepest <= (ran as i32).max(stood), "{what}: axis {number} is {deepest} in its switch, {ran} or {stood} are explained");
+        assert!(
+            deepest <= (ran as i32).max(stood),
+            "{what}: axis {number} is {deepest} in its switch, {ran} or {stood} are explained"
+        );
     }
     edges[..machine.axes.len()].to_vec()
 }

@@ -227,7 +227,9 @@ pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> R
         memory.forget_places();
     }
     if cause == Some(Cause::Limit) {
-        for (number, near) in streamed.near.iter().enumerate().filter(|(number, _)| end.answer.culprits >> number & 1 == 1) {
+        for (number, near) in
+            streamed.near.iter().enumerate().filter(|(number, _)| end.answer.culprits >> number & 1 == 1)
+        {
             let direction = if ways.last[number] == 0 { near.first } else { ways.last[number] };
             memory.set_limit(number, Some(Limit { direction, at: end.positions[number], clear: near.clear }));
         }

@@ -166,7 +166,8 @@ impl fmt::Display for Found {
         let heading = if in_units { format!("  {:>12}", "place") } else { String::new() };
         writeln!(f, "{:<6}{heading}  {:>11}  {:>9}", "axis", "steps", "discarded")?;
         for AxisFound { axis, position, place, machine, discarded, homing, culprit } in &self.axes {
-            let machine = machine.map_or_else(String::new, |machine| format!("  homed: at {machine:.4} of the machine"));
+            let machine =
+                machine.map_or_else(String::new, |machine| format!("  homed: at {machine:.4} of the machine"));
             let place = place.map_or_else(String::new, |place| format!("  {place:>12.4}"));
             let discarded = discarded.map_or_else(|| "-".to_owned(), |count| count.to_string());
             let homing = if *homing { "  waits for its limit" } else { "" };

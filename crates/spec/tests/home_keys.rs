@@ -77,7 +77,11 @@ fn what_cannot_be_is_refused_where_it_stands() {
         ("slow_speed = 2,", "slow_speed = ^20.1,", "slow_speed is over seek_speed"),
         ("slow_speed = 2,", "slow_speed = ^1e-20,", "slow_speed is under 2^-64 step per tick"),
         ("slow_speed = 2,", "slow_speed = ^1e-3,", "at this speed the search takes up to 10000 s"),
-        ("move_off = 5", "move_off = ^0.1", "move_off is 8 steps: from seek_speed the axis runs 17 steps over its switch"),
+        (
+            "move_off = 5",
+            "move_off = ^0.1",
+            "move_off is 8 steps: from seek_speed the axis runs 17 steps over its switch",
+        ),
         ("move_off = 5", "move_off = ^-5", "must be over zero"),
         ("move_off = 5", "move_off = ^0.001", "move_off is less than half a step"),
         ("max_travel = 330", "max_travel = ^5", "max_travel is 400 steps: not over move_off, which is 400 steps"),

@@ -1,7 +1,7 @@
 //! What goes wrong between a host and a gateware, by its cause.
 
-use crate::command::ProgramError;
 use super::homing::HomingFault;
+use crate::command::ProgramError;
 use crate::facts::Refusal;
 use crate::registers::CAUSES;
 use crate::window::{Foreign, OutOfStep};
