@@ -2,13 +2,16 @@
 //! switch closes, twice the same, and never runs further over a closed switch than the ramp explains.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+#[path = "support/asked.rs"]
+mod asked;
 #[path = "support/axes.rs"]
 mod axes;
 #[path = "../../link/tests/support/random.rs"]
 #[allow(dead_code)]
 mod random;
 
-use axes::{Bench, Make, Start, homing_of, machine};
+use asked::homing_of;
+use axes::{Bench, Make, Start, machine};
 use carrystep_board::{Board, Gateware, VerilatedBoard};
 use carrystep_link::{AxisHoming, Homed, HomingFault, HostError, Stage, Wish};
 use carrystep_spec::Machine;

@@ -14,6 +14,7 @@ mod failure;
 mod figures;
 mod found;
 mod gateware;
+mod homing;
 mod interrupt;
 mod job;
 mod junit;

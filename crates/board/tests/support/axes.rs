@@ -2,7 +2,7 @@
 
 use super::random::Random;
 use carrystep_board::{Board, Edges, Gateware, Switches, VerilatedBoard};
-use carrystep_link::{AxisHoming, Clock, Exchanged, Homing, Host, Line, Patience, Timing, Wiring};
+use carrystep_link::{Clock, Exchanged, Host, Line, Patience, Timing};
 use carrystep_model::fast::Edge;
 use carrystep_spec::engine::Limits;
 use carrystep_spec::link::Uart;
@@ -19,43 +19,6 @@ pub fn read(text: &str) -> Result<Machine, InputError> {
 /// Reads a machine file that is right.
 pub fn machine(text: &str) -> Machine {
     read(text).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// What the command makes of a machine file.
-pub struct Owned {
-    homing: Homing<'static>,
-    groups: Vec<u8>,
-}
-
-impl Owned {
-    pub fn as_homing(&self) -> Homing<'_> {
-        Homing { groups: &self.groups, ..self.homing }
-    }
-}
-
-/// How a machine homes.
-pub fn homing_of(machine: &Machine) -> Owned {
-    let mut axes = [None; 8];
-    for (place, axis) in axes.iter_mut().zip(&machine.axes) {
-        *place = axis.home.map(|home| AxisHoming {
-            toward_max: home.toward == End::Max,
-            start: home.start,
-            accel: home.accel,
-            seek: home.seek,
-            slow: home.slow,
-            move_off: home.move_off,
-            max_travel: home.max_travel,
-            pull_off: home.pull_off,
-        });
-    }
-    let wiring = match machine.guard.limits {
-        Limits::Each => Wiring::Each,
-        Limits::One => Wiring::One,
-        Limits::Pair | Limits::None => Wiring::Pair,
-    };
-    let groups = machine.home_order.iter().map(|group| group.iter().fold(0, |mask, axis| mask | 1 << axis)).collect();
-    let (round, debounce) = (machine.guard.round, machine.guard.debounce);
-    Owned { homing: Homing { wiring, axes, groups: &[], others: 0, round, debounce }, groups }
 }
 
 /// A kind of board.

@@ -2,20 +2,24 @@
 //!
 //! Speeds and accelerations are rounded down to 2^-64 step per tick (and tick^2), distances to the nearest step.
 
-use super::{Axis, Machine, stop};
+use super::{Axis, stop};
 use crate::build::Timebase;
 use crate::decimal;
 use crate::engine::{Guard, Limits};
 use crate::error::{InputError, Source};
 use crate::number::{exact, positive};
-use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
+use bigdecimal::{BigDecimal, ToPrimitive};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use toml::Spanned;
 
 mod order;
+mod overrun;
+mod travel;
 
 pub(super) use order::RawOrder;
+pub use overrun::overrun;
+use overrun::{accepted, per_tick, steps_up};
 
 /// Most steps of a distance or of a machine coordinate: what a position register counts.
 const MOST_STEPS: i64 = i32::MAX as i64;
@@ -56,42 +60,6 @@ pub struct Home {
     pub position: i64,
 }
 
-/// How far an axis runs on, in steps, rounded up, from the place where its switch closes until it rests: the time that the
-/// guard takes to accept the level, then the ramp. `speed` is in 2^-64 step per tick, `stop` in 2^-64 step per tick^2.
-pub fn overrun(speed: u64, stop: u64, guard: &Guard) -> u64 {
-    let ramp = u128::from(speed) * u128::from(speed) / (2 * u128::from(stop.max(1)));
-    steps_up(ramp.saturating_add(accepted(speed, guard)))
-}
-
-impl Axis {
-    /// How far this axis has to move away from a switch, in steps, until that is open: `move_off` where the axis homes, else
-    /// what a limit stop at full speed runs over the switch.
-    pub fn move_off(&self, machine: &Machine) -> u32 {
-        let full = || overrun(per_tick(&self.speed_limit, &machine.timebase), self.stop, &machine.guard);
-        self.home.map_or_else(|| u32::try_from(full()).unwrap_or(u32::MAX), |home| home.move_off)
-    }
-}
-
-/// Steps/s in 2^-64 step per tick, rounded down.
-fn per_tick(speed: &BigDecimal, timebase: &Timebase) -> u64 {
-    let per_tick = speed * BigDecimal::from(timebase.tick_ns()) * BigDecimal::new(1.into(), 9);
-    let units = (per_tick * BigDecimal::from(1_u128 << 64)).with_scale_round(0, RoundingMode::Down);
-    // Speeds are under half a step per tick.
-    units.to_u64().unwrap_or(u64::MAX >> 1)
-}
-
-/// How far an axis of this speed goes while the guard accepts a level, 2^-64 step.
-fn accepted(speed: u64, guard: &Guard) -> u128 {
-    // The ramp begins a tick later, its first tick finds the direction, and a step is on the pin two ticks later.
-    let ticks = u128::from(guard.debounce) * u128::from(guard.round) + 4;
-    u128::from(speed) * ticks
-}
-
-/// Whole steps, rounded up.
-fn steps_up(units: u128) -> u64 {
-    u64::try_from(units.div_ceil(1 << 64)).unwrap_or(u64::MAX)
-}
-
 /// `home = { ... }` as the file has it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table, as in home = { toward = \"min\", seek_speed = 20 }")]
@@ -121,7 +89,7 @@ pub(super) fn check(
     order: Option<RawOrder>,
 ) -> Result<Vec<Vec<usize>>, InputError> {
     for (axis, RawPlace { travel, home }) in axes.iter_mut().zip(places) {
-        axis.travel = travel.map(|travel| travel_of(source, axis, travel)).transpose()?;
+        axis.travel = travel.map(|travel| travel::of(source, axis, travel)).transpose()?;
         let Some(home) = home else { continue };
         if guard.limits == Limits::None {
             let message =
@@ -137,30 +105,6 @@ pub(super) fn check(
         Some(order) => order::of(source, axes, order),
         None => Ok(order::usual(axes)),
     }
-}
-
-/// The lowest and the highest machine coordinate of an axis, steps.
-fn travel_of(source: &Source, axis: &Axis, travel: Spanned<Vec<Spanned<f64>>>) -> Result<[i64; 2], InputError> {
-    let span = travel.span();
-    let [low, high] = travel.as_ref().as_slice() else {
-        return Err(InputError::at(source, span, "travel has two numbers: the lowest and the highest coordinate")
-            .help("as in travel = [0, 300]"));
-    };
-    let coordinate = |value: &Spanned<f64>| -> Result<i64, InputError> {
-        let steps = exact(source, value, "travel")? * &axis.steps_per_unit;
-        decimal::round_half_away(&steps).filter(|steps| steps.abs() <= MOST_STEPS).ok_or_else(|| {
-            InputError::at(source, value.span(), format!("travel reaches over {MOST_STEPS} steps from zero"))
-        })
-    };
-    let (low, high) = (coordinate(low)?, coordinate(high)?);
-    if low >= high {
-        return Err(InputError::at(source, span, "travel ends where it begins, or before")
-            .help("the lowest coordinate comes first, as in travel = [0, 300]"));
-    }
-    if high - low > MOST_STEPS {
-        return Err(InputError::at(source, span, format!("travel is over {MOST_STEPS} steps long")));
-    }
-    Ok([low, high])
 }
 
 /// One home table on its way to integers.
