@@ -21,6 +21,11 @@ fn good() -> String {
         &format!("{GUARD}[[machine.axis]]\nstop_accel = 5e3"),
         1,
     );
+    // One axis in the words of its mechanics.
+    let screw = "lead = 8\nsteps_per_rev = 200\nmicrosteps = 16\nstart_speed_per_min = 0";
+    let machine = machine.replacen("steps_per_unit = 400", screw, 1);
+    let machine = machine.replacen("speed_limit = 30\n", "speed_limit_per_min = 1_800\n", 1);
+    assert!(machine.contains("lead = ") && machine.contains("speed_limit_per_min"));
     let lines = machine.lines().chain(moves.lines());
     lines.map(|line| line.split('#').next().unwrap_or("")).collect::<Vec<_>>().join("\n")
 }

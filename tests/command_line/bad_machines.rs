@@ -98,11 +98,7 @@ fn clocks_that_do_not_divide() {
         ("tick_ns = 1000", "tick_ns = ^0", "0 clocks per tick: between 16 and 65536 are needed"),
         ("tick_ns = 1000", "tick_ns = ^1_000_000_000", "48000000 clocks per tick: between 16 and 65536 are needed"),
         ("tick_ns = 1000", "tick_ns = ^333", "a tick of 333 ns is not a whole number of clocks at 48000000 Hz"),
-        (
-            "48_000_000\ntick_ns = 1000",
-            "^48_000_001",
-            "a tick of 1000 ns is not a whole number of clocks at 48000001 Hz",
-        ),
+        ("48_000_000\ntick_ns = 1000", "^48_000_001", "a clock of 48000001 Hz has no tick"),
         (
             "tick_ns = 1000\nphases = 16",
             "tick_ns = 500\nphases = ^16",

@@ -148,7 +148,7 @@ fn what_no_board_could_do_is_refused_before_the_port_is_opened() {
         folder.run("run bad.toml --port /dev/carrystep-none").refuses(says);
     };
     refused(&MOVE.replace("x = 2", "z = 2"), "the machine has no axis \"z\"");
-    refused(&MOVE.replace("to =", "time = 0.001\nto ="), "over speed_limit 5000; at least");
+    refused(&MOVE.replace("to =", "time = 0.001\nto ="), "over speed_limit 1000 units/s (5000 steps/s); at least");
     // A curve that is followed closely takes many segments.
     folder.write("slow.toml", format!("[machine.link]\nbaud = 1200\n{}", machine()));
     let wavy = MOVE.replace("machine.toml", "slow.toml").replace("ranade", "sine").replace("to =", "fit_ns = 1\nto =");

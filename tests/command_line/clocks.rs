@@ -49,7 +49,7 @@ fn at_the_default_clock_the_tick_stays_as_it_was_and_nothing_is_said() {
 #[test]
 fn a_tick_that_does_not_fit_is_refused_with_the_nearest_that_do() {
     let (text, says) = (at(25).replace("phases", "tick_ns = 1000\nphases"), "640 ns and 1280 ns are the nearest ticks");
-    Folder::with_move(text).run("plan move.toml").refuses_at("move.toml", (3, 11), says);
+    Folder::with_move(text).run("plan move.toml").refuses_at("move.toml", (4, 10), says);
 }
 
 /// A build without any tool on the path: what is refused is refused before one is looked for.
@@ -61,7 +61,11 @@ fn build(folder: &Folder, arguments: &str) -> crate::command::Ran {
 #[test]
 fn a_clock_that_a_board_does_not_reach_is_refused_at_once_and_the_board_s_own_is_named() {
     let folder = Folder::new();
-    let machine = at(48).split("[[move]]").next().unwrap().to_owned();
+    let machine = at(48).split("[[move]]").next().unwrap().replacen(
+        "[[machine",
+        "[machine.guard]\nlimits = \"each\"\n[[machine",
+        1,
+    );
     folder.write("machine.toml", &machine);
     let ran = build(&folder, "--board icebreaker --machine machine.toml --out out");
     ran.refuses("machine.toml: icebreaker: nextpnr reaches 38.9 MHz with the shipped gateware, far less than the machine's 48 MHz");

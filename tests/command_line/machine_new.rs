@@ -32,7 +32,7 @@ fn what_is_written_plans_and_passes_for_many_sets_of_options() {
         (
             format!("--board icestick --limits one --axis x,{BELT} --axis z,unit=mm,steps_per_unit=400,speed_limit_per_min=900,accel_limit=500,driver=drv8825"),
             &["x", "z"],
-            &["speed_limit_per_min = 900         # mm/min", "limits = \"one\""],
+            &["speed_limit_per_min = 900    # mm/min", "limits = \"one\""],
         ),
         (
             format!("--clock-hz 27000000 --limits none --axis x,{BELT} --axis y,{BELT} --axis a,unit=deg,lead=360,steps_per_rev=200,microsteps=8,start_speed=20,speed_limit=720,accel_limit=4000,jerk_limit=9e5,driver=dm542"),
@@ -87,7 +87,7 @@ fn without_a_terminal_all_that_is_missing_is_named_and_nothing_is_written() {
         ran.refuses(says);
     }
     assert!(!ran.stderr.contains("speed_limit_per_min"), "{}", ran.stderr);
-    new(&folder, "").refuses("--axis NAME,KEY=VALUE,... for each axis");
+    folder.run("machine new m.toml").refuses("--axis NAME,KEY=VALUE,... for each axis");
     let whole = "--clock-hz 50000000 --limits none --axis";
     for (axis, says) in [
         (format!("x,{BELT},colour=red"), "an axis has no key \"colour\"; its keys are unit, "),
@@ -160,17 +160,4 @@ fn on_a_terminal_it_asks_and_asks_again_where_an_answer_cannot_be() {
         assert!(text.contains(line), "{line} is not in:\n{text}");
     }
     moves(&folder, &["x", "z"]);
-}
-
-#[cfg(unix)]
-#[test]
-fn answers_that_end_too_early_write_nothing() {
-    let folder = Folder::new();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
-    command.args(["machine", "new", "m.toml"]).current_dir(folder.path(""));
-    let mut screen = crate::terminal::Screen::start(&mut command);
-    screen.waits_for("in MHz [48]: ");
-    screen.hangs_up();
-    assert!(!screen.ends().success());
-    assert!(folder.files().is_empty());
 }

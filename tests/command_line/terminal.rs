@@ -12,7 +12,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A terminal with a command on it: all three of its streams.
 pub struct Screen {
-    ours: Option<TTYPort>,
+    ours: TTYPort,
     child: Child,
     seen: String,
     looked_at: usize,
@@ -27,13 +27,13 @@ impl Screen {
         let open = || File::options().read(true).write(true).open(&name).unwrap();
         let child = command.stdin(open()).stdout(open()).stderr(open()).env("TERM", "xterm").spawn().unwrap();
         drop(theirs);
-        Self { ours: Some(ours), child, seen: String::new(), looked_at: 0 }
+        Self { ours, child, seen: String::new(), looked_at: 0 }
     }
 
     /// Reads what is there; false where nothing came.
     fn look(&mut self) -> bool {
         let mut bytes = [0; 4096];
-        let come = self.ours.as_mut().map_or(0, |ours| ours.read(&mut bytes).unwrap_or(0));
+        let come = self.ours.read(&mut bytes).unwrap_or(0);
         self.seen.push_str(&String::from_utf8_lossy(&bytes[..come]));
         come > 0
     }
@@ -55,12 +55,7 @@ impl Screen {
     }
 
     pub fn types(&mut self, text: &str) {
-        self.ours.as_mut().unwrap().write_all(text.as_bytes()).unwrap();
-    }
-
-    /// Closes the terminal under the command.
-    pub fn hangs_up(&mut self) {
-        self.ours = None;
+        self.ours.write_all(text.as_bytes()).unwrap();
     }
 
     /// Waits for the command's end, and reads what it shows until then.
@@ -69,9 +64,6 @@ impl Screen {
         loop {
             let ended = self.child.try_wait().unwrap();
             let more = self.look();
-            if self.ours.is_none() {
-                std::thread::sleep(Duration::from_millis(5));
-            }
             match ended {
                 Some(status) if !more => return status,
                 _ => assert!(begun.elapsed() < PATIENCE, "it does not end, seen:\n{}", self.seen),

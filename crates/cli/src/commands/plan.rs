@@ -99,7 +99,7 @@ fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
         let timebase = &plan.build.timebase;
         let cells = rows.clone().map(|((planned, Axis { name, unit, .. }), _)| {
             [
-                format!("  {name}"),
+                name.clone(),
                 planned.steps.to_string(),
                 unit.own(planned.steps as f64, 0),
                 planned.shape.to_owned(),
@@ -108,14 +108,14 @@ fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
                 unit.own(planned.peaks.steps_per_s2(timebase), 2),
             ]
         });
-        let head = ["  axis", "steps", "distance", "shape", "segments", "speed", "acceleration"];
+        let head = ["axis", "steps", "distance", "shape", "seg.", "speed", "acceleration"];
         let _ = table::columns(&mut text, head, cells, |column| column == 0 || column == 3);
         for ((planned, axis), rounding) in rows {
             text.push_str(&rounded(axis, *rounding));
             for (index, Segment { ticks, v, a, j, last }) in planned.segments.iter().filter(|_| segments).enumerate() {
                 let name = if index == 0 { axis.name.as_str() } else { "" };
                 let mark = if *last { "  last" } else { "" };
-                let _ = writeln!(text, "  {name:<4} {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}");
+                let _ = writeln!(text, "{name:<4}  {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}");
             }
         }
     }
@@ -131,7 +131,7 @@ fn rounded(axis: &Axis, rounding: f64) -> String {
     }
     let Axis { name, unit, .. } = axis;
     let own = if unit.is_step() { String::new() } else { format!(", {}", unit.own(-rounding, 0)) };
-    format!("  {name} is rounded by {:+.4} steps{own}\n", -rounding)
+    format!("{name} is rounded by {:+.4} steps{own}\n", -rounding)
 }
 
 fn heading(number: usize, planned: &PlannedMove, profile: &str) -> String {
