@@ -8,7 +8,7 @@ use carrystep_link::registers::{
     AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, DISCARDED, HOME, IDENTITY, LATCHED, P_HIGH, P_LOW, POSITION, SEGMENT,
     START, WATCHDOG_TICKS, WRITE,
 };
-use carrystep_link::{Answer, frame};
+use carrystep_link::{Answer, Patience, frame};
 use carrystep_spec::engine::Cause;
 use carrystep_spec::link::{END, Uart};
 use support::link::device::on_the_line;
@@ -213,6 +213,22 @@ fn refusals_feed<B: Kind>() {
     }
     talk.rest(UNDER);
     assert!(!talk.read(POSITION).fault);
+}
+
+/// The page's figures of time are those of our client.
+#[test]
+fn time_outs_are_those_of_the_page() {
+    let page = include_str!("../../../docs/protocol.md");
+    let Patience { timing, silence, change, look } = Patience::default();
+    for row in [
+        format!("| no progress, send again from `next` on | after {} ms |", timing.resend),
+        format!("| busy, try again | after {} ms |", timing.pause),
+        format!("| no answer at all, give up | after {silence} ms |"),
+        format!("| power, a stop by ramps, a clear | {change} ms at most |"),
+        format!("| a look at the machine while there is nothing to send | every {look} ms |"),
+    ] {
+        assert!(page.contains(&row), "{row}");
+    }
 }
 
 fn all<B: Kind>() {

@@ -144,7 +144,7 @@ impl Reader<'_> {
         let wires = self.wires(raw.pins, raw.onboard, &raw.connectors)?;
         let gate = raw.gate.map(|gate| self.gate(gate, &wires)).transpose()?;
         let (shared, configuration_sources) =
-            self.configuration(&raw.package, &raw.configured, raw.exception, &raw.part, &parts)?;
+            self.configuration(&raw.package, &raw.configured, &raw.exception, &raw.part, &parts)?;
         let mut board = Board {
             name: raw.name.into_inner(),
             title: raw.title,

@@ -65,7 +65,7 @@ impl Reader<'_> {
         &self,
         own: &[Package],
         configured: &Spanned<Vec<Mode>>,
-        exceptions: Vec<Exception>,
+        exceptions: &[Exception],
         written: &[Spanned<RawPart>],
         parts: &[Part],
     ) -> Result<(Vec<Shared>, Vec<String>), InputError> {
