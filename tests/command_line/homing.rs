@@ -13,7 +13,7 @@ const MACHINE: &str = r#"[machine]
 tick_ns = 2000
 
 [machine.guard]
-watchdog_ms = 4000
+watchdog_ms = 100
 debounce_us = 100
 limits = "pair"
 
@@ -58,6 +58,11 @@ fn folder(limits: &str) -> Folder {
     let folder = Folder::new();
     folder.write("machine.toml", MACHINE.replace("\"pair\"", &format!("\"{limits}\"")));
     folder
+}
+
+/// The machine for a board that runs by the clock on the wall, whose host may be held up; y searches far.
+fn patient(max_travel: &str) -> String {
+    MACHINE.replace("watchdog_ms = 100", "watchdog_ms = 4000").replace("max_travel = 30, ", max_travel)
 }
 
 /// A command on the board of the machine.
@@ -119,7 +124,7 @@ fn it_ends_as_soon_as_the_axes_rest() {
     let _alone = alone();
     let folder = folder("pair");
     // By the clock on the wall: the search may take 1000 steps at 2500 steps/s, and the switch is near.
-    folder.write("machine.toml", MACHINE.replace("max_travel = 30, ", "max_travel = 3000, "));
+    folder.write("machine.toml", patient("max_travel = 3000, "));
     let board = Board::new(&folder, "--min y=-100");
     let told = home(&folder, &board, "y ");
     let seconds = told["run_s"].as_f64().unwrap();
@@ -247,7 +252,7 @@ fn homing_that_is_interrupted_comes_to_rest_and_can_begin_again() {
     let _alone = alone();
     let folder = folder("pair");
     // By the clock on the wall, and far away.
-    folder.write("machine.toml", MACHINE.replace("max_travel = 30, ", "max_travel = 30000, "));
+    folder.write("machine.toml", patient("max_travel = 30000, "));
     let mut board = Board::new(&folder, "");
     let begin = || {
         let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
