@@ -5,6 +5,7 @@ use crate::command::{Folder, Ran, edit};
 use crate::virtual_boards::{Board, passed};
 use serde_json::Value;
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// Three axes; x and y home together behind z, which homes toward its high end.
@@ -12,7 +13,7 @@ const MACHINE: &str = r#"[machine]
 tick_ns = 2000
 
 [machine.guard]
-watchdog_ms = 4000
+watchdog_ms = 100
 debounce_us = 100
 limits = "pair"
 
@@ -46,10 +47,22 @@ travel = [-10, 0]
 home = { toward = "max", seek_speed = 20, slow_speed = 2, move_off = 2, pull_off = 0.5, position = 0 }
 "#;
 
+/// One board at a time: a host that gets no answer for half a second gives its board up, and boards take all they can get.
+static ONE: Mutex<()> = Mutex::new(());
+
+fn alone() -> MutexGuard<'static, ()> {
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 fn folder(limits: &str) -> Folder {
     let folder = Folder::new();
     folder.write("machine.toml", MACHINE.replace("\"pair\"", &format!("\"{limits}\"")));
     folder
+}
+
+/// The machine for a board that runs by the clock on the wall, whose host may be held up; y searches far.
+fn patient(max_travel: &str) -> String {
+    MACHINE.replace("watchdog_ms = 100", "watchdog_ms = 4000").replace("max_travel = 30, ", max_travel)
 }
 
 /// A command on the board of the machine.
@@ -77,6 +90,7 @@ fn coordinates(folder: &Folder, board: &Board) -> Vec<Option<f64>> {
 
 #[test]
 fn it_homes_twice_to_the_same_place_in_each_wiring_wherever_it_starts() {
+    let _alone = alone();
     // x starts off its switch, y and z on theirs.
     for limits in ["pair", "each", "one"] {
         let folder = folder(limits);
@@ -107,9 +121,10 @@ fn it_homes_twice_to_the_same_place_in_each_wiring_wherever_it_starts() {
 
 #[test]
 fn it_ends_as_soon_as_the_axes_rest() {
+    let _alone = alone();
     let folder = folder("pair");
     // By the clock on the wall: the search may take 1000 steps at 2500 steps/s, and the switch is near.
-    folder.write("machine.toml", MACHINE.replace("max_travel = 30, ", "max_travel = 3000, "));
+    folder.write("machine.toml", patient("max_travel = 3000, "));
     let board = Board::new(&folder, "--min y=-100");
     let told = home(&folder, &board, "y ");
     let seconds = told["run_s"].as_f64().unwrap();
@@ -119,6 +134,7 @@ fn it_ends_as_soon_as_the_axes_rest() {
 
 #[test]
 fn what_is_remembered_is_dropped_when_the_board_is_another_or_was_moved() {
+    let _alone = alone();
     let folder = folder("each");
     let switches = "--fast --min x=-100 --min y=-100 --max z=100";
     let board = Board::new(&folder, switches);
@@ -160,6 +176,7 @@ fn what_is_remembered_is_dropped_when_the_board_is_another_or_was_moved() {
 
 #[test]
 fn a_board_that_was_restarted_is_not_homed() {
+    let _alone = alone();
     let folder = folder("pair");
     // Homed at register 0, as a board stands that was just restarted: 50 steps back to the switch, and off again.
     folder.write("machine.toml", MACHINE.replace("pull_off = 1,", "pull_off = 1.02,"));
@@ -180,6 +197,7 @@ fn a_board_that_was_restarted_is_not_homed() {
 
 #[test]
 fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
+    let _alone = alone();
     for limits in ["each", "pair"] {
         let folder = folder(limits);
         let board = Board::new(&folder, "--fast --min y=-100");
@@ -216,6 +234,7 @@ fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
 
 #[test]
 fn homing_that_finds_nothing_says_what_and_how_far() {
+    let _alone = alone();
     let folder = folder("each");
     let board = Board::new(&folder, "--fast --max z=100");
     let ran = on(&folder, &board, "home");
@@ -230,9 +249,10 @@ fn homing_that_finds_nothing_says_what_and_how_far() {
 #[cfg(unix)]
 #[test]
 fn homing_that_is_interrupted_comes_to_rest_and_can_begin_again() {
+    let _alone = alone();
     let folder = folder("pair");
     // By the clock on the wall, and far away.
-    folder.write("machine.toml", MACHINE.replace("max_travel = 30, ", "max_travel = 30000, "));
+    folder.write("machine.toml", patient("max_travel = 30000, "));
     let mut board = Board::new(&folder, "");
     let begin = || {
         let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
@@ -271,6 +291,7 @@ fn homing_that_is_interrupted_comes_to_rest_and_can_begin_again() {
 
 #[test]
 fn what_cannot_home_is_refused_before_anything_moves() {
+    let _alone = alone();
     let folder = folder("pair");
     let board = Board::new(&folder, "--fast");
     on(&folder, &board, "home w").refuses("no axis is called 'w': the axes are x, y, z");

@@ -12,7 +12,7 @@ mod random;
 
 use asked::homing_of;
 use axes::{Bench, Make, Start, machine};
-use carrystep_board::{Board, Gateware, VerilatedBoard};
+use carrystep_board::{Board, VerilatedBoard};
 use carrystep_link::{AxisHoming, Homed, HomingFault, HostError, Stage, Wish};
 use carrystep_spec::Machine;
 use carrystep_spec::engine::Cause;
