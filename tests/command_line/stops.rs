@@ -321,6 +321,8 @@ fn a_stop_from_a_second_terminal_is_on_the_wire_within_100_ms() {
     for _ in 0..5 {
         let mut child = drives(&folder, "run long.toml", &spy.port);
         moving(&folder, &mut child, &spy.port);
+        // A stop whose answer was late was sent again.
+        while spy.stops.try_recv().is_ok() {}
         let asked = Instant::now();
         passed(&stop(&folder, &spy.port, ""));
         took.push(spy.stops.recv_timeout(Duration::from_secs(10)).unwrap() - asked);

@@ -344,9 +344,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             seen(&answer);
         }
         let silence = now.wrapping_sub(self.heard);
-        match (self.session.waiting() && silence > self.patience.silence, self.noise) {
+        let known = self.session.axes() > 0;
+        let patience = if known { self.patience.lost } else { self.patience.silence };
+        match (self.session.waiting() && silence > patience, self.noise) {
             (false, _) => Ok(()),
-            (true, bytes) if self.session.axes() > 0 => Err(HostError::Lost { ms: silence, bytes }),
+            (true, bytes) if known => Err(HostError::Lost { ms: silence, bytes }),
             (true, 0) => Err(HostError::Silence { ms: silence }),
             (true, bytes) => Err(HostError::Noise { bytes }),
         }
