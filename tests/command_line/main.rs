@@ -19,6 +19,8 @@ mod interrupts;
 mod json_names;
 mod profile;
 #[cfg(unix)]
+mod stop_on_the_wire;
+#[cfg(unix)]
 mod stops;
 mod sweeps;
 mod table;
