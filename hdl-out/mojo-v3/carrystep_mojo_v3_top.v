@@ -8,6 +8,7 @@ module carrystep_mojo_v3_top (
     input wire oscillator,
     input wire uart_rx,
     output wire uart_tx,
+    input wire cclk,
     input wire estop,
     input wire [5:0] limit_min,
     output wire led,
@@ -56,6 +57,7 @@ module carrystep_mojo_v3_top (
     wire [5:0] culprits;
     wire [5:0] homing;
 
+    wire uart_tx_out;
     carrystep_uart line (
         .received_valid(received_valid),
         .received(received),
@@ -63,9 +65,22 @@ module carrystep_mojo_v3_top (
         .answer(answer),
         .answer_take(answer_take),
         .rx(uart_rx),
-        .tx(uart_tx),
+        .tx(uart_tx_out),
         .clock(clock)
     );
+
+    // cclk: the AVR configures the FPGA over these lines: nothing drives them before it says that it is done.
+    // cclk has been 1 for 32768 clocks before the lines to the host are driven, and they have high
+    // impedance again as soon as it is 0.
+    reg [1:0] cclk_seen = 2'd0;
+    reg [15:0] cclk_waited = 16'd0;
+    always @(posedge clock) begin
+        cclk_seen <= {cclk_seen[0], cclk};
+        if (!cclk_seen[1]) cclk_waited <= 16'd0;
+        else if (!cclk_waited[15]) cclk_waited <= cclk_waited + 1'b1;
+    end
+    wire driven = cclk_waited[15];
+    assign uart_tx = driven ? uart_tx_out : 1'bz;
 
     carrystep_link link (
         .received_valid(received_valid),

@@ -102,6 +102,11 @@ impl Board {
         self.wire.unsaid()
     }
 
+    /// Bytes are on the line, either way, or an answer is being made.
+    pub fn talks(&self) -> bool {
+        self.wire.unsaid() > 0 || self.wire.is_hearing() || self.link.quiet(true) != u64::MAX
+    }
+
     /// The next byte from it.
     pub fn next_byte(&mut self) -> Option<u8> {
         self.wire.next_byte()

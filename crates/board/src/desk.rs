@@ -57,7 +57,7 @@ impl<B: Gateware> Desk<B> {
             }
             bytes.into_iter().for_each(|byte| self.board.say(byte));
         }
-        let target = self.pace.target(self.board.cycle(), self.board.to_go());
+        let target = self.pace.target(self.board.cycle(), self.board.alone());
         self.board.run(target.min(self.board.cycle() + self.clock_hz / LOOKS_PER_SECOND), to)?;
         let heard: Vec<u8> = std::iter::from_fn(|| self.board.next_byte()).collect();
         if !heard.is_empty() {

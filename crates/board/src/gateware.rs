@@ -5,6 +5,12 @@ use carrystep_levels::LevelError;
 use carrystep_model::fast::Edges;
 use carrystep_spec::engine::Cause;
 
+/// A board that waits for its host keeps so many segments waiting for each axis in the middle of a move.
+pub const KEPT: usize = 3;
+
+/// Clocks for which a board that waits for its host goes on at once while bytes are on the line.
+const TALK: u64 = 1000;
+
 /// A board, of models or of Verilog.
 pub trait Gateware {
     /// The cycle it is in.
@@ -25,8 +31,9 @@ pub trait Gateware {
     /// Steps that were discarded, where that can be told.
     fn discarded(&self, axis: usize) -> Option<u32>;
 
-    /// Clocks until the first queue ends, where that can be told.
-    fn to_go(&self) -> Option<u64>;
+    /// Clocks for which it may go on without its host, so that no queue becomes shorter than [`KEPT`]; `None` where no axis
+    /// needs its host, or where that cannot be told.
+    fn alone(&self) -> Option<u64>;
 
     /// The cycles in which starts have loaded their first segments.
     fn loads(&self) -> &[u64];
@@ -80,9 +87,11 @@ impl Gateware for Board {
         Some(self.engine().core().shaper(axis).discarded)
     }
 
-    fn to_go(&self) -> Option<u64> {
+    fn alone(&self) -> Option<u64> {
         let core = self.engine().core();
-        core.ticks_to_go().map(|ticks| ticks * u64::from(core.build().timebase.clocks_per_tick()))
+        let per_tick = u64::from(core.build().timebase.clocks_per_tick());
+        let clocks = core.ticks_without_host(KEPT)?.saturating_mul(per_tick);
+        Some(if self.talks() { clocks.max(TALK) } else { clocks })
     }
 
     fn loads(&self) -> &[u64] {

@@ -24,7 +24,7 @@ pub use board::{Board, Switches};
 pub use carrystep_model::fast::Edges;
 #[cfg(unix)]
 pub use desk::{Desk, DeskError};
-pub use gateware::Gateware;
+pub use gateware::{Gateware, KEPT};
 pub use line::{Ear, Speaker};
 pub use pace::{Pace, Walk};
 #[cfg(unix)]

@@ -129,6 +129,11 @@ impl Ear {
         self.heard.pop_front()
     }
 
+    /// A byte has begun and is not over.
+    pub fn is_hearing(&self) -> bool {
+        self.byte.is_some()
+    }
+
     /// The line is at rest, and everything was taken.
     pub fn is_idle(&self) -> bool {
         self.byte.is_none() && self.heard.is_empty()

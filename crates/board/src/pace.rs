@@ -5,9 +5,6 @@ use std::time::{Duration, Instant};
 /// A board that was held up does not hurry for longer than this: its host was held up too.
 const BEHIND: Duration = Duration::from_millis(20);
 
-/// For so long a board goes on in any case: what was heard takes its time on the line.
-const BITE: Duration = Duration::from_micros(500);
-
 /// So long without a byte, and the host is no more: a board that waits for its host goes on.
 const GONE: Duration = Duration::from_secs(1);
 
@@ -16,8 +13,9 @@ const GONE: Duration = Duration::from_secs(1);
 pub enum Pace {
     /// By the clock on the wall.
     Real(Walk),
-    /// As fast as it can, but never further than `ahead` clocks past the last byte from the host, nor half of the way to
-    /// where it is needed: a host that is held up is not taken for dead, and not late.
+    /// As fast as it can, but never further than `ahead` clocks past the last byte from the host, nor further than its
+    /// queues allow ([`crate::Gateware::alone`]): a host that is held up is not taken for dead, and its own delays make no
+    /// segment late.
     Fast {
         /// Clocks.
         ahead: u64,
@@ -75,17 +73,17 @@ impl Pace {
         }
     }
 
-    /// The cycle to go to now, from this one; the board needs its host in so many clocks, where it does.
-    pub fn target(&mut self, cycle: u64, to_go: Option<u64>) -> u64 {
+    /// The cycle to go to now, from this one; the board may go on without its host for `alone` clocks.
+    pub fn target(&mut self, cycle: u64, alone: Option<u64>) -> u64 {
         match self {
             Self::Real(walk) => walk.target(cycle),
-            Self::Fast { ahead, heard, alone } => match *heard {
+            Self::Fast { ahead, heard, alone: walk } => match *heard {
                 Some((when, at)) if when.elapsed() < GONE => {
-                    *alone = Walk::new(alone.clock_hz, cycle);
-                    let half = to_go.map_or(u64::MAX, |clocks| clocks.saturating_add(cycle - at) / 2);
-                    (at + (*ahead).min(half).max(alone.clocks(BITE))).max(cycle)
+                    *walk = Walk::new(walk.clock_hz, cycle);
+                    let reach = alone.map_or(u64::MAX, |clocks| cycle.saturating_add(clocks));
+                    (at + *ahead).min(reach).max(cycle)
                 }
-                _ => alone.target(cycle),
+                _ => walk.target(cycle),
             },
         }
     }

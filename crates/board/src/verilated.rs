@@ -122,7 +122,7 @@ impl Gateware for VerilatedBoard {
     }
 
     /// Nor this.
-    fn to_go(&self) -> Option<u64> {
+    fn alone(&self) -> Option<u64> {
         None
     }
 

@@ -58,6 +58,14 @@ impl Wire {
         }
     }
 
+    /// The host is in the middle of a byte from the board.
+    pub(crate) fn is_hearing(&self) -> bool {
+        match self {
+            Self::Uart(_, ear) => ear.is_hearing(),
+            Self::Spi(_) => false,
+        }
+    }
+
     /// What is driven in a clock, which is never before the last one that was asked about.
     pub(crate) fn drive(&mut self, cycle: u64) -> Driven {
         match self {

@@ -33,7 +33,7 @@ pub struct Design<'a> {
     /// Its Verilog, file names in the folder of the script.
     pub sources: &'a [&'a str],
     /// Its ports, bit by bit, of those in [`PORTS`]: `uart_rx`, `step[0]`. Each top level also has the port
-    /// [`OSCILLATOR`] and those of the board's ties.
+    /// [`OSCILLATOR`] and those of the board's ties and of its gate.
     pub ports: &'a [String],
 }
 
@@ -127,6 +127,7 @@ impl Design<'_> {
             sources => sources.iter().map(|&source| Value::from(source)).collect::<Vec<_>>(),
             pins,
             ties => ties(board),
+            gate => gate(board, clock_hz),
             notes => &board.notes,
             toolchain => match board.family.toolchain() {
                 Toolchain::Open => "open",
@@ -193,6 +194,15 @@ fn kind(wire: &Wire) -> Option<&'static Port> {
 fn ties(board: &Board) -> Vec<Value> {
     let row = |tie: &Tie| context! { port => &tie.port, pin => &tie.pin, level => tie.level, why => &tie.why };
     board.ties.iter().map(row).collect()
+}
+
+/// The gate, as templates see it; none where there is none.
+fn gate(board: &Board, clock_hz: u64) -> Option<Value> {
+    board.gate.as_ref().map(|gate| {
+        let bits = gate.counter_bits(clock_hz);
+        let clocks = 1_u64 << (bits - 1);
+        context! { port => &gate.port, pin => &gate.pin, why => &gate.why, bits, clocks }
+    })
 }
 
 /// A period in ns, rounded down to ps: no slower clock is promised.

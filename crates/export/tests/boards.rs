@@ -31,6 +31,7 @@ fn top(board: &Board) -> String {
     list.extend(inputs.iter().map(|(name, per_axis, bits)| format!("input wire {}{name}", range(*per_axis, *bits))));
     list.extend(outputs.iter().map(|(name, per_axis, bits)| format!("output wire {}{name}", range(*per_axis, *bits))));
     list.extend(board.ties.iter().map(|tie| format!("output wire {}", tie.port)));
+    list.extend(board.gate.iter().map(|gate| format!("input wire {}", gate.port)));
     let all: Vec<String> = inputs.iter().map(|(name, ..)| format!("^{name}")).collect();
     let mut body = format!(
         "wire clock; carrystep_clock made (.oscillator({OSCILLATOR}), .clock(clock));\n\

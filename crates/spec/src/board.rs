@@ -8,12 +8,14 @@ use serde::Serialize;
 use std::path::Path;
 use std::sync::LazyLock;
 
+mod configuration;
 mod error;
 mod family;
 mod measured;
 mod port;
 mod raw;
 
+pub use configuration::{Gate, Mode, Shared};
 pub use error::BoardError;
 pub use family::{Family, IoStandard, PllInput, Toolchain};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
@@ -67,6 +69,15 @@ pub struct Board {
     pub wires: Vec<Wire>,
     /// Pins that must be driven although the gateware has no use for them.
     pub ties: Vec<Tie>,
+    /// Modes in which its bitstream may be loaded, besides JTAG.
+    pub configured: Vec<Mode>,
+    /// Its ports that are on configuration pins, and why they may be.
+    pub shared: Vec<Shared>,
+    /// What the tables of configuration pins were made from.
+    pub configuration_sources: Vec<String>,
+    /// The input that says from when on some of its lines may be driven.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gate: Option<Gate>,
     /// Its LED lights where the pin is low.
     pub led_low: bool,
     /// Greatest baud rate of its serial chip, where that is under the fastest of [`BAUDS`].

@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_spec::board::{Board, Family, OSCILLATOR, PORTS, board, boards};
+use carrystep_spec::board::{Board, Family, Mode, OSCILLATOR, PORTS, board, boards};
 use carrystep_spec::engine::Limits;
 use carrystep_spec::{InputError, Source};
 
 const ICESTICK: &str = include_str!("../data/boards/icestick.toml");
+const MOJO: &str = include_str!("../data/boards/mojo-v3.toml");
 const PAPILIO_PRO: &str = include_str!("../data/boards/papilio-pro.toml");
 
 fn read(text: &str) -> Result<Board, InputError> {
@@ -50,6 +51,47 @@ fn no_pin_is_used_twice_and_every_wire_is_a_port_s() {
     }
 }
 
+/// On a pin that configuration uses in a mode of the board there is a port with a reason, or none; no STEP, DIR or ENABLE is on
+/// one that has a function in every mode.
+#[test]
+fn ports_on_configuration_pins_are_listed_with_the_reason() {
+    let mut listed = 0;
+    for board in boards() {
+        for shared in &board.shared {
+            listed += 1;
+            let now = shared.modes.iter().any(|mode| *mode == Mode::Any || board.configured.contains(mode));
+            assert!(!now || shared.why.is_some(), "{}: {shared:?}", board.name);
+            let motion = ["step", "dir", "enable_n"].iter().any(|name| shared.port.starts_with(name));
+            assert!(!(now && motion), "{}: {shared:?}", board.name);
+        }
+    }
+    assert!(listed > 20, "{listed}");
+    let on = |name, port| board(name).unwrap().shared.iter().find(|shared| shared.port == port);
+    assert_eq!(
+        on("mojo-v3", "uart_tx").map(|shared| (shared.function.as_str(), shared.why.is_some())),
+        Some(("D10", false))
+    );
+    assert_eq!(
+        on("mojo-v3", "spi_miso").map(|shared| (shared.function.as_str(), shared.why.is_some())),
+        Some(("D4", true))
+    );
+    assert_eq!(on("papilio-one", "step[2]"), None);
+    assert_eq!(on("icestick", "uart_tx"), None);
+}
+
+/// A package that carrystep has no table of: the board's own file brings one.
+#[test]
+fn a_board_s_file_may_bring_the_table_of_its_package() {
+    let own = ICESTICK.replace("package = \"tq144\"", "package = \"own\"");
+    assert!(read(&own).unwrap_err().message.contains("the configuration pins of hx1k in own are not known"));
+    let table =
+        "\n[[package]]\nname = \"own\"\nparts = [\"hx1k\"]\nsources = [\"data sheet\"]\n[package.spi]\n71 = \"SS\"\n";
+    let with_table = read(&(own.clone() + table)).unwrap();
+    assert_eq!(with_table.configuration_sources, ["data sheet"]);
+    let refused = read(&(own + &table.replace("71", "8"))).unwrap_err();
+    assert!(refused.message.contains("uart_tx is on 8, which is SS in configuration (SPI)"), "{refused}");
+}
+
 /// Each row: what stands there, what is written instead, the words of the refusal, and the text at its place.
 #[test]
 fn a_mistake_is_refused_where_it_stands() {
@@ -89,6 +131,24 @@ fn a_mistake_is_refused_where_it_stands() {
         ),
         (PAPILIO_PRO, "vccaux = \"3.3\"\n", "", "a Spartan-6 needs `vccaux`", "\"spartan6\""),
         (PAPILIO_PRO, "\nspeed = 2", "", "a Spartan needs a `speed` grade", "[[part]]"),
+        (
+            PAPILIO_PRO,
+            "step = [\"C4\"",
+            "step = [\"A7\"",
+            "step[0] is on P75, which is AWAKE in configuration (every mode)",
+            "\"A7\"",
+        ),
+        (PAPILIO_PRO, "\"C5\"", "\"B10\"", "step[1] is on P62, which is MISO2/D1 in configuration (SPI)", "\"B10\""),
+        (PAPILIO_PRO, "enable_n = \"C10\"", "enable_n = \"B8\"", "enable_n is on P74, which is DOUT/BUSY", "\"B8\""),
+        (PAPILIO_PRO, "configured = [\"spi\"]", "configured = []", "the modes in which the board is configured", "[]"),
+        (PAPILIO_PRO, "tqg144", "csg324", "the configuration pins of xc6slx9 in csg324 are not known", "[[part]]"),
+        (MOJO, "\"P9\", \"P142\"", "\"P144\", \"P142\"", "step[0] is on P144, which is HSWAPEN", "\"P144\", \"P142\""),
+        (MOJO, "pins = [\"P55\"]", "pins = [\"P55\", \"P8\"]", "no port is on the configuration pin P8", "\"P8\"]"),
+        (MOJO, "pins = [\"P43\", ", "pins = [", "spi_sck is on P43, which is D6 in configuration", "\"P43\""),
+        (MOJO, "holds = [\"uart_tx\", ", "holds = [", "the gate does not hold uart_tx", "\"P70\""),
+        (MOJO, "\"spi_miso\"]", "\"spi_miso\", \"led\"]", "a gate can hold uart_tx and spi_miso, not 'led'", "\"led\""),
+        (MOJO, "port = \"cclk\"", "port = \"estop\"", "the gate needs a port of its own", "\"estop\""),
+        (MOJO, "pin = \"P70\"", "pin = \"P59\"", "pin P59 is taken: uart_tx", "\"P59\""),
         (PAPILIO_PRO, "led = \"P112\"", "led = \"P144\"", "pin P144 is taken: reserved: tied", "\"P144\""),
     ];
     for (text, old, new, says, place) in rows {

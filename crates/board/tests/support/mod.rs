@@ -294,3 +294,19 @@ pub fn waves(random: &mut Random, segments: u32, ticks: u32) -> Vec<Command> {
     let start = Command::Start { mask: 0b11_1111 };
     first.iter().map(of).chain([start]).chain(rest.iter().map(of)).collect()
 }
+
+/// A frame without its escapes.
+pub fn unescaped(line: &[u8]) -> Vec<u8> {
+    let mut bytes = line.iter();
+    let mut frame = Vec::new();
+    while let Some(&byte) = bytes.next() {
+        frame.push(if byte != 0xdb {
+            byte
+        } else if bytes.next() == Some(&0xdc) {
+            0xc0
+        } else {
+            0xdb
+        });
+    }
+    frame
+}

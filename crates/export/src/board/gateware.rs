@@ -195,10 +195,15 @@ impl<'a> Gateware<'a> {
             count => axes,
             led => self.has_led(),
             led_low => self.board.led_low,
-            line_pins => self.line_pins().map(|(port, pin)| context! { port, pin, out => port == "tx" || port == "miso" }).collect::<Vec<Value>>(),
+            line_pins => self.line_pins().map(|(port, pin)| {
+                let out = port == "tx" || port == "miso";
+                let held = self.board.gate.as_ref().is_some_and(|gate| gate.holds.iter().any(|held| held == pin));
+                context! { port, pin, out, held }
+            }).collect::<Vec<Value>>(),
             bytes => bytes.iter().map(row).collect::<Vec<Value>>(),
             between => between.iter().map(row).collect::<Vec<Value>>(),
             ties => super::ties(self.board),
+            gate => super::gate(self.board, self.build.timebase.clock_hz()),
         };
         rendered(TOP, values)
     }

@@ -3,7 +3,7 @@
 use super::{kind, place, rendered};
 use crate::ExportError;
 use crate::write::TextFile;
-use carrystep_spec::board::{Board, Clocking, Wire, boards};
+use carrystep_spec::board::{Board, Clocking, Gate, Mode, Shared, Wire, boards};
 use carrystep_spec::clock::{ClockManager, mhz};
 use carrystep_spec::driver::{Driver, drivers};
 use minijinja::{Value, context};
@@ -56,6 +56,10 @@ fn values(board: &Board) -> Value {
         wires => board.wires.iter().map(wire).collect::<Vec<_>>(),
         limits => context! { low => board.bits("limit_min"), high => board.bits("limit_max") },
         ties => super::ties(board),
+        gate => board.gate.as_ref().map(gate),
+        configured => listed(&board.configured),
+        shared => board.shared.iter().map(shared).collect::<Vec<_>>(),
+        configuration_sources => board.configuration_sources.join("; "),
         flash => board.flash.replace("FILE", &format!("carrystep.{}", board.bitstream)),
         usb => &board.usb,
         vccaux => &board.vccaux,
@@ -63,6 +67,22 @@ fn values(board: &Board) -> Value {
         conflicts => &board.conflicts,
         sources => &board.sources,
     }
+}
+
+fn gate(gate: &Gate) -> Value {
+    let holds: Vec<String> = gate.holds.iter().map(|port| format!("`{port}`")).collect();
+    let wait_us = thousandths(gate.wait_ns);
+    context! { port => &gate.port, pin => &gate.pin, why => &gate.why, count => holds.len(), holds => holds.join(" and "), wait_us }
+}
+
+fn shared(shared: &Shared) -> Value {
+    let Shared { port, pin, function, modes, why } = shared;
+    context! { port, pin, function, modes => listed(modes), why }
+}
+
+/// Modes of configuration, one after the other.
+fn listed(modes: &[Mode]) -> String {
+    modes.iter().map(Mode::to_string).collect::<Vec<_>>().join("; ")
 }
 
 fn clocking(clock: &Clocking) -> Value {

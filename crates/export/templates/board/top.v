@@ -9,6 +9,9 @@ module {{ top }} (
 {% for wire in line_pins %}
     {{ "output" if wire.out else "input" }} wire {{ wire.pin }},
 {% endfor %}
+{% if gate %}
+    input wire {{ gate.port }},
+{% endif %}
     input wire estop,
 {% if low is not none %}
     input wire {{ low }}limit_min,
@@ -34,16 +37,36 @@ module {{ top }} (
     wire {{ wire.range }}{{ wire.name }};
 {% endfor %}
 
+{% for wire in line_pins if wire.held %}
+    wire {{ wire.pin }}_out;
+{% endfor %}
     {{ line }} line (
 {% for wire in bytes %}
         .{{ wire.name }}({{ wire.name }}),
 {% endfor %}
 {% for wire in line_pins %}
-        .{{ wire.port }}({{ wire.pin }}),
+        .{{ wire.port }}({{ wire.pin }}{{ "_out" if wire.held }}),
 {% endfor %}
         .clock(clock)
     );
 
+{% if gate %}
+    // {{ gate.port }}: {{ gate.why }}.
+    // {{ gate.port }} has been 1 for {{ gate.clocks }} clocks before the lines to the host are driven, and they have high
+    // impedance again as soon as it is 0.
+    reg [1:0] {{ gate.port }}_seen = 2'd0;
+    reg [{{ gate.bits - 1 }}:0] {{ gate.port }}_waited = {{ gate.bits }}'d0;
+    always @(posedge clock) begin
+        {{ gate.port }}_seen <= { {{- gate.port }}_seen[0], {{ gate.port }}};
+        if (!{{ gate.port }}_seen[1]) {{ gate.port }}_waited <= {{ gate.bits }}'d0;
+        else if (!{{ gate.port }}_waited[{{ gate.bits - 1 }}]) {{ gate.port }}_waited <= {{ gate.port }}_waited + 1'b1;
+    end
+    wire driven = {{ gate.port }}_waited[{{ gate.bits - 1 }}];
+{% for wire in line_pins if wire.held %}
+    assign {{ wire.pin }} = driven{{ " && !spi_cs_n" if wire.pin == "spi_miso" }} ? {{ wire.pin }}_out : 1'bz;
+{% endfor %}
+
+{% endif %}
     {{ link }} link (
 {% for wire in bytes + between %}
         .{{ wire.name }}({{ wire.name }}),

@@ -6,6 +6,9 @@ create_clock -name {{ oscillator.port }} -period {{ oscillator.period_ns }} [get
 {% for row in pins %}
 set_property -dict { PACKAGE_PIN {{ row.pin }} IOSTANDARD {{ io }}{{ " PULLUP true" if row.pulled_up }} } [get_ports { {{- row.port -}} }]
 {% endfor %}
+{% if gate %}
+set_property -dict { PACKAGE_PIN {{ gate.pin }} IOSTANDARD {{ io }} PULLDOWN true } [get_ports { {{- gate.port -}} }]
+{% endif %}
 {% for tie in ties %}
 set_property -dict { PACKAGE_PIN {{ tie.pin }} IOSTANDARD {{ io }} } [get_ports { {{- tie.port -}} }]
 {% endfor %}

@@ -36,20 +36,20 @@ impl Engine {
         before(now) - before(now - clocks)
     }
 
-    /// Ticks of motion that some axis has left before it needs its host: to the end of its move, or, where a start is
-    /// armed, of all that waits. `None` where nothing moves, or all of it stops.
-    pub fn ticks_to_go(&self) -> Option<u64> {
+    /// Ticks until some axis has only `kept` segments waiting beside the one that runs, of those axes whose queue does not
+    /// reach the end of its move; 0 where one has no more than that already. `None` where no axis needs its host: all rest,
+    /// or have the end of their moves, or stop. Where a start is armed, moves that wait count as begun.
+    pub fn ticks_without_host(&self, kept: usize) -> Option<u64> {
         let armed = self.armed.is_some();
         let of_lane = |lane: &Lane| {
-            let running = lane.running.as_ref()?;
-            let mut ticks = 0;
-            for segment in std::iter::once(running).chain(&lane.queue) {
-                ticks += u64::from(segment.left) + 1;
-                if segment.last && !armed {
-                    break;
-                }
+            let all = || lane.running.iter().chain(&lane.queue);
+            let begun = armed || lane.running.is_some();
+            let ended = if armed { all().next_back()?.last } else { all().any(|segment| segment.last) };
+            if !begun || ended {
+                return None;
             }
-            Some(ticks)
+            let spare = lane.queue.len().saturating_sub(kept);
+            Some(all().take(spare).map(|segment| u64::from(segment.left) + 1).sum())
         };
         self.lanes.iter().filter_map(of_lane).min().filter(|_| self.stop.fault.is_none())
     }

@@ -1,10 +1,12 @@
 //! A board's file as it is written, and its checks.
 
+use super::configuration::{Mode, Package};
 use super::port::{PORTS, Port};
 use super::{Board, Clocking, Family, IoStandard, Oscillator, Part, Place, PllInput, Tie, Wire};
 use crate::build::Timebase;
 use crate::engine::{MAX_AXES, check_schedule};
 use crate::error::{InputError, Source};
+use configuration::{Exception, RESERVED, RawGate};
 use pins::Pins;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -12,6 +14,7 @@ use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
 
+mod configuration;
 mod pins;
 
 #[derive(Deserialize)]
@@ -27,6 +30,12 @@ struct RawBoard {
     bitstream: Option<String>,
     bitgen: Option<String>,
     usb: Option<Spanned<String>>,
+    configured: Spanned<Vec<Mode>>,
+    #[serde(default)]
+    exception: Vec<Exception>,
+    gate: Option<RawGate>,
+    #[serde(default)]
+    package: Vec<Package>,
     #[serde(default)]
     led_low: bool,
     max_baud: Option<u32>,
@@ -106,7 +115,8 @@ pub(super) fn read(source: &Source) -> Result<Board, InputError> {
 /// The file, and the pins of the package that already have a use.
 struct Reader<'a> {
     source: &'a Source,
-    used: BTreeMap<String, String>,
+    /// By pin: its use, and where that is written.
+    used: BTreeMap<String, (String, Range<usize>)>,
 }
 
 impl Reader<'_> {
@@ -119,7 +129,7 @@ impl Reader<'_> {
         self.supply(&raw, family, io)?;
         let parts = self.parts(&raw, family)?;
         for Reserved { pin, why } in &raw.reserved {
-            self.take(pin, &format!("reserved: {why}"))?;
+            self.take(pin, &format!("{RESERVED}{why}"))?;
         }
         self.take(&raw.oscillator.pin, "the oscillator")?;
         let mut ties = Vec::new();
@@ -131,6 +141,9 @@ impl Reader<'_> {
             ties.push(Tie { port, pin: pin.into_inner(), level: level.into_inner(), why });
         }
         let wires = self.wires(raw.pins, raw.onboard, &raw.connectors)?;
+        let gate = raw.gate.map(|gate| self.gate(gate, &wires)).transpose()?;
+        let (shared, configuration_sources) =
+            self.configuration(&raw.package, &raw.configured, &raw.exception, &raw.part, &parts)?;
         let mut board = Board {
             name: raw.name.into_inner(),
             title: raw.title,
@@ -147,6 +160,10 @@ impl Reader<'_> {
             vccaux: raw.vccaux.map(Spanned::into_inner),
             wires,
             ties,
+            configured: raw.configured.into_inner(),
+            shared,
+            configuration_sources,
+            gate,
             led_low: raw.led_low,
             max_baud: raw.max_baud,
             flash: raw.flash.into_inner(),
@@ -229,7 +246,7 @@ impl Reader<'_> {
 
     /// A pin of the package gets a use, its only one.
     fn take(&mut self, pin: &Spanned<String>, purpose: &str) -> Result<(), InputError> {
-        if let Some(other) = self.used.insert(pin.as_ref().clone(), purpose.to_owned()) {
+        if let Some((other, _)) = self.used.insert(pin.as_ref().clone(), (purpose.to_owned(), pin.span())) {
             return self.refuse(pin.span(), format!("pin {} is taken: {other}", pin.as_ref()));
         }
         Ok(())
