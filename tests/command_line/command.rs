@@ -29,8 +29,8 @@ time = 0.05
 to = { x = -1.3 }
 "#;
 
-/// A folder with files, in which the command runs.
-pub struct Folder(TempDir);
+/// A folder with files, in which the command runs, and one for what it remembers of boards.
+pub struct Folder(TempDir, TempDir);
 
 /// How a run ended.
 pub struct Ran {
@@ -42,7 +42,7 @@ pub struct Ran {
 impl Folder {
     /// An empty one.
     pub fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
+        Self(tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap())
     }
 
     /// One with the move file `move.toml`.
@@ -54,6 +54,11 @@ impl Folder {
 
     pub fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
+    }
+
+    /// Where the command remembers boards: CARRYSTEP_STATE.
+    pub fn state(&self) -> &Path {
+        self.1.path()
     }
 
     pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
@@ -86,7 +91,7 @@ impl Folder {
 
     /// Runs `carrystep` as it is set up.
     pub fn output(&self, command: &mut Command) -> Ran {
-        let output = command.current_dir(self.0.path()).output().unwrap();
+        let output = command.current_dir(self.0.path()).env("CARRYSTEP_STATE", self.state()).output().unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the command writes UTF-8");
         let ran = Ran {
             status: output.status.code().expect("no signal ended the command"),

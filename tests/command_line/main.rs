@@ -15,6 +15,8 @@ mod curves;
 #[allow(dead_code, reason = "the link's own tests use the rest")]
 mod device;
 mod engine;
+#[cfg(unix)]
+mod homing;
 mod interrupts;
 mod json_names;
 mod profile;

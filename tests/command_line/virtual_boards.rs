@@ -1,4 +1,4 @@
-//! The commands that drive a board, on a virtual one: moves from file to capture, stops of every kind, homing.
+//! The commands that drive a board, on a virtual one: moves from file to capture, stops of every kind.
 
 use crate::command::{Folder, Ran, edit};
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
@@ -71,7 +71,7 @@ impl Board {
     }
 
     /// Ends it, and gives what it said.
-    fn end(mut self) -> String {
+    pub fn end(mut self) -> String {
         self.press("end");
         let mut said = String::new();
         self.said.read_to_string(&mut said).unwrap();
@@ -104,9 +104,10 @@ pub fn passed(ran: &Ran) {
 fn begin(folder: &Folder, board: &Board, file: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(["run", file, "--port", &board.port, "--json"]).current_dir(folder.path(""));
+    command.env("CARRYSTEP_STATE", folder.state());
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let has_begun = |name: &String| {
-        let known = ["home.toml", "long.toml", "machine.toml", "move.toml"].contains(&name.as_str());
+        let known = ["long.toml", "machine.toml", "move.toml"].contains(&name.as_str());
         !known && folder.path(name).metadata().is_ok_and(|file| file.len() > 0)
     };
     // Nobody else can ask the board while that one has the port.
@@ -251,27 +252,6 @@ fn an_emergency_stop_is_told_and_stays_until_it_is_released_and_cleared() {
     let ran = folder.run(&format!("stop --port {port} --baud 3000000 --clear"));
     passed(&ran);
     passed(&folder.run(&format!("run move.toml --port {port}")));
-}
-
-#[test]
-fn homing_finds_the_switch() {
-    let folder = folder();
-    let home = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"constant\"\ntime = 4\nto = { x = -200 }\n";
-    folder.write("home.toml", home);
-    let board = Board::new(&folder, "--fast --min x=-150");
-    let ran = folder.run(&format!("home home.toml --port {} --json", board.port));
-    passed(&ran);
-    let told: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
-    let latched = told["axes"][0]["latched"].as_i64().unwrap();
-    // The switch is believed a little later than it is reached.
-    assert!((-155..=-150).contains(&latched), "{told}");
-    assert!(told["axes"][0]["position"].as_i64().unwrap() <= latched);
-    drop(board);
-
-    let board = Board::new(&folder, "--fast");
-    let ran = folder.run(&format!("home home.toml --port {}", board.port));
-    assert_eq!(ran.status, 1);
-    assert!(ran.stderr.contains("no limit was met by x\n"), "{}", ran.stderr);
 }
 
 #[test]

@@ -38,7 +38,6 @@ on_both! {
     a_stop_of_the_machine_is_named
     a_restarted_gateware_is_noticed
     what_a_dead_host_has_left_is_not_started
-    homing_finds_the_limit_or_says_that_there_was_none
     a_jog_is_a_move_of_one_axis
 }
 
@@ -174,33 +173,6 @@ fn what_a_dead_host_has_left_is_not_started<B: Kind>() {
     assert_eq!(host.stream(program(&hop), go_on), Ok(Ended::Done));
     assert_eq!(host.status().positions[..6], [3, 0, 0, 0, 0, 0]);
     assert!(host.status().answer.ready, "the drivers kept their power");
-}
-
-fn homing_finds_the_limit_or_says_that_there_was_none<B: Kind>() {
-    let (end, mut host) = ready::<B>(Faults::BAD, 12);
-    end.0.borrow_mut().meanwhile = Box::new(|board| {
-        let reached = board.position(2) <= -20;
-        board.press(Switches { limit_min: u8::from(reached) << 2, ..Switches::default() });
-    });
-    // 80 steps back in 40 ms.
-    let segment = Segment { ticks: 20_480, v: -(1 << 56), a: 0, j: 0, last: true };
-    let slow = [Command::Segment { axis: 2, segment }, Command::Start { mask: 4 }];
-    let latched = host.home(4, program(&slow), go_on).unwrap();
-    // It is believed after two rounds of 1024 ticks, of four steps each, and looked for each millisecond.
-    assert!((-31..=-20).contains(&latched[2]), "{latched:?}");
-    assert!(host.status().positions[2] <= latched[2]);
-    positions_are_true(&end, &host);
-    assert!(!host.status().answer.fault && host.status().answer.homing == 0);
-
-    end.0.borrow_mut().meanwhile = Box::new(|board| board.press(Switches::default()));
-    assert_eq!(host.home(4, program(&slow), go_on), Err(HostError::NoLimit { axes: 4 }));
-    let answer = host.look().unwrap().answer;
-    assert!(!answer.fault && answer.homing == 0);
-
-    let mut long = vec![Command::Segment { axis: 1, segment: Segment { last: false, ..segment } }; 7];
-    long.extend(hop(1));
-    let error = host.home(2, program(&long), go_on).unwrap_err();
-    assert_eq!(error, HostError::Program(ProgramError::TooMany { axis: 1, segments: 8, most: 7 }));
 }
 
 fn a_jog_is_a_move_of_one_axis<B: Kind>() {

@@ -51,7 +51,8 @@ pub enum Subcommand {
     Run(Run),
     /// Move one axis of a board.
     Jog(Jog),
-    /// Move until the limits are met, and say where they are.
+    /// Home axes by their limit switches: move off, seek fast, back off, approach slowly, pull off. A switch that is
+    /// still closed after moving off is not seen where one wire serves both ends of an axis, or all axes (docs/homing.md).
     Home(Home),
     /// Say what a board does, where its axes are, and why it stands.
     Status(Status),

@@ -5,6 +5,7 @@ pub mod build;
 pub mod check;
 pub mod demo;
 pub mod doctor;
+pub mod home;
 pub mod plan;
 pub mod profile;
 pub mod run;

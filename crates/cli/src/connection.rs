@@ -164,9 +164,6 @@ pub fn broken(error: &BoardError, axes: &[String]) -> Failure {
             let from = if culprits == 0 { String::new() } else { format!(", from {}", names(axes, culprits)) };
             Failure::Run(format!("the machine has stopped: {name}{from}; {remedy}"))
         }
-        HostError::NoLimit { axes: missed } => {
-            Failure::Run(format!("the homing move is over, and no limit was met by {}", names(axes, missed)))
-        }
         _ => Failure::Run(error.to_string()),
     }
 }

@@ -4,10 +4,11 @@ use crate::connection::{self, Connection};
 use crate::control::StoppedBy;
 use crate::failure::Failure;
 use crate::found;
+use crate::memory::{self, Limit, Memory};
 use carrystep_link::{Command, Ended, HostError, Program, Status, supply};
 use carrystep_plan::Plan;
-use carrystep_spec::MoveFile;
-use carrystep_spec::engine::Cause;
+use carrystep_spec::engine::{Cause, Guard};
+use carrystep_spec::{Axis, MoveFile};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::fmt;
@@ -74,18 +75,14 @@ pub struct AxisDriven {
     pub position: i32,
     /// Steps of the plan.
     pub steps_planned: i64,
-    /// Position at the limit, where the axis was sent home.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub latched: Option<i32>,
 }
 
 impl fmt::Display for Driven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: build {}", self.port, self.build)?;
         writeln!(f, "{:<6}  {:>11}  {:>11}  {:>11}", "axis", "before", "planned", "position")?;
-        for AxisDriven { axis, before, position, steps_planned, latched } in &self.axes {
-            let limit = latched.map_or_else(String::new, |at| format!("  limit at {at}"));
-            writeln!(f, "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}{limit}")?;
+        for AxisDriven { axis, before, position, steps_planned } in &self.axes {
+            writeln!(f, "{axis:<6}  {before:>11}  {steps_planned:>+11}  {position:>11}")?;
         }
         match (self.ended, self.passed) {
             (How::Done, true) => f.write_str("DONE\n"),
@@ -118,6 +115,16 @@ pub struct Streamed {
     commands: Vec<Command>,
     steps: Vec<i64>,
     seconds: f64,
+    near: Vec<Near>,
+    guard: Guard,
+}
+
+/// What an axis does beside a limit that it has met.
+struct Near {
+    /// Which way it goes first: 1, -1, or 0 where it stays.
+    first: i8,
+    /// How far it must move away until the switch is open, steps.
+    clear: u32,
 }
 
 impl Streamed {
@@ -128,21 +135,30 @@ impl Streamed {
         supply::check(&commands, axes as u8, plan.build.timebase.tick_ns(), baud)
             .map_err(|error| Failure::input(format!("{}: {error}", file.source.path.display())))?;
         let steps = (0..axes).map(|axis| plan.moves.iter().map(|planned| planned.axes[axis].steps).sum()).collect();
-        Ok(Self { commands, steps, seconds: plan.total_ticks() as f64 * plan.build.timebase.tick_seconds() })
-    }
-
-    /// Segments of the axis that has most, and which it is.
-    pub fn most_segments(&self) -> (usize, usize) {
-        let of = |axis: usize| {
-            let own = |command: &&Command| matches!(command, Command::Segment { axis: other, .. } if usize::from(*other) == axis);
-            self.commands.iter().filter(own).count()
+        let near = |(number, axis): (usize, &Axis)| {
+            let mut steps = plan.moves.iter().map(|planned| planned.axes[number].steps);
+            Near {
+                first: steps.find(|&steps| steps != 0).map_or(0, |steps| steps.signum() as i8),
+                clear: axis.move_off(&file.machine),
+            }
         };
-        (0..self.steps.len()).map(|axis| (of(axis), axis)).max().unwrap_or_default()
+        let near = file.machine.axes.iter().enumerate().map(near).collect();
+        let seconds = plan.total_ticks() as f64 * plan.build.timebase.tick_seconds();
+        Ok(Self { commands, steps, seconds, near, guard: file.machine.guard.clone() })
     }
 
-    /// The axes that it moves, a bit each.
-    pub fn moving(&self) -> u8 {
-        (0..).zip(&self.steps).fold(0, |mask, (axis, &steps)| mask | u8::from(steps != 0) << axis)
+    /// Refuses a program that takes an axis further toward a limit that it has met and not left.
+    fn check_limits(&self, memory: &Memory, status: &Status, axes: &[String]) -> Result<(), Failure> {
+        for (number, Near { first, .. }) in self.near.iter().enumerate() {
+            let Some(limit) = memory.limit(number).filter(|limit| limit.direction == *first) else { continue };
+            let (axis, steps) = (&axes[number], limit.to_go(status.positions[number]));
+            let (way, back) = if *first > 0 { ("forward", "back") } else { ("back", "forward") };
+            return Err(Failure::input(format!(
+                "axis {axis} has met its limit going {way}, and today's gateware may not see a switch that is closed already: \
+                 jog it {back} by {steps} steps or more, or home it; --into-limit moves it {way} all the same"
+            )));
+        }
+        Ok(())
     }
 }
 
@@ -165,8 +181,9 @@ impl Ways {
     }
 }
 
-/// Makes the moves; with `homing`, until these axes have met their limits.
-pub fn drive(connection: Connection, streamed: &Streamed, homing: Option<u8>) -> Result<Driven, Failure> {
+/// Makes the moves; further toward a limit that an axis has met only where `into_limit` says so.
+pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> Result<Driven, Failure> {
+    let mut memory = Memory::recall(&connection);
     // The port is closed before the control gives up its claim: what is bound first is dropped last.
     let Connection { mut control, port, mut board, axes, .. } = connection;
     let begun = Instant::now();
@@ -175,6 +192,9 @@ pub fn drive(connection: Connection, streamed: &Streamed, homing: Option<u8>) ->
     let start = *board.status();
     if start.answer.fault {
         return Err(told(HostError::Fault { cause: start.answer.cause, culprits: start.answer.culprits }));
+    }
+    if !into_limit {
+        streamed.check_limits(&memory, &start, &axes)?;
     }
     let program = Program::new(&streamed.commands, axes.len() as u8).map_err(|error| told(error.into()))?;
     let line = Line::new(&axes, streamed.seconds);
@@ -185,17 +205,15 @@ pub fn drive(connection: Connection, streamed: &Streamed, homing: Option<u8>) ->
         ways.see(progress.status);
         control.wish(progress.status)
     };
-    let outcome = match (powered, homing) {
-        (Ended::Stopped, _) => Ok((Ended::Stopped, None)),
-        (Ended::Done, None) => board.stream(program, &mut watch).map(|ended| (ended, None)),
-        (Ended::Done, Some(mask)) => board.home(mask, program, &mut watch).map(|latched| (Ended::Done, Some(latched))),
+    let outcome = match powered {
+        Ended::Stopped => Ok(Ended::Stopped),
+        Ended::Done => board.stream(program, &mut watch),
     };
     drop(line);
-    let (ended, latched) = match outcome {
-        Ok((Ended::Done, latched)) => (How::Done, latched),
-        Err(HostError::NoLimit { .. }) if control.stopped_by().is_some() => (How::Stopped, None),
-        Ok((Ended::Stopped, _)) => (How::Stopped, None),
-        Err(HostError::Fault { .. }) => (How::Fault, None),
+    let ended = match outcome {
+        Ok(Ended::Done) => How::Done,
+        Ok(Ended::Stopped) => How::Stopped,
+        Err(HostError::Fault { .. }) => How::Fault,
         Err(error) => return Err(connection::lost(&error, &axes, &facts)),
     };
     let end = *board.status();
@@ -205,6 +223,19 @@ pub fn drive(connection: Connection, streamed: &Streamed, homing: Option<u8>) ->
         // It was our own stop, and nothing else: the next run need not be told.
         board.clear().map_err(told)?;
     }
+    if ended == How::Fault && memory::freezes(end.answer.cause, &streamed.guard) {
+        memory.forget_places();
+    }
+    if cause == Some(Cause::Limit) {
+        for (number, near) in
+            streamed.near.iter().enumerate().filter(|(number, _)| end.answer.culprits >> number & 1 == 1)
+        {
+            let direction = if ways.last[number] == 0 { near.first } else { ways.last[number] };
+            memory.set_limit(number, Some(Limit { direction, at: end.positions[number], clear: near.clear }));
+        }
+    }
+    // What cannot be written does not match the board, and counts for nothing.
+    let _ = memory.keep(&mut board);
     let culprit = |(number, axis): (usize, &String)| Culprit { axis: axis.clone(), direction: ways.last[number] };
     let is_culprit = |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
     let culprits = axes.iter().enumerate().filter(is_culprit).map(culprit).collect();
@@ -213,12 +244,11 @@ pub fn drive(connection: Connection, streamed: &Streamed, homing: Option<u8>) ->
         before: start.positions[number],
         position: end.positions[number],
         steps_planned: streamed.steps[number],
-        latched: latched.filter(|_| homing.is_some_and(|mask| mask >> number & 1 == 1)).map(|at| at[number]),
     };
     let axes: Vec<AxisDriven> = axes.iter().cloned().enumerate().map(axis).collect();
     let moved = |axis: &AxisDriven| i64::from(axis.position.wrapping_sub(axis.before)) == axis.steps_planned;
     Ok(Driven {
-        passed: ended == How::Done && (homing.is_some() || axes.iter().all(moved)),
+        passed: ended == How::Done && axes.iter().all(moved),
         port,
         build: format!("{:016x}", facts.build),
         ended,

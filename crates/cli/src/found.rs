@@ -71,6 +71,9 @@ pub struct AxisFound {
     pub position: i32,
     /// The same in the axis' own unit, where a machine is known.
     pub place: Option<f64>,
+    /// The machine coordinate in the axis' own unit, where the axis is homed and nobody else has moved it since.
+    #[serde(default)]
+    pub machine: Option<f64>,
     /// Steps that freezes have discarded; the command that drives does not ask for them.
     pub discarded: Option<u32>,
     /// It waits for its limit.
@@ -81,7 +84,12 @@ pub struct AxisFound {
 
 /// The cause of a stop by its number in an answer.
 pub fn cause(answer: &Answer) -> Option<Cause> {
-    CAUSES.get(usize::from(answer.cause)).copied().filter(|_| answer.fault)
+    by_number(answer.cause).filter(|_| answer.fault)
+}
+
+/// The cause of this number.
+pub fn by_number(cause: u8) -> Option<Cause> {
+    CAUSES.get(usize::from(cause)).copied()
 }
 
 /// The names of the axes in a mask, a bit each.
@@ -103,6 +111,7 @@ impl Found {
                 axis: axis.clone(),
                 position,
                 place: steps_per_unit.get(number).map(|steps| f64::from(position) / steps),
+                machine: None,
                 discarded: discarded.and_then(|all| all.get(number).copied()),
                 homing: homing >> number & 1 == 1,
                 culprit: fault && culprits >> number & 1 == 1,
@@ -156,12 +165,14 @@ impl fmt::Display for Found {
         let in_units = self.axes.iter().any(|axis| axis.place.is_some());
         let heading = if in_units { format!("  {:>12}", "place") } else { String::new() };
         writeln!(f, "{:<6}{heading}  {:>11}  {:>9}", "axis", "steps", "discarded")?;
-        for AxisFound { axis, position, place, discarded, homing, culprit } in &self.axes {
+        for AxisFound { axis, position, place, machine, discarded, homing, culprit } in &self.axes {
+            let machine =
+                machine.map_or_else(String::new, |machine| format!("  homed: at {machine:.4} of the machine"));
             let place = place.map_or_else(String::new, |place| format!("  {place:>12.4}"));
             let discarded = discarded.map_or_else(|| "-".to_owned(), |count| count.to_string());
             let homing = if *homing { "  waits for its limit" } else { "" };
             let culprit = if *culprit { "  the stop came from it" } else { "" };
-            writeln!(f, "{axis:<6}{place}  {position:>11}  {discarded:>9}{homing}{culprit}")?;
+            writeln!(f, "{axis:<6}{place}  {position:>11}  {discarded:>9}{machine}{homing}{culprit}")?;
         }
         Ok(())
     }

@@ -11,8 +11,10 @@ mod failure;
 mod figures;
 mod found;
 mod gateware;
+mod homing;
 mod interrupt;
 mod job;
+mod memory;
 mod output;
 mod progress;
 #[cfg(unix)]
@@ -37,7 +39,7 @@ fn main() -> ExitCode {
         Subcommand::Sweep(sweep) => commands::sweep::run(sweep),
         Subcommand::Run(run) => commands::run::run(run),
         Subcommand::Jog(jog) => commands::run::jog(jog),
-        Subcommand::Home(home) => commands::run::home(home),
+        Subcommand::Home(home) => commands::home::run(home),
         Subcommand::Status(status) => commands::status::status(status),
         Subcommand::Stop(stop) => commands::stop::stop(stop),
         #[cfg(unix)]

@@ -8,6 +8,7 @@
 use crate::failure::Failure;
 use carrystep_board::Switches;
 use carrystep_spec::Machine;
+use carrystep_spec::engine::Limits;
 use std::io::BufRead as _;
 use std::sync::mpsc::{Receiver, channel};
 
@@ -33,6 +34,7 @@ pub struct Panel {
     axes: Vec<String>,
     /// Pressed by hand.
     hand: Switches,
+    wiring: Limits,
     lines: Receiver<String>,
 }
 
@@ -66,7 +68,7 @@ impl Panel {
                 limits.push(read.ok_or_else(wrong)?);
             }
         }
-        Ok(Self { limits, axes, hand: Switches::default(), lines: lines() })
+        Ok(Self { limits, axes, hand: Switches::default(), wiring: machine.guard.limits, lines: lines() })
     }
 
     /// The switches where the axes are at these positions.
@@ -89,7 +91,7 @@ impl Panel {
                 End::Min | End::Max => {}
             }
         }
-        Look { switches, ends, unknown }
+        Look { switches: wired(switches, self.wiring), ends, unknown }
     }
 
     /// Does what a line says; false where it says nothing.
@@ -115,6 +117,17 @@ impl Panel {
     }
 }
 
+/// The switches on the inputs of this wiring: where both ends share a wire, either of them closes it.
+fn wired(switches: Switches, wiring: Limits) -> Switches {
+    let any = switches.limit_min | switches.limit_max;
+    let limit_min = match wiring {
+        Limits::Pair | Limits::None => return switches,
+        Limits::Each => any,
+        Limits::One => u8::from(any != 0),
+    };
+    Switches { limit_min, limit_max: 0, ..switches }
+}
+
 /// Lines of standard input as they come; none after its end.
 fn lines() -> Receiver<String> {
     let (to, from) = channel();
@@ -126,4 +139,22 @@ fn lines() -> Receiver<String> {
         }
     });
     from
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn switches_are_on_the_inputs_of_their_wiring() {
+        let pressed = Switches { estop: true, limit_min: 0b0010, limit_max: 0b0100 };
+        let wires = |wiring| {
+            let Switches { estop, limit_min, limit_max } = wired(pressed, wiring);
+            (estop, limit_min, limit_max)
+        };
+        assert_eq!(wires(Limits::Pair), (true, 0b0010, 0b0100));
+        assert_eq!(wires(Limits::Each), (true, 0b0110, 0));
+        assert_eq!(wires(Limits::One), (true, 1, 0));
+        assert_eq!(wired(Switches::default(), Limits::One), Switches::default());
+    }
 }

@@ -76,16 +76,6 @@ pub enum ProgramError {
     /// A start while the drivers have no power: the gateware would refuse it for as long as they have none.
     #[error("the drivers have no power: write CONTROL = 1 and wait for `ready` before the first START")]
     NoPower,
-    /// More segments than the queue holds, where all must wait in it.
-    #[error("axis {axis} has {segments} segments, and all must wait in its queue, which holds {most}")]
-    TooMany {
-        /// The axis.
-        axis: u8,
-        /// Its segments.
-        segments: usize,
-        /// What the queue holds.
-        most: u8,
-    },
 }
 
 /// Segments and starts in order, as a [`Source`]: each axis takes its own.
@@ -139,11 +129,6 @@ impl<'a> Program<'a> {
             }
         }
         Ok(Self { commands, segment: [0; MOST_AXES as usize], start: 0 })
-    }
-
-    /// How many segments an axis has in all.
-    pub fn segments_of(&self, axis: u8) -> usize {
-        self.commands.iter().filter(|command| matches!(command, Command::Segment { axis: a, .. } if *a == axis)).count()
     }
 }
 

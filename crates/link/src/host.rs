@@ -1,11 +1,13 @@
 //! The driver: one gateware on one line, from connecting to a clean stop. Each call returns when it is done.
 
 mod error;
+mod homing;
 mod motion;
 mod state;
 mod time;
 
 pub use error::HostError;
+pub use homing::{AxisHoming, Homed, Homing, HomingFault, Stage, Wiring};
 pub use motion::{Ended, Progress, Wish};
 #[cfg(feature = "std")]
 pub use time::SystemClock;

@@ -29,12 +29,14 @@ pub mod session;
 pub mod slip;
 #[cfg(feature = "std")]
 pub mod supply;
+pub mod travel;
 pub mod window;
 
 pub use command::{Command, Program, ProgramError, Segment};
 pub use facts::{Facts, Refusal};
 pub use feeder::{Feeder, Source};
 pub use frame::{Answer, Body, FrameError, Request};
+pub use host::{AxisHoming, Homed, Homing, HomingFault, Stage, Wiring};
 pub use host::{Clock, Ended, Host, HostError, Patience, Progress, Status, Wish};
 pub use line::{Exchanged, Line};
 pub use session::{Session, SessionError, Timing, WriteError};

@@ -105,7 +105,10 @@ fn in_plain_words(message: &str) -> String {
         ("expected f64", "expected a number"),
         ("expected u64", "expected a whole number, zero or more"),
         ("expected u32", "expected a whole number, zero or more"),
-        ("expected a sequence", "expected tables in double brackets, as in [[move]] and [[machine.axis]]"),
+        (
+            "expected a sequence",
+            "expected tables in double brackets, as in [[move]] and [[machine.axis]], or a list in brackets, as in [0, 300]",
+        ),
         ("expected a map", "expected distances, as in { x = 1.5 }"),
         ("integer number overflowed", "a number of too many digits: at most 38, or 60 with a point, are expected"),
         ("floating-point number overflowed", "a number too great: a finite one of at most 60 digits is expected"),

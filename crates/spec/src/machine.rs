@@ -10,6 +10,7 @@ use crate::link::{BaudError, Line, Uart};
 use axis::RawAxis;
 use bigdecimal::BigDecimal;
 use guard::RawGuard;
+use home::{RawOrder, RawPlace};
 use link::RawLink;
 use serde::Deserialize;
 use std::ops::Range;
@@ -19,9 +20,11 @@ use toml::Spanned;
 
 mod axis;
 mod guard;
+mod home;
 mod link;
 mod stop;
 
+pub use home::{End, Home, overrun};
 pub(crate) use stop::steps_per_s2;
 
 /// A machine whose every value has been checked.
@@ -35,6 +38,8 @@ pub struct Machine {
     pub axes: Vec<Axis>,
     /// What stops them, where an engine drives them.
     pub guard: Guard,
+    /// The axes that home, by their numbers: groups, one after the other; the axes of a group together.
+    pub home_order: Vec<Vec<usize>>,
     /// Baud rate of the host link; checked against the clock where the file names it.
     pub baud: u32,
     /// The host link is an SPI, and no UART.
@@ -67,6 +72,10 @@ pub struct Axis {
     pub pins_ns: [u64; 4],
     /// The same in clocks.
     pub pins: PinTiming,
+    /// Lowest and highest machine coordinate, steps, where the file gives them.
+    pub travel: Option<[i64; 2]>,
+    /// How it homes, where it does.
+    pub home: Option<Home>,
 }
 
 impl Machine {
@@ -141,6 +150,7 @@ pub(crate) struct RawMachine {
     guard: RawGuard,
     #[serde(default)]
     link: RawLink,
+    home_order: Option<RawOrder>,
     axis: Spanned<Vec<Spanned<RawAxis>>>,
 }
 
@@ -165,9 +175,12 @@ impl RawMachine {
             );
         }
         let mut axes: Vec<Axis> = Vec::with_capacity(raw.len());
+        let mut places: Vec<RawPlace> = Vec::with_capacity(raw.len());
         for axis in raw {
             let name_span = axis.as_ref().name.span();
-            let axis = axis.into_inner().check(source, &timebase)?;
+            let mut axis = axis.into_inner();
+            places.push(axis.place());
+            let axis = axis.check(source, &timebase)?;
             if axes.iter().any(|other| other.name == axis.name) {
                 return Err(InputError::at(source, name_span, format!("two axes are called '{}'", axis.name))
                     .help("give each axis a name of its own"));
@@ -175,8 +188,9 @@ impl RawMachine {
             axes.push(axis);
         }
         let guard = self.guard.check(source, &timebase, axes.iter().map(|axis| axis.stop).collect())?;
+        let home_order = home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
         let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);
-        Ok(Machine { timebase, phase: self.phase, axes, guard, baud, spi })
+        Ok(Machine { timebase, phase: self.phase, axes, guard, home_order, baud, spi })
     }
 
     fn timebase(&self, source: &Source) -> Result<Timebase, InputError> {

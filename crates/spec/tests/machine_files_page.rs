@@ -42,6 +42,7 @@ fn the_page_has_the_keys_that_are_read() {
     let tables = [
         ("## `[machine]`", format!("{MOVE}[machine]\ncolour = 1\n{AXIS}")),
         ("## `[[machine.axis]]`", format!("{MOVE}[machine]\n{AXIS}colour = 1\n")),
+        ("### `home`", format!("{MOVE}[machine]\n{AXIS}home = {{ colour = 1 }}\n")),
         ("## `[machine.guard]`", format!("{MOVE}[machine.guard]\ncolour = 1\n{AXIS}")),
         ("## `[machine.link]`", format!("{MOVE}[machine.link]\ncolour = 1\n{AXIS}")),
         ("## The move file", format!("colour = 1\n{MOVE}[machine]\n{AXIS}")),
@@ -119,6 +120,10 @@ fn the_examples_are_read_and_the_first_one_has_every_key() {
             let there = blocks[0].contains(&if table { format!("machine.{key}]") } else { format!("\n{key} = ") });
             assert!(there, "{key}");
         }
+    }
+    let (_, home) = blocks[0].split_once("\nhome = {").unwrap();
+    for row in rows("### `home`") {
+        assert!(home.contains(&format!(" {} = ", quoted(row[0]))), "{row:?}");
     }
     let two = format!("{AXIS}{}", AXIS.replace("\"x\"", "\"y\""));
     let (first, moves) = blocks[1].split_once("\n\n").unwrap();

@@ -35,6 +35,9 @@ pub struct Run {
     /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
+    /// Begin even where an axis goes further toward a limit that it has just met: today's gateware may not see its switch.
+    #[arg(long)]
+    pub into_limit: bool,
     /// One JSON document instead of the table.
     #[arg(long)]
     pub json: bool,
@@ -43,9 +46,12 @@ pub struct Run {
 /// `carrystep home`
 #[derive(Debug, Args)]
 pub struct Home {
-    /// A move file: one slow move toward the limits, farther than they are. The axes that it moves wait for their limits.
-    #[arg(value_name = "MOVE.toml")]
-    pub file: PathBuf,
+    /// Axes to home, by their names; default: all that have `home = { ... }` in their table. They go in the order of home_order.
+    #[arg(value_name = "AXIS")]
+    pub axes: Vec<String>,
+    /// The machine.
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub machine: PathBuf,
     #[command(flatten)]
     pub port: Port,
     /// One JSON document instead of the table.
@@ -68,6 +74,9 @@ pub struct Jog {
     /// In so many seconds; default: as fast as the axis' limits allow.
     #[arg(long, value_name = "SECONDS")]
     pub time: Option<f64>,
+    /// Jog further toward a limit that the axis has just met: today's gateware may not see its switch.
+    #[arg(long)]
+    pub into_limit: bool,
     #[command(flatten)]
     pub port: Port,
     /// One JSON document instead of the table.

@@ -1,11 +1,10 @@
-//! `carrystep run`, `jog` and `home`: plan, connect, stream, tell.
+//! `carrystep run` and `jog`: plan, connect, stream, tell.
 
-use crate::arguments::{Home, Jog, Port, Run};
+use crate::arguments::{Jog, Port, Run};
 use crate::connection;
 use crate::drive::{Driven, Streamed, drive};
 use crate::failure::{Failure, refused};
 use crate::{job, output};
-use carrystep_link::registers::QUEUE_SEGMENTS;
 use carrystep_plan::plan;
 use carrystep_spec::{Machine, MoveFile, Source, decimal};
 use std::path::Path;
@@ -14,7 +13,7 @@ use std::path::Path;
 pub fn run(arguments: &Run) -> Result<(), Failure> {
     let file = job::load(&arguments.file, arguments.fit_ns)?;
     let name = arguments.file.as_path();
-    told(&moved(&file, name, &arguments.port, "run")?, arguments.json)
+    told(&moved(&file, name, &arguments.port, "run", arguments.into_limit)?, arguments.json)
 }
 
 /// Moves one axis.
@@ -29,31 +28,21 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
     if let Some(failure) = nothing_to_do(&file, arguments) {
         return Err(failure);
     }
-    told(&moved(&file, &arguments.machine, &arguments.port, "jog")?, arguments.json)
-}
-
-/// Moves until the limits are met.
-pub fn home(arguments: &Home) -> Result<(), Failure> {
-    let file = MoveFile::load(&arguments.file)?;
-    told(&moved(&file, &arguments.file, &arguments.port, "home")?, arguments.json)
+    told(&moved(&file, &arguments.machine, &arguments.port, "jog", arguments.into_limit)?, arguments.json)
 }
 
 /// Plans everything before the port is opened, and connects before anything moves.
-fn moved(file: &MoveFile, name: &Path, port: &Port, command: &'static str) -> Result<Driven, Failure> {
-    let homing = command == "home";
+fn moved(
+    file: &MoveFile,
+    name: &Path,
+    port: &Port,
+    command: &'static str,
+    into_limit: bool,
+) -> Result<Driven, Failure> {
     let plan = plan::<f64>(file).map_err(|error| refused(file, &error))?;
     let streamed = Streamed::new(file, &plan, file.machine.baud)?;
-    if homing && file.moves.len() > 1 {
-        return Err(file.move_error(1, "homing is one move: what comes after a limit is never sent").into());
-    }
-    let (segments, axis) = streamed.most_segments();
-    if homing && segments > QUEUE_SEGMENTS.into() {
-        let name = &file.machine.axes[axis].name;
-        let message = format!("homing takes what a queue holds, {QUEUE_SEGMENTS} segments: axis {name} has {segments}");
-        return Err(file.move_error(0, message).help("a constant profile has one").into());
-    }
     let connection = connection::to_machine(port, &file.machine, name, command)?;
-    drive(connection, &streamed, homing.then(|| streamed.moving()))
+    drive(connection, &streamed, into_limit)
 }
 
 /// A jog of less than half a step, with the size of a step.

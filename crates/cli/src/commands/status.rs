@@ -5,6 +5,7 @@ use crate::connection::{self, Connection};
 use crate::control::{self, Reply, Request};
 use crate::failure::Failure;
 use crate::found::{Found, Known};
+use crate::memory::Memory;
 use crate::output;
 use carrystep_link::frame;
 use carrystep_link::registers::DISCARDED;
@@ -49,6 +50,7 @@ pub fn tell(found: &Found, json: bool) -> Result<(), Failure> {
 
 /// Asks the board for everything, and gives the port back.
 pub fn look(connection: Connection) -> Result<Found, Failure> {
+    let memory = Memory::recall(&connection);
     // The port is closed before the control gives up its claim: what is bound first is dropped last.
     let Connection { control: _control, mut board, axes, steps_per_unit, port } = connection;
     let failed = |error| connection::broken(&error, &axes);
@@ -58,5 +60,9 @@ pub fn look(connection: Connection) -> Result<Found, Failure> {
         discarded.push(board.register(frame::of_axis(DISCARDED, axis)).map_err(failed)?);
     }
     let known = Known { port, facts: *board.facts(), axes, steps_per_unit };
-    Ok(Found::new(&status, &known, Some(&discarded)))
+    let mut found = Found::new(&status, &known, Some(&discarded));
+    for (number, axis) in found.axes.iter_mut().enumerate() {
+        axis.machine = memory.coordinate(number, axis.position);
+    }
+    Ok(found)
 }

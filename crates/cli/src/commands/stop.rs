@@ -6,6 +6,7 @@ use crate::connection::{self, Connection};
 use crate::control::{self, Caller, Holder, Reply, Request};
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::memory::Memory;
 use carrystep_link::HostError;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -21,6 +22,7 @@ const BUSY: Duration = Duration::from_secs(2);
 /// Stops what moves; resumes and takes the power away where that is wished.
 pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     let (mut connection, stopped) = reach(arguments)?;
+    let mut memory = Memory::recall(&connection);
     let Connection { board, axes, .. } = &mut connection;
     let failed = |error| connection::broken(&error, axes);
     if !board.status().answer.idle {
@@ -35,6 +37,8 @@ pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     if arguments.off {
         board.disable().map_err(failed)?;
     }
+    // What cannot be written does not match the board, and counts for nothing.
+    let _ = memory.keep(board);
     let mut found = look(connection)?;
     found.stopped = stopped;
     tell(&found, arguments.json)

@@ -1,5 +1,6 @@
 //! What goes wrong between a host and a gateware, by its cause.
 
+use super::homing::HomingFault;
 use crate::command::ProgramError;
 use crate::facts::Refusal;
 use crate::registers::CAUSES;
@@ -79,11 +80,13 @@ pub enum HostError<E> {
         /// For so long.
         ms: u32,
     },
-    /// A homing move ended before its limits came.
-    #[error("the homing move is over, and no limit was met{}", Axes(" by", *axes))]
-    NoLimit {
+    /// Homing ended before the axes were at their places.
+    #[error("homing{}: {why}", Axes(" of", *axes))]
+    Homing {
         /// The axes, a bit each.
         axes: u8,
+        /// What was wrong.
+        why: HomingFault,
     },
 }
 

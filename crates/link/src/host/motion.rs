@@ -1,11 +1,11 @@
-//! Moving: a program into the queues and to its end, a jog, a search for the limits.
+//! Moving: a program into the queues and to its end, and a jog.
 
 use super::{Clock, Host, HostError, Status};
-use crate::command::{Program, ProgramError, Segment};
+use crate::command::{ProgramError, Segment};
 use crate::feeder::{Feeder, Source};
 use crate::frame::{Answer, of_axis};
 use crate::line::Line;
-use crate::registers::{HOME, LATCHED, MOST_AXES, POSITION, QUEUE_SEGMENTS};
+use crate::registers::POSITION;
 
 /// How a program goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -131,43 +131,5 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             return Err(ProgramError::NoEnd { axis }.into());
         }
         self.stream(Jog { axis, segments: segments.iter(), start: Some(1 << axis) }, watch)
-    }
-
-    /// Moves until each of these axes has met its limit, and gives the positions where they met it. All segments must
-    /// fit into the queues at once: what came after a limit would lie there for the next move. At the end the machine
-    /// is cleared, so that the next move begins in the middle of a step.
-    ///
-    /// # Errors
-    /// [`HostError::NoLimit`] names the axes that met none; else as [`Self::stream`].
-    pub fn home(
-        &mut self,
-        axes: u8,
-        program: Program<'_>,
-        watch: impl FnMut(&Progress<'_>) -> Wish,
-    ) -> Result<[i32; MOST_AXES as usize], HostError<L::Error>> {
-        for axis in 0..self.session.axes() {
-            let segments = program.segments_of(axis);
-            if segments > usize::from(QUEUE_SEGMENTS) {
-                return Err(ProgramError::TooMany { axis, segments, most: QUEUE_SEGMENTS }.into());
-            }
-        }
-        self.write(HOME, axes.into())?;
-        let ended = self.stream(program, watch);
-        let missed = self.status.answer.homing & axes;
-        if missed != 0 {
-            self.write(HOME, 0)?;
-        }
-        let mut latched = [0; MOST_AXES as usize];
-        if ended? == Ended::Done {
-            self.stop()?;
-            self.clear()?;
-        }
-        if missed != 0 {
-            return Err(HostError::NoLimit { axes: missed });
-        }
-        for (axis, place) in (0..self.session.axes()).zip(&mut latched).filter(|(axis, _)| axes >> axis & 1 == 1) {
-            *place = self.register(of_axis(LATCHED, axis))?.cast_signed();
-        }
-        Ok(latched)
     }
 }

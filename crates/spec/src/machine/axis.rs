@@ -1,5 +1,6 @@
 //! `[[machine.axis]]`: units, limits and driver of an axis, each checked against the timebase.
 
+use super::home::{RawHome, RawPlace};
 use super::{Axis, stop};
 use crate::build::{MAX_CLOCKS, PinTiming, Timebase};
 use crate::decimal;
@@ -26,9 +27,16 @@ pub(super) struct RawAxis {
     gap_ns: Option<Spanned<u64>>,
     setup_ns: Option<Spanned<u64>>,
     hold_ns: Option<Spanned<u64>>,
+    travel: Option<Spanned<Vec<Spanned<f64>>>>,
+    home: Option<Spanned<RawHome>>,
 }
 
 impl RawAxis {
+    /// Takes out what is checked when the guard is known.
+    pub(super) fn place(&mut self) -> RawPlace {
+        RawPlace { travel: self.travel.take(), home: self.home.take() }
+    }
+
     pub(super) fn check(self, source: &Source, timebase: &Timebase) -> Result<Axis, InputError> {
         let name = self.name.as_ref().clone();
         let fit = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -62,8 +70,19 @@ impl RawAxis {
             None => stop::at_the_limit(&accel_limit, timebase),
             Some(value) => stop::units(source, value, &steps_per_unit, timebase)?,
         };
-        let axis =
-            Axis { name, steps_per_unit, start_speed, speed_limit, accel_limit, jerk_limit, stop, pins_ns, pins };
+        let axis = Axis {
+            name,
+            steps_per_unit,
+            start_speed,
+            speed_limit,
+            accel_limit,
+            jerk_limit,
+            stop,
+            pins_ns,
+            pins,
+            travel: None,
+            home: None,
+        };
         axis.check_speed(source, self.speed_limit.span(), timebase)?;
         axis.check_acceleration(source, self.accel_limit.span(), timebase)?;
         Ok(axis)

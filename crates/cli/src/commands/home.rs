@@ -1,0 +1,201 @@
+//! `carrystep home`: the axes of a machine find their limit switches, and the command remembers where machine zero is.
+
+use crate::arguments::Home;
+use crate::connection::{self, Connection};
+use crate::control::StoppedBy;
+use crate::drive::{Culprit, How};
+use crate::failure::Failure;
+use crate::memory::{self, Limit, Memory};
+use crate::{found, homing, output};
+use carrystep_link::{Ended, Homed, Homing, HomingFault, HostError, Stage};
+use carrystep_spec::Machine;
+use carrystep_spec::engine::Cause;
+use carrystep_spec::machine::End;
+use indicatif::{ProgressBar, ProgressDrawTarget};
+use serde::Serialize;
+use std::fmt;
+use std::time::Instant;
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Report {
+    passed: bool,
+    port: String,
+    build: String,
+    ended: How,
+    stopped_by: Option<StoppedBy>,
+    cause: Option<&'static str>,
+    culprits: Vec<Culprit>,
+    remedy: Option<&'static str>,
+    run_s: f64,
+    axes: Vec<AxisReport>,
+}
+
+#[derive(Serialize)]
+struct AxisReport {
+    axis: String,
+    /// Position registers before, where the limit was accepted in the slow approach, and after; steps.
+    before: i32,
+    edge: Option<i32>,
+    position: i32,
+    /// Where it stands, machine coordinate in units of the axis; nothing where it is not homed.
+    machine: Option<f64>,
+    homed: bool,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: build {}", self.port, self.build)?;
+        writeln!(f, "{:<6}  {:>11}  {:>11}  {:>11}  {:>12}", "axis", "before", "switch at", "position", "machine")?;
+        for AxisReport { axis, before, edge, position, machine, .. } in &self.axes {
+            let edge = edge.map_or_else(|| "-".to_owned(), |edge| edge.to_string());
+            let machine = machine.map_or_else(|| "-".to_owned(), |machine| format!("{machine:.4}"));
+            writeln!(f, "{axis:<6}  {before:>11}  {edge:>11}  {position:>11}  {machine:>12}")?;
+        }
+        match self.ended {
+            How::Done => f.write_str("HOMED\n"),
+            How::Stopped => {
+                let by = if self.stopped_by == Some(StoppedBy::Stop) { "`carrystep stop`" } else { "Ctrl-C" };
+                writeln!(f, "STOPPED by {by}; these axes are not homed")
+            }
+            How::Fault => {
+                let names: Vec<&str> = self.culprits.iter().map(|culprit| &*culprit.axis).collect();
+                let from = if names.is_empty() { String::new() } else { format!(", from {}", names.join(", ")) };
+                writeln!(f, "STOPPED by the machine: {}{from}; these axes are not homed", self.cause.unwrap_or("?"))?;
+                self.remedy.map_or(Ok(()), |remedy| writeln!(f, "to do: {remedy}"))
+            }
+        }
+    }
+}
+
+/// Homes the axes that are named, or all that can.
+pub fn run(arguments: &Home) -> Result<(), Failure> {
+    let machine = Machine::load(&arguments.machine)?;
+    let groups = homing::groups(&machine, &arguments.axes)?;
+    let mut homing = homing::of(&machine, &groups);
+    homing
+        .check()
+        .map_err(|(axis, why)| Failure::input(format!("axis {}: {why}", machine.axes[usize::from(axis)].name)))?;
+    let connection = connection::to_machine(&arguments.port, &machine, &arguments.machine, "home")?;
+    let mut memory = Memory::recall(&connection);
+    homing.others = homing::others(&machine, homing.mask(), connection.board.status(), &memory);
+    let report = drive(connection, &machine, &homing, &mut memory)?;
+    if arguments.json {
+        output::print_json(&report)?;
+    } else {
+        output::print(&report.to_string())?;
+    }
+    if report.passed { Ok(()) } else { Err(Failure::Check) }
+}
+
+fn drive(
+    connection: Connection,
+    machine: &Machine,
+    homing: &Homing<'_>,
+    memory: &mut Memory,
+) -> Result<Report, Failure> {
+    // The port is closed before the control gives up its claim: what is bound first is dropped last.
+    let Connection { mut control, port, mut board, axes, .. } = connection;
+    let begun = Instant::now();
+    let facts = *board.facts();
+    let start = *board.status();
+    if start.answer.fault {
+        let fault = HostError::Fault { cause: start.answer.cause, culprits: start.answer.culprits };
+        return Err(connection::broken(&fault, &axes));
+    }
+    let line = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+    let powered = board
+        .enable_while(|progress| control.wish(progress.status))
+        .map_err(|error| connection::broken(&error, &axes))?;
+    let mut last = (0, Stage::MoveOff);
+    let outcome = match powered {
+        Ended::Stopped => Ok(Homed::Stopped),
+        Ended::Done => board.home(homing, |moving, stage, progress| {
+            last = (moving, stage);
+            line.set_message(format!("{} {stage}", found::names(&axes, moving)));
+            line.tick();
+            control.wish(progress.status)
+        }),
+    };
+    line.finish_and_clear();
+    // An axis that was to be homed is nowhere until it is.
+    (0..axes.len())
+        .filter(|number| homing.mask() >> number & 1 == 1)
+        .for_each(|number| memory.set_offset(number, None));
+    let mut edges = None;
+    let ended = match outcome {
+        Ok(Homed::At(places)) => {
+            for (number, home) in
+                machine.axes.iter().enumerate().filter_map(|(number, axis)| Some((number, axis.home?)))
+            {
+                if homing.mask() >> number & 1 == 1 {
+                    memory.set_offset(number, Some(home.position - i64::from(places[number])));
+                    memory.set_limit(number, None);
+                }
+            }
+            edges = Some(places);
+            How::Done
+        }
+        Ok(Homed::Stopped) => {
+            board.clear().map_err(|error| connection::broken(&error, &axes))?;
+            How::Stopped
+        }
+        Err(HostError::Fault { cause, .. }) => {
+            if memory::freezes(cause, &machine.guard) {
+                memory.forget_places();
+            }
+            How::Fault
+        }
+        Err(HostError::Homing { axes: mask, why }) => {
+            let positions = board.status().positions;
+            for number in (0..axes.len()).filter(|number| why == HomingFault::Closed && mask >> number & 1 == 1) {
+                memory.set_limit(number, closed(machine, number, last.1, positions[number]));
+            }
+            // A file that cannot be written does not match the board, and counts for nothing.
+            let _ = memory.keep(&mut board);
+            return Err(Failure::Run(homing::fault(machine, mask, why)));
+        }
+        Err(error) => return Err(connection::lost(&error, &axes, &facts)),
+    };
+    let answer = board.status().answer;
+    let cause = found::cause(&answer).filter(|_| ended == How::Fault);
+    let kept = memory.keep(&mut board);
+    let end = *board.status();
+    let is_culprit = |number: usize| cause.is_some() && answer.culprits >> number & 1 == 1;
+    let culprits = (0..axes.len()).filter(|&number| is_culprit(number));
+    let report = Report {
+        passed: ended == How::Done,
+        port,
+        build: format!("{:016x}", facts.build),
+        ended,
+        stopped_by: control.stopped_by().filter(|_| ended == How::Stopped),
+        cause: answer.cause_name().filter(|_| ended == How::Fault),
+        culprits: culprits.map(|number| Culprit { axis: axes[number].clone(), direction: 0 }).collect(),
+        remedy: cause.map(Cause::remedy),
+        run_s: begun.elapsed().as_secs_f64(),
+        axes: (0..axes.len())
+            .filter(|number| homing.mask() >> number & 1 == 1)
+            .map(|number| AxisReport {
+                axis: axes[number].clone(),
+                before: start.positions[number],
+                edge: edges.map(|edges| edges[number]),
+                position: end.positions[number],
+                machine: memory.coordinate(number, end.positions[number]),
+                homed: edges.is_some(),
+            })
+            .collect(),
+    };
+    match kept {
+        Err(error) if ended == How::Done => Err(Failure::Run(format!(
+            "the axes are homed, but where machine zero is cannot be remembered: {error}; CARRYSTEP_STATE names another folder"
+        ))),
+        _ => Ok(report),
+    }
+}
+
+/// The way of an axis that met a limit while it moved away from its switch, as its limit to be remembered.
+fn closed(machine: &Machine, number: usize, stage: Stage, at: i32) -> Option<Limit> {
+    let home = machine.axes[number].home.as_ref()?;
+    let away = if home.toward == End::Max { -1 } else { 1 };
+    (stage != Stage::PullOff).then_some(Limit { direction: away, at, clear: home.move_off })
+}

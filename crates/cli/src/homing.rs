@@ -1,0 +1,112 @@
+//! How a machine homes, as its file says, and why it could not.
+
+use crate::failure::Failure;
+use crate::memory::Memory;
+use carrystep_link::{AxisHoming, Homing, HomingFault, Status, Wiring};
+use carrystep_spec::engine::Limits;
+use carrystep_spec::machine::{End, Home as AxisHome};
+use carrystep_spec::{Axis, Machine};
+
+/// The axes to home, in the order of the machine, a bit each.
+pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
+    let mut wanted = 0_u8;
+    for name in names {
+        let number = machine.axis_index(name).ok_or_else(|| {
+            Failure::input(format!("no axis is called '{name}': the axes are {}", machine.axis_names()))
+        })?;
+        if machine.axes[number].home.is_none() {
+            return Err(Failure::input(format!(
+                "axis '{name}' has no home table in the machine file: home = {{ toward = \"min\", ... }}, as in docs/homing.md"
+            )));
+        }
+        wanted |= 1 << number;
+    }
+    let mask = |group: &Vec<usize>| group.iter().fold(0_u8, |mask, axis| mask | 1 << axis);
+    let wanted = if names.is_empty() { u8::MAX } else { wanted };
+    let groups: Vec<u8> =
+        machine.home_order.iter().map(|group| mask(group) & wanted).filter(|&mask| mask != 0).collect();
+    if groups.is_empty() {
+        return Err(Failure::input(
+            "no axis of the machine has a home table: home = { toward = \"min\", ... }, as in docs/homing.md",
+        ));
+    }
+    Ok(groups)
+}
+
+/// How the machine homes.
+pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
+    let mut axes = [None; 8];
+    for (place, axis) in axes.iter_mut().zip(&machine.axes) {
+        *place =
+            axis.home.map(|AxisHome { toward, start, accel, seek, slow, move_off, max_travel, pull_off, .. }| {
+                AxisHoming { toward_max: toward == End::Max, start, accel, seek, slow, move_off, max_travel, pull_off }
+            });
+    }
+    let wiring = match machine.guard.limits {
+        Limits::Each => Wiring::Each,
+        Limits::One => Wiring::One,
+        Limits::Pair | Limits::None => Wiring::Pair,
+    };
+    let (round, debounce) = (machine.guard.round, machine.guard.debounce);
+    Homing { wiring, axes, groups, others: 0, round, debounce }
+}
+
+/// On one wire: the other axes that may stand on their switches, a bit each. One that is homed, and at least as far from its
+/// switch as homing leaves it, does not.
+pub fn others(machine: &Machine, wanted: u8, status: &Status, memory: &Memory) -> u8 {
+    if machine.guard.limits != Limits::One {
+        return 0;
+    }
+    let clear = |number: usize, home: &AxisHome| {
+        let Some(offset) = memory.offset(number) else { return false };
+        let away = i64::from(status.positions[number]) + offset - home.position;
+        let away = if home.toward == End::Max { -away } else { away };
+        away >= i64::from(home.pull_off) && memory.limit(number).is_none()
+    };
+    let unclear = |(number, axis): (usize, &Axis)| {
+        let home = axis.home.as_ref()?;
+        (wanted >> number & 1 == 0 && !clear(number, home)).then_some(1_u8 << number)
+    };
+    machine.axes.iter().enumerate().filter_map(unclear).fold(0, |mask, bit| mask | bit)
+}
+
+/// Why homing has failed, in units of the axes, and what to do.
+pub fn fault(machine: &Machine, mask: u8, why: HomingFault) -> String {
+    let of = |distance: fn(&AxisHome) -> u32| {
+        let axes = machine.axes.iter().enumerate().filter(|(number, _)| mask >> number & 1 == 1);
+        let texts = axes.filter_map(|(_, axis)| {
+            let steps = distance(axis.home.as_ref()?);
+            // For the eye only: a float decides nothing here.
+            let per_unit: f64 = axis.steps_per_unit.to_string().parse().unwrap_or(1.0);
+            Some(format!("{} by {:.4} ({steps} steps)", axis.name, f64::from(steps) / per_unit))
+        });
+        texts.collect::<Vec<_>>().join(", ")
+    };
+    let names = || {
+        let axes = machine.axes.iter().enumerate().filter(|(number, _)| mask >> number & 1 == 1);
+        axes.map(|(_, axis)| &*axis.name).collect::<Vec<_>>().join(", ")
+    };
+    match why {
+        HomingFault::NotFound => format!(
+            "no limit was met: moved {}, which is max_travel; look at the switch, its wiring and limit_level. A switch that is \
+             still closed after moving off is not seen where limits = \"each\" or \"one\"",
+            of(|home| home.max_travel)
+        ),
+        HomingFault::Closed => format!(
+            "a limit of {} closed while it moved away from its home switch: the other end of the axis, or a switch that bounces \
+             for longer than debounce_us; jog toward the home switch until the limit is open, then home again",
+            names()
+        ),
+        HomingFault::StillClosed => format!(
+            "the limit is still closed after moving off: moved {}, which is move_off; look at the switch and limit_level, or take \
+             a greater move_off",
+            of(|home| home.move_off)
+        ),
+        HomingFault::NotAgain => format!(
+            "the slow approach of {} did not find the limit again: the switch did not open within move_off, or it does not \
+             close at the same place; look at it, or take a greater move_off",
+            names()
+        ),
+        HomingFault::TooLong(error) => format!("{}: {error}", names()),
+    }
+}

@@ -1,0 +1,48 @@
+//! `home_order`: which axes home one after the other, and which together.
+
+use crate::error::{InputError, Source};
+use crate::machine::Axis;
+use toml::Spanned;
+
+/// Names of axes, in the order in which they home.
+pub(in crate::machine) type RawOrder = Spanned<Vec<Vec<Spanned<String>>>>;
+
+/// The order of a file: every axis that homes, once.
+pub(super) fn of(source: &Source, axes: &[Axis], order: RawOrder) -> Result<Vec<Vec<usize>>, InputError> {
+    let span = order.span();
+    let mut seen = vec![false; axes.len()];
+    let mut groups = Vec::new();
+    for names in order.into_inner() {
+        let mut group = Vec::new();
+        for name in names {
+            let at = |message: String| InputError::at(source, name.span(), message);
+            let Some(axis) = axes.iter().position(|axis| axis.name == *name.as_ref()) else {
+                let known: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
+                let message = format!("home_order names '{}', which is no axis", name.as_ref());
+                return Err(at(message).help(format!("the axes are {}", known.join(", "))));
+            };
+            if axes[axis].home.is_none() {
+                return Err(at(format!("home_order names axis '{}', which has no home table", name.as_ref())));
+            }
+            if std::mem::replace(&mut seen[axis], true) {
+                return Err(at(format!("home_order names axis '{}' twice", name.as_ref())));
+            }
+            group.push(axis);
+        }
+        if !group.is_empty() {
+            groups.push(group);
+        }
+    }
+    if let Some((axis, _)) = axes.iter().zip(seen).find(|(axis, seen)| axis.home.is_some() && !seen) {
+        let message = format!("home_order leaves out axis '{}', which has a home table", axis.name);
+        return Err(InputError::at(source, span, message).help("name every axis that homes"));
+    }
+    Ok(groups)
+}
+
+/// As grbl has it: z first, for the tool must be up before the table moves; then all others together.
+pub(super) fn usual(axes: &[Axis]) -> Vec<Vec<usize>> {
+    let homes = (0..axes.len()).filter(|&axis| axes[axis].home.is_some());
+    let (first, rest): (Vec<usize>, Vec<usize>) = homes.partition(|&axis| axes[axis].name.eq_ignore_ascii_case("z"));
+    [first, rest].into_iter().filter(|group| !group.is_empty()).collect()
+}

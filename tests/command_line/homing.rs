@@ -1,0 +1,306 @@
+//! `carrystep home` on virtual boards: in each wiring, from every start, twice; what it remembers, and what is refused
+//! beside a limit.
+
+use crate::command::{Folder, Ran, edit};
+use crate::virtual_boards::{Board, passed};
+use serde_json::Value;
+use std::process::{Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// Three axes; x and y home together behind z, which homes toward its high end.
+const MACHINE: &str = r#"[machine]
+tick_ns = 2000
+
+[machine.guard]
+watchdog_ms = 100
+debounce_us = 100
+limits = "pair"
+
+[machine.link]
+baud = 3_000_000
+
+[[machine.axis]]
+name = "x"
+steps_per_unit = 50
+speed_limit = 100
+accel_limit = 2000
+driver = "a4988"
+travel = [0, 20]
+home = { toward = "min", seek_speed = 50, slow_speed = 5, pull_off = 1, position = 0 }
+
+[[machine.axis]]
+name = "y"
+steps_per_unit = 50
+speed_limit = 100
+accel_limit = 2000
+driver = "a4988"
+home = { toward = "min", seek_speed = 40, slow_speed = 5, move_off = 3, max_travel = 30, pull_off = 2, position = -2.5 }
+
+[[machine.axis]]
+name = "z"
+steps_per_unit = 100
+speed_limit = 50
+accel_limit = 1000
+driver = "a4988"
+travel = [-10, 0]
+home = { toward = "max", seek_speed = 20, slow_speed = 2, move_off = 2, pull_off = 0.5, position = 0 }
+"#;
+
+/// One board at a time: a host that gets no answer for half a second gives its board up, and boards take all they can get.
+static ONE: Mutex<()> = Mutex::new(());
+
+fn alone() -> MutexGuard<'static, ()> {
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn folder(limits: &str) -> Folder {
+    let folder = Folder::new();
+    folder.write("machine.toml", MACHINE.replace("\"pair\"", &format!("\"{limits}\"")));
+    folder
+}
+
+/// The machine for a board that runs by the clock on the wall, whose host may be held up; y searches far.
+fn patient(max_travel: &str) -> String {
+    MACHINE.replace("watchdog_ms = 100", "watchdog_ms = 4000").replace("max_travel = 30, ", max_travel)
+}
+
+/// A command on the board of the machine.
+fn on(folder: &Folder, board: &Board, command: &str) -> Ran {
+    folder.run(&format!("{command} --machine machine.toml --port {}", board.port))
+}
+
+fn home(folder: &Folder, board: &Board, axes: &str) -> Value {
+    let ran = on(folder, board, &format!("home {axes}--json"));
+    passed(&ran);
+    serde_json::from_str(&ran.stdout).unwrap()
+}
+
+fn axis<'a>(told: &'a Value, name: &str) -> &'a Value {
+    told["axes"].as_array().unwrap().iter().find(|axis| axis["axis"] == name).unwrap()
+}
+
+/// The machine coordinates of all axes, as `status` says them.
+fn coordinates(folder: &Folder, board: &Board) -> Vec<Option<f64>> {
+    let ran = on(folder, board, "status --json");
+    passed(&ran);
+    let told: Value = serde_json::from_str(&ran.stdout).unwrap();
+    told["axes"].as_array().unwrap().iter().map(|axis| axis["machine"].as_f64()).collect()
+}
+
+#[test]
+fn it_homes_twice_to_the_same_place_in_each_wiring_wherever_it_starts() {
+    let _alone = alone();
+    // x starts off its switch, y and z on theirs.
+    for limits in ["pair", "each", "one"] {
+        let folder = folder(limits);
+        let board = Board::new(&folder, "--fast --min x=-300 --max x=900 --min y=40 --max z=-30");
+        let first = home(&folder, &board, "");
+        for (name, switch, rests, place) in [("x", -300, 50, 1.0), ("y", 40, 100, -0.5), ("z", -30, -50, -0.5)] {
+            let found = axis(&first, name);
+            let edge = found["edge"].as_i64().unwrap();
+            // Accepted within two steps of the slow speed.
+            assert!((edge - switch).abs() <= 2, "{limits}: {found}");
+            assert_eq!(found["position"].as_i64(), Some(edge + rests), "{limits}: {found}");
+            assert_eq!(found["machine"].as_f64(), Some(place), "{limits}: {found}");
+        }
+        assert_eq!(coordinates(&folder, &board), [Some(1.0), Some(-0.5), Some(-0.5)], "{limits}");
+        let second = home(&folder, &board, "");
+        for name in ["x", "y", "z"] {
+            let [first, second] = [&first, &second].map(|told| axis(told, name)["edge"].as_i64().unwrap());
+            assert!((first - second).abs() <= 1, "{limits}: {first}, then {second}");
+        }
+        passed(&on(&folder, &board, "jog x 2.5"));
+        assert_eq!(coordinates(&folder, &board)[0], Some(3.5), "{limits}");
+        // Only one, by its name.
+        let told = home(&folder, &board, "x ");
+        assert_eq!(told["axes"].as_array().unwrap().len(), 1);
+        assert_eq!(coordinates(&folder, &board), [Some(1.0), Some(-0.5), Some(-0.5)], "{limits}");
+    }
+}
+
+#[test]
+fn it_ends_as_soon_as_the_axes_rest() {
+    let _alone = alone();
+    let folder = folder("pair");
+    // By the clock on the wall: the search may take 1000 steps at 2500 steps/s, and the switch is near.
+    folder.write("machine.toml", patient("max_travel = 3000, "));
+    let board = Board::new(&folder, "--min y=-100");
+    let told = home(&folder, &board, "y ");
+    let seconds = told["run_s"].as_f64().unwrap();
+    // What was planned is 75 s of search.
+    assert!(seconds < 30.0, "{seconds}");
+}
+
+#[test]
+fn what_is_remembered_is_dropped_when_the_board_is_another_or_was_moved() {
+    let _alone = alone();
+    let folder = folder("each");
+    let switches = "--fast --min x=-100 --min y=-100 --max z=100";
+    let board = Board::new(&folder, switches);
+    home(&folder, &board, "");
+    assert!(coordinates(&folder, &board).iter().all(Option::is_some));
+    // A clear and a stop of our own change nothing.
+    passed(&on(&folder, &board, "stop --clear"));
+    assert!(coordinates(&folder, &board).iter().all(Option::is_some));
+    // Another host, which knows nothing of the file.
+    let mut other = Command::new(env!("CARGO_BIN_EXE_carrystep"));
+    let jog = ["jog", "x", "1", "--machine", "machine.toml", "--port", &board.port];
+    let elsewhere = folder.path("elsewhere");
+    other.args(jog).env("CARRYSTEP_STATE", elsewhere).current_dir(folder.path(""));
+    assert!(other.stdout(Stdio::null()).status().unwrap().success());
+    assert_eq!(coordinates(&folder, &board), [None, None, None]);
+    home(&folder, &board, "y ");
+    assert!(coordinates(&folder, &board)[1].is_some());
+    // Without power nothing holds the axes.
+    passed(&on(&folder, &board, "stop --off"));
+    assert_eq!(coordinates(&folder, &board), [None, None, None]);
+    // Another machine file with other steps; the gateware is the same.
+    home(&folder, &board, "y ");
+    let half = [
+        ("\"pair\"", "\"each\""),
+        ("steps_per_unit = 50", "steps_per_unit = 25"),
+        ("accel_limit = 2000", "accel_limit = 4000"),
+    ];
+    folder.write("machine.toml", half.iter().fold(MACHINE.to_owned(), |text, (old, new)| text.replace(old, new)));
+    assert_eq!(coordinates(&folder, &board), [None, None, None]);
+    drop(board);
+    // A file that is half written, or of another kind.
+    let kept = std::fs::read_dir(folder.state()).unwrap().map(|entry| entry.unwrap().path());
+    for path in kept {
+        std::fs::write(path, "{\"schema\": 1, \"port\"").unwrap();
+    }
+    let board = Board::new(&folder, switches);
+    assert_eq!(coordinates(&folder, &board), [None, None, None]);
+}
+
+#[test]
+fn a_board_that_was_restarted_is_not_homed() {
+    let _alone = alone();
+    let folder = folder("pair");
+    // Homed at register 0, as a board stands that was just restarted: 50 steps back to the switch, and off again.
+    folder.write("machine.toml", MACHINE.replace("pull_off = 1,", "pull_off = 1.02,"));
+    let board = Board::new(&folder, "--fast --min x=-50");
+    let told = home(&folder, &board, "x ");
+    let port = board.port.clone();
+    drop(board);
+    // The system gives the next one the same name, as soon as it may.
+    let begin = std::time::Instant::now();
+    let board = loop {
+        let board = Board::new(&folder, "--fast --min x=-50");
+        if board.port == port || begin.elapsed() > Duration::from_secs(2) {
+            break board;
+        }
+    };
+    assert_eq!(coordinates(&folder, &board)[0], None, "{told}");
+}
+
+#[test]
+fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
+    let _alone = alone();
+    for limits in ["each", "pair"] {
+        let folder = folder(limits);
+        let board = Board::new(&folder, "--fast --min y=-100");
+        let jog = |arguments: &str| on(&folder, &board, &format!("jog y {arguments}"));
+        let clear = || passed(&on(&folder, &board, "stop --clear"));
+        let ran = jog("-5");
+        assert_eq!(ran.status, 1, "{}", ran.stderr);
+        assert!(ran.stdout.contains("STOPPED by the machine: limit"), "{}", ran.stdout);
+        clear();
+        for _ in 0..2 {
+            jog("-1").refuses("axis y has met its limit going back");
+        }
+        // Away, but not as far as the switch needs to open.
+        passed(&jog("1"));
+        jog("-0.1").refuses("jog it forward by 1");
+        // A file of moves is no way round it.
+        folder.write(
+            "move.toml",
+            "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trapezoid\"\nto = { y = -1 }\n",
+        );
+        folder.run(&format!("run move.toml --port {}", board.port)).refuses("axis y has met its limit");
+        passed(&on(&folder, &board, "jog x 1"));
+        passed(&jog("3"));
+        passed(&jog("-1"));
+        // And all the same, where that is wished; the far side of the switch is nothing's end here.
+        assert_eq!(jog("-5").status, 1);
+        clear();
+        jog("-0.1").refuses("--into-limit");
+        let ran = jog("-0.1 --into-limit");
+        // Two switches: a limit that is closed still stops what goes toward it. One: it is not seen.
+        assert_eq!(ran.status, if limits == "pair" { 1 } else { 0 }, "{}{}", ran.stdout, ran.stderr);
+    }
+}
+
+#[test]
+fn homing_that_finds_nothing_says_what_and_how_far() {
+    let _alone = alone();
+    let folder = folder("each");
+    let board = Board::new(&folder, "--fast --max z=100");
+    let ran = on(&folder, &board, "home");
+    assert_eq!((ran.status, ran.stdout.as_str()), (1, ""));
+    // 20 units of travel, and twice move_off, which is a ramp from full speed, the debounce and a hundredth of the travel.
+    assert!(ran.stderr.starts_with("error: no limit was met: moved x by 2"), "{}", ran.stderr);
+    assert!(ran.stderr.contains(", y by 30.0000 (1500 steps), which is max_travel"), "{}", ran.stderr);
+    // Nothing else is wrong with the machine, and z is homed no less.
+    passed(&on(&folder, &board, "jog x 1"));
+}
+
+#[cfg(unix)]
+#[test]
+fn homing_that_is_interrupted_comes_to_rest_and_can_begin_again() {
+    let _alone = alone();
+    let folder = folder("pair");
+    // By the clock on the wall, and far away.
+    folder.write("machine.toml", patient("max_travel = 30000, "));
+    let mut board = Board::new(&folder, "");
+    let begin = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
+        command.args(["home", "y", "--machine", "machine.toml", "--json", "--port", &board.port]);
+        command.env("CARRYSTEP_STATE", folder.state()).current_dir(folder.path(""));
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        // It answers for the board as soon as it drives. A status that was quicker holds the port, and refuses it.
+        while !on(&folder, &board, "status --json").stdout.contains("\"idle\": false") {
+            if child.try_wait().unwrap().is_some() {
+                child = command.spawn().unwrap();
+            }
+            std::thread::sleep(Duration::from_millis(200));
+        }
+        child
+    };
+    let told = |child: std::process::Child| -> Value {
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let child = begin();
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let first = told(child);
+    assert_eq!((&first["ended"], &first["stopped_by"]), (&"stopped".into(), &"interrupt".into()));
+    let child = begin();
+    passed(&on(&folder, &board, "stop"));
+    let second = told(child);
+    assert_eq!((&second["ended"], &second["stopped_by"]), (&"stopped".into(), &"stop".into()));
+    passed(&on(&folder, &board, "stop --clear"));
+    let child = begin();
+    board.press("estop 1");
+    let third = told(child);
+    assert_eq!((&third["ended"], &third["cause"]), (&"fault".into(), &"e-stop".into()));
+}
+
+#[test]
+fn what_cannot_home_is_refused_before_anything_moves() {
+    let _alone = alone();
+    let folder = folder("pair");
+    let board = Board::new(&folder, "--fast");
+    on(&folder, &board, "home w").refuses("no axis is called 'w': the axes are x, y, z");
+    let (odd, place) = edit(MACHINE, "slow_speed = 5, pull_off = 1", "slow_speed = ^60, pull_off = 1");
+    folder.write("bad.toml", odd);
+    let bad = |axes: &str| folder.run(&format!("home {axes}--machine bad.toml --port {}", board.port));
+    bad("").refuses_at("bad.toml", place, "slow_speed is over seek_speed");
+    let without = MACHINE.lines().filter(|line| !line.starts_with("home")).collect::<Vec<_>>().join("\n");
+    folder.write("bad.toml", without);
+    bad("").refuses("no axis of the machine has a home table");
+    bad("x ").refuses("axis 'x' has no home table");
+}
