@@ -34,6 +34,8 @@ mod outputs;
 mod plots;
 mod profile;
 #[cfg(unix)]
+mod stop_on_the_wire;
+#[cfg(unix)]
 mod stops;
 mod sweeps;
 mod table;

@@ -4,17 +4,11 @@
 use crate::command::{Folder, Ran};
 use crate::virtual_boards::{Board, MACHINE, document, folder, passed};
 use serde_json::Value;
-use serialport::{SerialPort as _, TTYPort};
-use std::io::{Read as _, Write as _};
 use std::process::{Child, Command, Stdio};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver};
-use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// A command that drives the board at this port.
-fn drives(folder: &Folder, arguments: &str, port: &str) -> Child {
+pub fn drives(folder: &Folder, arguments: &str, port: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(arguments.split(' ')).args(["--port", port, "--json"]).current_dir(folder.path(""));
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
@@ -27,7 +21,7 @@ fn status(folder: &Folder, port: &str) -> Value {
 }
 
 /// Waits until that command has the port and something moves; what `status` says then.
-fn moving(folder: &Folder, child: &mut Child, port: &str) -> Value {
+pub fn moving(folder: &Folder, child: &mut Child, port: &str) -> Value {
     loop {
         assert_eq!(child.try_wait().unwrap(), None, "it has ended");
         let ran = folder.run(&format!("status --port {port} --machine machine.toml --json"));
@@ -40,7 +34,7 @@ fn moving(folder: &Folder, child: &mut Child, port: &str) -> Value {
     }
 }
 
-fn stop(folder: &Folder, port: &str, options: &str) -> Ran {
+pub fn stop(folder: &Folder, port: &str, options: &str) -> Ran {
     folder.run(&format!("stop --port {port} --machine machine.toml{options}"))
 }
 
@@ -251,81 +245,4 @@ fn a_jog_of_less_than_half_a_step_is_refused() {
     jog("y -0.005").refuses("jog y -0.005 is 0.400 step");
     jog("x 0").refuses("jog x 0 is 0.000 step");
     jog("x 0.1").refuses("there is no serial port none");
-}
-
-/// A host's bytes on their way to a board, and when a write of CONTROL with its stop bit was among them.
-struct Spy {
-    port: String,
-    stops: Receiver<Instant>,
-    ends: Arc<AtomicBool>,
-    thread: Option<JoinHandle<()>>,
-}
-
-impl Spy {
-    fn new(board: &Board) -> Self {
-        let (mut host, other) = TTYPort::pair().unwrap();
-        let port = other.name().unwrap();
-        // The name stays after this end is closed: the host opens it anew.
-        drop(other);
-        host.set_timeout(Duration::from_millis(1)).unwrap();
-        let mut line = serialport::new(&board.port, 3_000_000).timeout(Duration::from_millis(1)).open().unwrap();
-        let (tell, stops) = mpsc::channel();
-        let ends = Arc::new(AtomicBool::new(false));
-        let over = Arc::clone(&ends);
-        let thread = std::thread::spawn(move || {
-            let (mut bytes, mut frame) = ([0; 512], Vec::new());
-            while !over.load(Ordering::Relaxed) {
-                let waits = |port: &dyn serialport::SerialPort| port.bytes_to_read().unwrap_or(0) > 0;
-                let (from_host, from_board) = (waits(&host), waits(&*line));
-                if from_host {
-                    let count = host.read(&mut bytes).unwrap_or(0);
-                    for &byte in &bytes[..count] {
-                        if byte != 0xc0 {
-                            frame.push(byte);
-                        } else if let [_, 0xa0, word, ..] = std::mem::take(&mut frame)[..]
-                            && word & 2 != 0
-                        {
-                            tell.send(Instant::now()).unwrap();
-                        }
-                    }
-                    line.write_all(&bytes[..count]).unwrap();
-                }
-                if from_board {
-                    let count = line.read(&mut bytes).unwrap_or(0);
-                    let _ = host.write_all(&bytes[..count]);
-                }
-                if !from_host && !from_board {
-                    std::thread::sleep(Duration::from_micros(200));
-                }
-            }
-        });
-        Self { port, stops, ends, thread: Some(thread) }
-    }
-}
-
-impl Drop for Spy {
-    fn drop(&mut self) {
-        self.ends.store(true, Ordering::Relaxed);
-        let _ = self.thread.take().map(JoinHandle::join);
-    }
-}
-
-/// How many exchanges a stop takes at most is asserted without a clock, in crates/link/tests/host.rs. Here is the whole
-/// way from a second command to the wire; of several tries the best counts, for this computer may be busy.
-#[test]
-fn a_stop_from_a_second_terminal_is_on_the_wire_within_100_ms() {
-    let folder = folder();
-    let board = Board::new(&folder, "");
-    let spy = Spy::new(&board);
-    let mut took = Vec::new();
-    for _ in 0..5 {
-        let mut child = drives(&folder, "run long.toml", &spy.port);
-        moving(&folder, &mut child, &spy.port);
-        let asked = Instant::now();
-        passed(&stop(&folder, &spy.port, ""));
-        took.push(spy.stops.recv_timeout(Duration::from_secs(10)).unwrap() - asked);
-        assert_eq!(document(child)["stopped_by"], "stop");
-    }
-    println!("from the start of the command to its frame on the wire: {took:?}");
-    assert!(took.iter().min().unwrap() <= &Duration::from_millis(100), "{took:?}");
 }

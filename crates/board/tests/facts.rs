@@ -219,11 +219,11 @@ fn refusals_feed<B: Kind>() {
 #[test]
 fn time_outs_are_those_of_the_page() {
     let page = include_str!("../../../docs/protocol.md");
-    let Patience { timing, silence, change, look } = Patience::default();
+    let Patience { timing, silence, lost, change, look } = Patience::default();
     for row in [
         format!("| no progress, send again from `next` on | after {} ms |", timing.resend),
         format!("| busy, try again | after {} ms |", timing.pause),
-        format!("| no answer at all, give up | after {silence} ms |"),
+        format!("| no answer at all, give up | after {silence} ms, or {lost} ms once the board has answered |"),
         format!("| power, a stop by ramps, a clear | {change} ms at most |"),
         format!("| a look at the machine while there is nothing to send | every {look} ms |"),
     ] {

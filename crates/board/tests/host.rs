@@ -12,7 +12,8 @@ use support::random::Random;
 use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, Kind, MS, build, waves};
 
-const QUICK: Patience = Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, change: 100, look: 20 };
+const QUICK: Patience =
+    Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 100, look: 20 };
 
 /// Runs a body with both boards.
 macro_rules! on_both {

@@ -63,7 +63,7 @@ impl Drop for Over<'_> {
 fn in_rust(port: &str) {
     let line = SerialLine::open(port, uart().baud()).unwrap();
     // A board may be slow.
-    let patience = Patience { silence: 60_000, change: 60_000, ..Patience::default() };
+    let patience = Patience { silence: 60_000, lost: 60_000, change: 60_000, ..Patience::default() };
     let id = uart().build_id(&build()).0;
     let mut host: Host<_, _> = Host::connect(line, SystemClock::default(), Some(id), patience).unwrap();
     host.enable().unwrap();

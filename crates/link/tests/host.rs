@@ -14,7 +14,8 @@ use support::random::{Random, program};
 use support::soak::TICKS;
 
 const BUILD: u64 = 0x0123_4567_89ab_cdef;
-const QUICK: Patience = Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, change: 2000, look: 20 };
+const QUICK: Patience =
+    Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 2000, look: 20 };
 
 type Error = HostError<Infallible>;
 

@@ -68,6 +68,23 @@ fn a_port_is_one_hosts_by_all_of_its_names() {
     SerialLine::open(link.to_str().unwrap(), 921_600).unwrap();
 }
 
+/// A board that hangs must not make its host hang.
+#[cfg(unix)]
+#[test]
+fn a_line_that_nobody_reads_blocks_nobody() {
+    let (_board, port) = TTYPort::pair().unwrap();
+    let name = port.name().unwrap();
+    drop(port);
+    let mut line = SerialLine::open(&name, 3_000_000).unwrap();
+    let (tell, told) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        let sent: usize = (0..1000).map(|_| line.exchange(&[0x55; 256], &mut [0; 256]).unwrap().sent).sum();
+        tell.send(sent).unwrap();
+    });
+    let sent = told.recv_timeout(std::time::Duration::from_secs(30)).expect("it hangs");
+    assert!((8_192..=12_288).contains(&sent), "{sent}");
+}
+
 #[test]
 fn a_port_that_cannot_be_opened_says_why() {
     let absent = SerialLine::open("/dev/carrystep-none", 921_600).err().unwrap();

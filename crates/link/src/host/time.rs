@@ -32,8 +32,11 @@ impl Clock for SystemClock {
 pub struct Patience {
     /// For single answers.
     pub timing: Timing,
-    /// Without any answer, until the gateware is given up, ms.
+    /// Without any answer, until a port is given up at which nothing has answered yet, ms.
     pub silence: u32,
+    /// Without any answer, until a gateware is given up that has answered before, ms. Its watchdog is far quicker, so
+    /// nothing is won by haste, and a computer may be busy.
+    pub lost: u32,
     /// For what takes its time: power, a stop by ramps, a clear; ms.
     pub change: u32,
     /// From one look at the machine to the next while there is nothing to send, ms; less than the watchdog's time.
@@ -42,6 +45,6 @@ pub struct Patience {
 
 impl Default for Patience {
     fn default() -> Self {
-        Self { timing: Timing::default(), silence: 500, change: 5000, look: 20 }
+        Self { timing: Timing::default(), silence: 500, lost: 2000, change: 5000, look: 20 }
     }
 }

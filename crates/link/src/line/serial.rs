@@ -63,6 +63,13 @@ const AHEAD_MS: u64 = 20;
 /// So many bytes may always wait: more than a frame.
 const LEAST_AHEAD: usize = 96;
 
+/// Most bytes that are written at full speed while not one comes back: three windows of the longest frames. A
+/// pseudo-terminal that nobody reads holds some 20 000, and may block whoever writes more.
+const UNHEARD: usize = 8_192;
+/// Beyond that so many bytes are written in each exchange that hears nothing, about a millisecond: a line that comes back is
+/// noticed.
+const TRICKLE: usize = 4;
+
 /// An open serial port: 8 data bits, no parity, one stop bit, of this program alone. On Unix it is locked twice: by
 /// `TIOCEXCL`, which keeps away every program but the administrator's, and by an advisory lock (`flock`) on the
 /// device's file, which every carrystep host tries; both hold for all symbolic links to the device.
@@ -70,6 +77,8 @@ pub struct SerialLine {
     port: Box<dyn SerialPort>,
     /// Bytes that may wait in the system.
     ahead: usize,
+    /// Bytes that were written since the last one came.
+    unheard: usize,
 }
 
 impl SerialLine {
@@ -81,13 +90,13 @@ impl SerialLine {
         let opened = serialport::new(port, baud).timeout(WAIT).open().map_err(|error| refusal(port, baud, &error))?;
         // Old answers do no harm, so a port that cannot be emptied is as good.
         let _ = opened.clear(serialport::ClearBuffer::Input);
-        Ok(Self { port: opened, ahead: ahead(baud) })
+        Ok(Self { port: opened, ahead: ahead(baud), unheard: 0 })
     }
 
     /// A port that is open already.
     pub fn from_port(port: Box<dyn SerialPort>) -> Self {
         let ahead = port.baud_rate().map_or(usize::MAX, ahead);
-        Self { port, ahead }
+        Self { port, ahead, unheard: 0 }
     }
 }
 
@@ -130,12 +139,16 @@ impl Line for SerialLine {
     fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> io::Result<Exchanged> {
         // Where the system does not say how much waits, it is trusted.
         let waits = if out.is_empty() { 0 } else { self.port.bytes_to_write().map_or(0, |count| count as usize) };
-        let out = out.get(..self.ahead.saturating_sub(waits)).unwrap_or(out);
+        let most = self.ahead.saturating_sub(waits).min(UNHEARD.saturating_sub(self.unheard));
+        let out = out.get(..most).unwrap_or(out);
         let sent = if out.is_empty() { 0 } else { nothing_yet(self.port.write(out))? };
+        self.unheard = self.unheard.saturating_add(sent);
         if sent > 0 && self.port.bytes_to_read()? == 0 {
             return Ok(Exchanged { sent, received: 0 });
         }
-        Ok(Exchanged { sent, received: nothing_yet(self.port.read(into))? })
+        let received = nothing_yet(self.port.read(into))?;
+        self.unheard = if received > 0 { 0 } else { self.unheard.saturating_sub(TRICKLE) };
+        Ok(Exchanged { sent, received })
     }
 }
 
