@@ -1,6 +1,8 @@
 //! Numbers in the docs are those that the product gives.
 
 use carrystep_levels::{Job, Level, run};
+use carrystep_plan::{Plan, plan};
+use carrystep_spec::MoveFile;
 use carrystep_tests::{effort, moves};
 use std::fs;
 use std::process::Command;
@@ -44,6 +46,112 @@ fn the_flow_of_a_move_has_the_real_numbers() {
     assert!(text.contains(&grouped(plan.build.timebase.clock_to_ps(first))));
     let pulses: u64 = plan.moves.iter().flat_map(|m| &m.axes).map(|a| a.steps.unsigned_abs()).sum();
     assert!(text.contains(&format!("{pulses} edges")));
+}
+
+/// A move file of one axis.
+fn one_axis(limits: &str, moved: &str) -> MoveFile {
+    let text = format!(
+        "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\n{limits}\ndriver = \"a4988\"\n[[move]]\n{moved}\n"
+    );
+    carrystep_tests::random_moves::file(&text)
+}
+
+fn planned(file: &MoveFile) -> Plan {
+    plan::<f64>(file).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn slow_moves_are_as_accurate_as_the_page_says() {
+    let text = page("accuracy.md");
+    for seconds in [5000, 10_000, 100_000, 1_000_000] {
+        let mut cells = vec![grouped(seconds)];
+        for steps in [400, -400] {
+            let moved = format!("profile = \"trapezoid\"\ntime = {seconds}\nto = {{ x = {steps} }}");
+            let file = one_axis("speed_limit = 5000\naccel_limit = 25000", &moved);
+            let plan = planned(&file);
+            let report = moves::check(&file, &plan, &plan.lines(), &plan.program(), &plan.build);
+            assert!(report.passed, "{report}");
+            let axis = &report.axes[0];
+            cells.push(plan.moves[0].axes[0].segments.len().to_string());
+            // Adding zero makes minus zero plus.
+            cells.extend([axis.error_min_ns, axis.error_max_ns].map(|e| {
+                let tenths = e.map(|e| (e * 10.0).round() / 10.0 + 0.0);
+                tenths.map_or_else(String::new, |e| format!("{e:.1}"))
+            }));
+        }
+        let row = format!("| {} |", cells.join(" | "));
+        assert!(text.contains(&row), "no row {row}");
+    }
+    // Five units of 2^-32 step, at a step a second and where they take 1.2 ns; 8 Q of them in a tick of 1 us.
+    let unit = 2_f64.powi(-32);
+    for wanted in [
+        format!("take {:.1} ns at a speed of one step a second", 5.0 * unit * 1e9),
+        format!("under {:.2} steps/s (16 phases)", 5.0 * unit / 1.2e-9),
+        format!("is {:.4} steps/s with 16 phases", 8.0 * 16.0 * unit * 1e6),
+        format!("over {} segments", 1 << 17),
+    ] {
+        assert!(text.split_whitespace().collect::<Vec<_>>().join(" ").contains(&wanted), "not said: {wanted}");
+    }
+}
+
+#[test]
+fn a_closer_fit_costs_as_many_segments_as_the_page_says() {
+    let text = page("accuracy.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let counts = |fit_ns: u32| {
+        ["sine", "logistic"].map(|profile| {
+            let moved = format!("profile = \"{profile}\"\nfit_ns = {fit_ns}\nto = {{ x = 20_000 }}");
+            planned(&one_axis("speed_limit = 150_000\naccel_limit = 500_000", &moved)).moves[0].axes[0].segments.len()
+        })
+    };
+    let [tick, fifty, one] = [1000, 50, 1].map(counts);
+    assert!(text.contains(&format!("50 ns cost twice the segments (sine {}, logistic {})", fifty[0], fifty[1])));
+    assert!(text.contains(&format!("1 ns four to five times as many (sine {}, logistic {})", one[0], one[1])));
+    for (tick, (fifty, one)) in tick.into_iter().zip(fifty.into_iter().zip(one)) {
+        let times = |more: usize| more as f64 / tick as f64;
+        assert!((1.5..2.5).contains(&times(fifty)) && (4.0..5.0).contains(&times(one)), "{tick} {fifty} {one}");
+    }
+}
+
+#[test]
+fn table_1_of_the_article_is_what_adding_gives() {
+    let text = page("five-minutes.md");
+    let row = |name: &str| text.lines().find_map(|line| line.trim().strip_prefix(name)).expect("the table");
+    let ticks: Vec<u32> = row("tick ").split_whitespace().map(|n| n.parse().expect("a tick")).collect();
+    assert_eq!(ticks, (1..=10).collect::<Vec<_>>());
+    let mut p = 0_u64;
+    let mut wanted = (Vec::new(), Vec::new());
+    for _ in ticks {
+        // A fifth of a step, rounded up: so that five are a whole one.
+        let (next, carry) = p.overflowing_add(u64::MAX / 5 + 1);
+        p = next;
+        wanted.0.push(format!("{:.1}", p as f64 / 2_f64.powi(64)));
+        wanted.1.push(carry);
+    }
+    assert_eq!(row("P ").split_whitespace().collect::<Vec<_>>(), wanted.0);
+    let stars = row("step ");
+    let columns = text.lines().find(|line| line.trim().starts_with("tick ")).expect("the table");
+    let indent = columns.find("tick").expect("its head") + "step ".len();
+    let starred: Vec<bool> = (1..=10)
+        .map(|tick| {
+            let column =
+                columns.find(&format!(" {tick} ")).or_else(|| columns.find(&format!(" {tick}"))).expect("a tick");
+            (column..column + 4).any(|at| stars.as_bytes().get(at.saturating_sub(indent)) == Some(&b'*'))
+        })
+        .collect();
+    assert_eq!(starred, wanted.1);
+    assert!(text.contains(&format!("sixteenth: {} ns", 1000.0 / 16.0)));
+}
+
+#[test]
+fn a_tick_of_the_engine_has_the_clocks_that_the_page_says() {
+    use carrystep_spec::engine::{TURN, clocks_of_turns};
+    let text = page("engine.md");
+    let [six, eight] = [6, 8].map(clocks_of_turns);
+    assert!(text.contains(&format!("a turn of {TURN} clocks, so six need {six} and eight {eight}")));
+    // The least whole MHz that has these clocks in one tick, and in two.
+    let mhz = |us: u32| six.div_ceil(us);
+    assert!(text.contains("a 1 us tick wants 80 MHz, a 2 us tick 40 MHz"), "{} {}", mhz(1), mhz(2));
+    assert!([mhz(1), mhz(2)].iter().zip([80, 40]).all(|(&needed, said)| needed <= said && said - needed < 2));
 }
 
 /// The first line that git says, where there is a repository that git can read.

@@ -98,7 +98,6 @@ fn two_hundred(profile: ProfileKind) {
     });
     held.unwrap_or_else(|error| panic!("{error}"));
     let counts = counts.get();
-    println!("{profile}: {counts:?}");
     assert!(counts.planned > 100, "{profile}: hardly anything was planned: {counts:?}");
 }
 
@@ -164,4 +163,40 @@ fn four_hundred_steps_in_100_000_s() {
 #[test]
 fn four_hundred_steps_in_a_million_seconds() {
     four_hundred_steps_in(1_000_000);
+}
+
+/// A triangle of a million steps in as many seconds has too many pulses that are slow, and none that is slow enough.
+#[test]
+fn a_move_of_too_many_segments_is_refused_with_the_longest_time() {
+    let text = |seconds: &str| {
+        format!(
+            "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nspeed_limit = 5000\naccel_limit = 25000\n\
+             driver = \"a4988\"\n[[move]]\nprofile = \"ranade\"\ntime = {seconds}\nto = {{ x = 1_000_000 }}\n"
+        )
+    };
+    let error = plan::<f64>(&file(&text("1_000_000"))).unwrap_err();
+    let PlanError::TooSlow { longest: Some(longest), .. } = error else { panic!("{error}") };
+    let says = format!("move 1, axis x: so slow that it needs over 131072 segments; at most {longest} s would do");
+    assert_eq!(error.to_string(), says);
+    let file_of_longest = file(&text(&longest.to_string()));
+    let plan_of_longest = plan::<f64>(&file_of_longest).unwrap_or_else(|error| panic!("{error}"));
+    assert!(plan_of_longest.moves[0].axes[0].segments.len() <= 1 << 17);
+    verify(&file_of_longest, &plan_of_longest, Some(2e-9));
+    assert!(plan::<f64>(&file(&text(&(longest * 1.05).to_string()))).is_err(), "{longest} s is not the longest");
+}
+
+/// Backward, under a step a second and at the speed limit itself, the axis cannot catch up what it has to be behind.
+#[test]
+fn a_slow_backward_move_at_its_speed_limit_is_refused_and_a_slower_one_is_not() {
+    let text = |seconds: &str| {
+        format!(
+            "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nstart_speed = 0.5\nspeed_limit = 0.5\n\
+             accel_limit = 25000\ndriver = \"a4988\"\n[[move]]\nprofile = \"constant\"\ntime = {seconds}\nto = {{ x = -100 }}\n"
+        )
+    };
+    let error = plan::<f64>(&file(&text("200"))).unwrap_err();
+    assert!(matches!(error, PlanError::TooSlow { longest: None, .. }), "{error}");
+    let slower = file(&text("200.00001"));
+    let plan = plan::<f64>(&slower).unwrap_or_else(|error| panic!("{error}"));
+    holds(&slower, &plan).unwrap_or_else(|error| panic!("{error}"));
 }

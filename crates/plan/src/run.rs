@@ -171,7 +171,8 @@ impl<F: Real> Writer<'_, F> {
     }
 
     /// How a run may be as long as this, if it may, given what rounding leaves out of A and J.
-    fn fine(&self, Piece { first, ticks, .. }: Piece, acceleration: f64, jerk: f64) -> Option<Fine> {
+    fn fine(&self, piece: Piece, acceleration: f64, jerk: f64) -> Option<Fine> {
+        let Piece { first, ticks, .. } = piece;
         let length = ticks as f64;
         // V makes up for A and J, so that a long first run would start too fast by half of this.
         let late = (acceleration + jerk * length / 3.0) * length;
@@ -184,7 +185,12 @@ impl<F: Real> Writer<'_, F> {
         // From rest, the first edge comes half a step later, at speed sqrt(a) or over cbrt(j).
         let by_acceleration = wide(self.profile.acceleration(begin).abs().sqrt());
         let by_jerk = wide(self.profile.jerk(begin).abs().cbrt());
-        let at_edge = slowest.max(by_acceleration).max(by_jerk).max(f64::MIN_POSITIVE);
+        let at_edge = if self.is_level(piece) {
+            // A rounded breakpoint may leave the end of a ramp to the beginning of a cruise.
+            wide(self.profile.speed(self.middle(piece)))
+        } else {
+            slowest.max(by_acceleration).max(by_jerk).max(f64::MIN_POSITIVE)
+        };
         // A parabola t(n-t)/2 per unit of A, at most a cubic t^2 (n-t)/6 per unit of J; and V is ahead by up to
         // a unit a tick.
         let lost = (jerk * length / 40.0 + acceleration / 8.0) * length + 1.0;

@@ -124,3 +124,50 @@ fn how_long_a_ramp_takes() {
         format!("logistic {} times", ratio(logistic_least_time(STEPS, &LIMITS))),
     ]);
 }
+
+/// 360 degrees in 1 s at 1800 degrees/s^2, 200 steps a turn, in degrees.
+#[test]
+fn errors_of_the_trapezoidal_source() {
+    let (degrees, acceleration, per_step) = (360.0_f64, 1800.0_f64, 360.0 / 200.0);
+    let root = (acceleration * acceleration - 4.0 * acceleration * degrees).sqrt();
+    let (minus, plus) = ((acceleration - root) / 2.0, (acceleration + root) / 2.0);
+    let limits =
+        Limits { start_speed: 0.0, speed: f64::INFINITY, acceleration: acceleration / per_step, jerk: f64::INFINITY };
+    let ramp = carrystep_profile::rule::trapezoid(200.0, 1.0, &limits).unwrap();
+    assert!((ramp.top_speed() * per_step / minus - 1.0).abs() < 1e-12);
+    let [up, down] = [minus, plus].map(|speed| speed / acceleration);
+    assert!((ramp.breakpoints()[0] - up).abs() < 1e-12 && (ramp.breakpoints()[1] - down).abs() < 1e-12);
+    let refused =
+        carrystep_profile::rule::trapezoid(200.0, 1.0, &Limits { acceleration: 100.0, ..limits }).unwrap_err();
+    // As printed, the third segment goes backward from rest for as long as the ramp takes.
+    let printed = minus * up / 2.0 + minus * (down - up) - minus * up / 2.0;
+    says(&[
+        format!(
+            "The plus root, {plus:.0} degrees/s, begins to slow down ({up:.3} s) before it has sped up ({down:.3} s)"
+        ),
+        format!("the minus root, {minus:.1} degrees/s"),
+        format!("would do: here {:.0} degrees/s^2", refused.wanted * per_step),
+        format!(
+            "speed jumps by -{minus:.1} degrees/s and the motor turns {printed:.1} degrees instead of {degrees:.0}"
+        ),
+        format!("step numbers**, {:.1} and {:.1}", ramp.position(up), ramp.position(down)),
+        format!("here {:.0}/9", 9.0 * 200.0 / degrees),
+    ]);
+}
+
+#[test]
+fn where_the_first_step_of_a_sine_is_late() {
+    let trapezoid = (2.0 / (10_000.0 / 0.2_f64)).sqrt();
+    says(&[format!("that of the trapezoid ramp of the same time at {:.2} ms", 1e3 * trapezoid)]);
+}
+
+/// Gamma(3/4) and Gamma(1/4), for the recurrence of AVR446.
+#[test]
+fn the_first_delay_of_the_recurrence() {
+    let first = 2.0 * 1.225_416_702_465_178 / 3.625_609_908_221_908_3;
+    says(&[
+        format!("they are {:.3} times too long for ever", 1.0 / first),
+        format!("Started from {first:.3} of it"),
+        format!("right within {:.1e} in the end", 0.676 / first - 1.0),
+    ]);
+}
