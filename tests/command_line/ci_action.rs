@@ -100,7 +100,12 @@ fn whatever_is_wrong_fails_by_its_name() {
     let moves = text("moves/there/and back.toml");
     let verilog = text("hdl/carrystep_engine.v");
     for (file, wrong, name, says) in [
-        ("moves/there/and back.toml", moves.replace("time = 0.05", "time = 0.0005"), "moves/there/and back.toml", "move"),
+        (
+            "moves/there/and back.toml",
+            moves.replace("time = 0.05", "time = 0.0005"),
+            "moves/there/and back.toml",
+            "move",
+        ),
         ("machines/mill one.toml", "[machine]\n".to_owned(), "machines/mill one.toml", "axis"),
         ("hdl/carrystep_engine.v", verilog.replacen("<=", "=", 1), "hdl", "<="),
         ("machine.toml", GOOD.split("[[move]]").next().unwrap().replace("a4988", "tmc2209"), "hdl", "@@"),

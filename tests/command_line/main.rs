@@ -25,6 +25,7 @@ mod inputs;
 #[cfg(target_os = "linux")]
 mod interrupts;
 mod json_names;
+mod junit;
 #[cfg(unix)]
 mod outputs;
 mod profile;
