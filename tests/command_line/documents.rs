@@ -68,10 +68,10 @@ fn reports_are_documents() {
         ("boards icebreaker", "boards"),
         ("verilog --core engine --out engine", "verilog"),
         ("verilog --board papilio-pro --out board", "verilog-board"),
-        ("table sine --ramp-steps 100 --clock-hz 16000000 --top-speed 4000", "table"),
-        ("table sine --ramp-steps 100 --clock-hz 16000000 --top-speed 4000 --out table", "table"),
+        ("table sine --ramp-steps 100 --clock-hz 16000000 --prescaler 8 --top-speed 4000", "table"),
+        ("table sine --ramp-steps 100 --clock-hz 16000000 --prescaler 8 --top-speed 4000 --out table", "table"),
         ("profile ranade trapezoid --steps 1000 --accel 1e5 --timer-hz 1e6", "profile"),
-        ("profile logistic --steps 1000 --time 1", "profile"),
+        ("profile logistic --steps 1000 --accel 1e5", "profile"),
         ("simulate move.toml", "simulate"),
         ("plan move.toml", "plan"),
     ] {
@@ -98,7 +98,7 @@ fn bad_input_is_a_document_with_its_place() {
     let found = error(&folder.run("plan move.toml --json"), 2);
     assert_eq!((&found["kind"], &found["file"]), (&json!("input"), &json!("move.toml")));
     assert_eq!((&found["line"], &found["column"]), (&json!(13), &json!(10)));
-    assert_eq!(found["message"], "no driver is called 'a4989'; did you mean 'a4988'?");
+    assert_eq!(found["message"], "no driver is called 'a4989' (did you mean 'a4988'?)");
     assert!(found["help"].as_str().unwrap().starts_with("known: a4988"), "{found}");
 
     folder.write("move.toml", GOOD.replace("time = 0.05", "time = 0.0005"));

@@ -28,6 +28,7 @@ mod inputs;
 #[cfg(target_os = "linux")]
 mod interrupts;
 mod json_names;
+mod junit;
 mod machine_new;
 #[cfg(unix)]
 mod outputs;

@@ -14,9 +14,9 @@ pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     known.into_iter().map(apart).filter(close).min_by_key(|&(distance, _)| distance).map(|(_, name)| name)
 }
 
-/// "; did you mean 'x'?" where a known name is near, and nothing otherwise.
+/// " (did you mean 'x'?)" where a known name is near, and nothing otherwise.
 pub fn did_you_mean<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(wrong, known).map_or_else(String::new, |name| format!("; did you mean '{name}'?"))
+    nearest(wrong, known).map_or_else(String::new, |name| format!(" (did you mean '{name}'?)"))
 }
 
 #[cfg(test)]
@@ -30,7 +30,7 @@ mod tests {
         for (wrong, name) in [("a4989", "a4988"), ("A4988", "a4988"), ("drv8285", "drv8825"), ("tmc220", "tmc2209")] {
             assert_eq!(nearest(wrong, DRIVERS), Some(name), "{wrong}");
         }
-        assert_eq!(did_you_mean("a498", DRIVERS), "; did you mean 'a4988'?");
+        assert_eq!(did_you_mean("a498", DRIVERS), " (did you mean 'a4988'?)");
     }
 
     #[test]

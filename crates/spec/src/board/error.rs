@@ -15,7 +15,7 @@ pub enum BoardError {
         name: String,
     },
     /// It is not sold with this part.
-    #[error("{board} has no part '{part}'{}; there is {}", did_you_mean(part, .parts.iter().map(|part| &**part)), .parts.join(", "))]
+    #[error("{board} has no part '{part}'; there is {}", .parts.join(", "))]
     Part {
         /// The board.
         board: String,
