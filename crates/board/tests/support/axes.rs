@@ -204,7 +204,8 @@ impl<B: Make> Bench<B> {
 
     /// A host of the board.
     pub fn connect(&self, machine: &Machine) -> Host<Self, Self> {
-        let patience = Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 500, look: 5 };
+        let patience =
+            Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 500, look: 5 };
         let id = uart(machine).build_id(&machine.engine());
         Host::connect(self.clone(), self.clone(), Some(id.0), patience).unwrap()
     }
