@@ -61,7 +61,7 @@ pub struct Limit {
 
 impl Limit {
     /// How far an axis at this position has to move away still, steps; 0: far enough.
-    pub fn to_go(&self, position: i32) -> u32 {
+    pub fn to_go(self, position: i32) -> u32 {
         let away = i64::from(self.at.wrapping_sub(position)) * i64::from(self.direction);
         u32::try_from(i64::from(self.clear) - away).unwrap_or(0)
     }

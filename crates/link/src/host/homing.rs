@@ -268,7 +268,7 @@ impl Leg {
         let at_once = |axis: &u8| {
             let Some(homes) = homing.axis(*axis) else { return false };
             let looks = u128::from(homing.round) * 2;
-            let reach = 1 + (u128::from(speed(homes)) * looks >> 64) as u32;
+            let reach = 1 + ((u128::from(speed(homes)) * looks) >> 64) as u32;
             apart(at(&self.begun, *axis), at(&self.latched, *axis)) <= reach
         };
         match each(axes).filter(at_once).fold(0, |mask, axis| mask | 1 << axis) {

@@ -89,7 +89,7 @@ pub(super) fn check(
     order: Option<RawOrder>,
 ) -> Result<Vec<Vec<usize>>, InputError> {
     for (axis, RawPlace { travel, home }) in axes.iter_mut().zip(places) {
-        axis.travel = travel.map(|travel| travel::of(source, axis, travel)).transpose()?;
+        axis.travel = travel.map(|travel| travel::of(source, axis, &travel)).transpose()?;
         let Some(home) = home else { continue };
         if guard.limits == Limits::None {
             let message =

@@ -8,7 +8,7 @@ use crate::number::exact;
 use toml::Spanned;
 
 /// The lowest and the highest machine coordinate of an axis, steps.
-pub(super) fn of(source: &Source, axis: &Axis, travel: Spanned<Vec<Spanned<f64>>>) -> Result<[i64; 2], InputError> {
+pub(super) fn of(source: &Source, axis: &Axis, travel: &Spanned<Vec<Spanned<f64>>>) -> Result<[i64; 2], InputError> {
     let span = travel.span();
     let [low, high] = travel.as_ref().as_slice() else {
         return Err(InputError::at(source, span, "travel has two numbers: the lowest and the highest coordinate")
