@@ -164,7 +164,7 @@ fn where_the_first_step_of_a_sine_is_late() {
 /// Gamma(3/4) and Gamma(1/4), for the recurrence of AVR446.
 #[test]
 fn the_first_delay_of_the_recurrence() {
-    let first = 2.0 * 1.225_416_702_465_178 / 3.625_609_908_221_908_3;
+    let first = 2.0 * 1.225_416_702_465_178 / 3.625_609_908_221_908;
     says(&[
         format!("they are {:.3} times too long for ever", 1.0 / first),
         format!("Started from {first:.3} of it"),
