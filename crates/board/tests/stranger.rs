@@ -252,7 +252,7 @@ fn segments(stranger: &mut Stranger, axis: usize, ticks: u64) -> Vec<(u32, i64)>
         let count = (mean / 2 + stranger.random(mean)).min(left);
         left -= count;
         let v = (1 << 58) + stranger.random(1 << 60) as i64;
-        segments.push((count as u32, if axis % 2 == 0 { v } else { -v }));
+        segments.push((count as u32, if axis.is_multiple_of(2) { v } else { -v }));
     }
     segments
 }
