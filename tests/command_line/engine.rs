@@ -95,7 +95,7 @@ fn the_document_has_the_guard_as_counted() {
     let ran = with_machine(MACHINE).run(&format!("{WRITE} --json"));
     let document: Value = serde_json::from_str(&ran.stdout).unwrap();
     let names = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>().join(" ");
-    assert_eq!(names(&document), "files guard passed tick_note tick_ns top");
+    assert_eq!(names(&document), "files guard passed schema tick_note tick_ns top");
     assert_eq!(
         names(&document["guard"]),
         "debounce_us enable_ms estop limit_level limit_stop limits round_us stop_accel_steps_per_s2 watchdog_ms"

@@ -118,7 +118,7 @@ fn half_phase_lists_the_middles_of_the_steps() {
 #[test]
 fn json_has_stable_names() {
     let all = json("profile scurve --steps 40 --accel 5000 --jerk 1e5 --timer-hz 1e6");
-    assert_eq!(names(&all), ["drive", "files", "passed", "phase", "profiles", "timer_hz"]);
+    assert_eq!(names(&all), ["drive", "files", "passed", "phase", "profiles", "schema", "timer_hz"]);
     assert_eq!(all["drive"], json!({"step_angle_deg": 1.8, "microsteps": 1}));
     let profile = &all["profiles"][0];
     assert_eq!(names(profile), ["figures", "kind", "ramp", "steps"]);

@@ -40,7 +40,7 @@ fn the_recurrence_in_integers() {
 #[test]
 fn json_has_stable_names() {
     let table = json(&format!("{SOURCE} --pulses-by-group 1,2,3,4"));
-    let expected = ["compare", "cruise", "figures", "files", "groups", "passed", "request"];
+    let expected = ["compare", "cruise", "figures", "files", "groups", "passed", "request", "schema"];
     assert_eq!(names(&table), expected);
     assert_eq!(table["groups"][3], json!({"end": 1000, "pulses": 4}));
     assert_eq!(table["request"]["kind"], "logistic");

@@ -212,7 +212,7 @@ fn a_board_that_is_gone_is_named() {
     board.child.kill().unwrap();
     let output = child.wait_with_output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{said}");
+    assert_eq!((output.status.code(), output.stdout.is_empty()), (Some(1), false), "{said}");
     assert!(said.starts_with("error: the line to the board is gone: "), "{said}");
     assert!(said.contains("; the board's watchdog ramps the axes down 400"), "{said}");
     folder.run(&format!("run move.toml --port {}", board.port)).refuses("there is no serial port");
