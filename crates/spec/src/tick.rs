@@ -49,9 +49,10 @@ impl Ticks {
         self.grain_ns
     }
 
-    /// The shortest tick of at least so many clocks, ns; `None` where that is over the most that there can be.
+    /// The shortest tick of at least so many clocks, and no fewer than any tick has, ns; `None` where that is over the most
+    /// that there can be.
     pub fn shortest(&self, clocks: u32) -> Option<u64> {
-        let grains = u64::from(clocks).div_ceil(self.grain_clocks).max(1);
+        let grains = u64::from(clocks.max(MIN_CLOCKS_PER_TICK)).div_ceil(self.grain_clocks);
         (grains <= self.most()).then_some(grains * self.grain_ns)
     }
 
