@@ -10,11 +10,15 @@ use std::sync::mpsc::{Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+/// How the axis x homes; it is no part of the build.
+const HOME: &str =
+    "travel = [0, 300]\nhome = { toward = \"min\", seek_speed = 20, slow_speed = 2, pull_off = 2, position = 0 }\n";
+
 /// [`GOOD`] with a slower engine's tick, and its machine in a file of its own.
 const MOVE: &str = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"ranade\"\nto = { x = 2 }\n";
 
 fn machine() -> String {
-    GOOD.split("[[move]]").next().unwrap().replace("tick_ns = 1000", "tick_ns = 2000")
+    GOOD.split("[[move]]").next().unwrap().replace("tick_ns = 1000", "tick_ns = 2000") + HOME
 }
 
 fn build_id() -> [u32; 2] {
@@ -95,7 +99,7 @@ pub fn folder() -> Folder {
 
 /// Every command that may move something, on this port.
 fn movers(folder: &Folder, port: &str) -> [Ran; 3] {
-    ["run move.toml", "home move.toml", "jog x 1.5 --machine machine.toml"]
+    ["run move.toml", "home x --machine machine.toml", "jog x 1.5 --machine machine.toml"]
         .map(|command| folder.run(&format!("{command} --port {port}")))
 }
 
@@ -161,15 +165,10 @@ fn what_no_board_could_do_is_refused_before_the_port_is_opened() {
     jog("y 1").refuses("the machine has no axis \"y\"");
     jog("x inf").refuses("not a usable number");
     jog("x 1 --time 1e-9").refuses("move 1, axis x");
-    let two = format!("{MOVE}[[move]]\nprofile = \"ranade\"\nto = {{ x = 2 }}\n");
-    folder.write("two.toml", two);
-    folder.run("home two.toml --port /dev/carrystep-none").refuses("homing is one move");
-    let wavy =
-        MOVE.replace("ranade", "logistic").replace("x = 2", "x = 200").replace("to =", "time = 4\nfit_ns = 1\nto =");
-    folder.write("wavy.toml", wavy);
-    folder
-        .run("home wavy.toml --port /dev/carrystep-none")
-        .refuses("homing takes what a queue holds, 7 segments: axis x");
+    let home = |arguments: &str| folder.run(&format!("home {arguments} --port /dev/carrystep-none"));
+    home("y --machine machine.toml").refuses("no axis is called 'y'");
+    folder.write("homeless.toml", machine().replace(HOME, ""));
+    home("--machine homeless.toml").refuses("no axis of the machine has a home table");
 }
 
 #[test]

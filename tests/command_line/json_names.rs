@@ -36,7 +36,8 @@ const RUN: &str = "passed core level clocks run_s faults positions files";
 
 const STATUS: &str = "passed port build clock_hz tick_ns phases watchdog_ticks ready idle armed fault halted cause
     meaning remedy held_by stopped
-    axes axes[].axis axes[].position axes[].place axes[].discarded axes[].homing axes[].culprit";
+    axes axes[].axis axes[].position axes[].place axes[].machine axes[].discarded axes[].homing
+    axes[].culprit";
 
 const SERVED: &str = "passed seconds clocks fault files axes axes[].axis axes[].position axes[].discarded";
 
@@ -50,7 +51,8 @@ const BOARDS: &str = "passed tried_on_hardware boards boards[].name boards[].tit
     boards[].clocks[].made_by boards[].clocks[].why boards[].io boards[].wires boards[].wires[].port
     boards[].wires[].pin boards[].wires[].at boards[].wires[].at.connector boards[].wires[].at.label boards[].ties
     boards[].led_low boards[].flash boards[].bitstream boards[].notes boards[].conflicts boards[].sources
-    boards[].measured boards[].measured.block_rams";
+    boards[].measured boards[].measured.block_rams boards[].configured boards[].configuration_sources
+    boards[].shared";
 
 const ICE40: &str = "boards[].pll boards[].parts[].logic_cells boards[].usb boards[].clocks[].made_by.ice40_pll
     boards[].clocks[].made_by.ice40_pll.divr boards[].clocks[].made_by.ice40_pll.divf
@@ -58,6 +60,12 @@ const ICE40: &str = "boards[].pll boards[].parts[].logic_cells boards[].usb boar
     boards[].measured.logic_cells boards[].measured.nextpnr_mhz boards[].measured.icetime_mhz boards[].measured.seed";
 
 const TIES: &str = "boards[].ties[].port boards[].ties[].pin boards[].ties[].level boards[].ties[].why";
+
+/// Of boards whose ports share pins with the configuration, or wait for a gate.
+const SHARED: &str =
+    "boards[].gate boards[].shared[].port boards[].shared[].pin boards[].shared[].function boards[].shared[].modes
+    boards[].shared[].why boards[].gate.port boards[].gate.pin boards[].gate.wait_ns boards[].gate.holds
+    boards[].gate.why";
 
 const SPARTANS: &str =
     "boards[].vccaux boards[].max_baud boards[].parts[].speed boards[].bitgen boards[].clocks[].made_by.dcm
@@ -125,7 +133,7 @@ fn every_report_keeps_its_names() {
 #[test]
 fn boards_keep_their_names() {
     let folder = Folder::new();
-    document(&folder, "boards", 0, &[BOARDS, ICE40, TIES, SPARTANS]);
+    document(&folder, "boards", 0, &[BOARDS, ICE40, TIES, SHARED, SPARTANS]);
     let one = document(&folder, "boards icebreaker", 0, &[BOARDS, ICE40]);
     assert_eq!(one["boards"][0]["clocks"][0]["clock_hz"], 37_500_000);
     assert_eq!(one["tried_on_hardware"], false);

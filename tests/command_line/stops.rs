@@ -181,7 +181,9 @@ fn a_line_that_dies_in_mid_run_is_told_as_that() {
     let output = child.wait_with_output().unwrap();
     signal(&board.child, "-CONT");
     let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{said}");
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&document["passed"], &document["error"]["kind"]), (&false.into(), &"run".into()));
     assert!(said.contains("the line to the board is dead: it has answered until now"), "{said}");
     assert!(said.contains("the board's watchdog ramps the axes down 400"), "{said}");
     assert!(!said.contains("baud"), "{said}");
