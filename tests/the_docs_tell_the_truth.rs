@@ -32,6 +32,16 @@ fn the_flow_of_a_move_has_the_real_numbers() {
     assert!(text.contains(&grouped(x.segments[0].a.unsigned_abs())));
     assert!(text.contains(&grouped(x.segments[0].v.unsigned_abs())));
 
+    // The float profile: N steps in T from the start speed, a triangle.
+    let (n, v, time) = (800.0_f64, 1000.0_f64, plan.moves[0].ticks as f64 * 1e-6);
+    let top = 2.0 * n / time - v;
+    let a = 2.0 * (top - v) / time;
+    let due = ((v * v + a).sqrt() - v) / a;
+    assert!(text.contains(&format!("v_s = {} steps/s in the middle", grouped(top.round() as u64))));
+    assert!(text.contains(&format!("= {} steps/s^2, just under", grouped(a.round() as u64))));
+    assert!(text.contains(&format!("= {:.3} us", due * 1e6)));
+    assert!(text.contains(&format!("e_1 = {:.1} ns", (427e-6 - due) * 1e9)));
+
     let program = plan.program();
     let mut first = None;
     let job = Job::new(&plan.build, &program, plan.total_ticks());
@@ -110,6 +120,13 @@ fn a_closer_fit_costs_as_many_segments_as_the_page_says() {
         let times = |more: usize| more as f64 / tick as f64;
         assert!((1.5..2.5).contains(&times(fifty)) && (4.0..5.0).contains(&times(one)), "{tick} {fifty} {one}");
     }
+}
+
+#[test]
+fn a_byte_takes_the_clocks_that_the_page_of_the_link_says() {
+    let bits = 10;
+    let clocks = bits * 48_000_000 / 3_000_000;
+    assert!(page("link.md").contains(&format!("A byte takes {clocks} clocks on a UART of 3 Mbaud")));
 }
 
 #[test]

@@ -76,9 +76,7 @@ pub fn fault(machine: &Machine, mask: u8, why: HomingFault) -> String {
         let axes = machine.axes.iter().enumerate().filter(|(number, _)| mask >> number & 1 == 1);
         let texts = axes.filter_map(|(_, axis)| {
             let steps = distance(axis.home.as_ref()?);
-            // For the eye only: a float decides nothing here.
-            let per_unit: f64 = axis.steps_per_unit.to_string().parse().unwrap_or(1.0);
-            Some(format!("{} by {:.4} ({steps} steps)", axis.name, f64::from(steps) / per_unit))
+            Some(format!("{} by {}", axis.name, axis.unit.both(f64::from(steps), 0)))
         });
         texts.collect::<Vec<_>>().join(", ")
     };

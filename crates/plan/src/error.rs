@@ -50,7 +50,7 @@ pub enum PlanError {
         tick_ns: u64,
     },
     /// So slow that segments of 64 bits cannot do it, or the gateware cannot place its edges.
-    #[error("move {}, axis {axis}: {}", index + 1, too_slow(*broken, *least_speed, *longest))]
+    #[error("move {}, axis {axis}: {}", index + 1, too_slow(*broken, least_speed, *longest))]
     TooSlow {
         /// Which move.
         index: usize,
@@ -58,8 +58,8 @@ pub enum PlanError {
         axis: String,
         /// [`Broken::Slow`] or [`Broken::Segments`].
         broken: Broken,
-        /// The least speed limit with which slow edges can be placed, units/s.
-        least_speed: f64,
+        /// The least speed limit with which slow edges can be placed, in the unit of the axis.
+        least_speed: String,
         /// The longest time that works, whole ticks, seconds; `None`: not even the least time does.
         longest: Option<f64>,
     },
@@ -140,7 +140,7 @@ fn refused(refusal: &Refusal, unit: &Unit, least_time: Option<f64>) -> String {
     }
 }
 
-fn too_slow(broken: Broken, least_speed: f64, longest: Option<f64>) -> String {
+fn too_slow(broken: Broken, least_speed: &str, longest: Option<f64>) -> String {
     match (broken, longest) {
         (Broken::Segments, Some(longest)) => {
             format!("so slow that it needs over 131072 segments; at most {longest} s would do")
@@ -150,7 +150,7 @@ fn too_slow(broken: Broken, least_speed: f64, longest: Option<f64>) -> String {
         }
         (_, Some(longest)) => format!("too slow to place its edges; at most {longest} s would do"),
         (_, None) => format!(
-            "too slow to place its edges: that needs a speed_limit of {least_speed:.3} units/s, or one just over the \
+            "too slow to place its edges: that needs a speed_limit of {least_speed}, or one just over the \
              speed of the move"
         ),
     }

@@ -115,8 +115,8 @@ impl<'a> Planner<'a> {
         let works = |time: &BigDecimal| self.drafts::<F>(index, Some(time)).is_ok();
         let longest = shortest.zip(given).and_then(|(least, given)| longest_time(least, given, timebase, works));
         let named = self.file.machine.axes.iter().find(|one| one.name == axis);
-        let per_unit = named.and_then(|axis| axis.steps_per_unit.to_f64()).unwrap_or(1.0);
-        let least_speed = slow::least_speed(timebase) / per_unit;
+        let least = slow::least_speed(timebase);
+        let least_speed = named.map_or_else(|| format!("{least} steps/s"), |axis| axis.unit.both(least, 1));
         PlanError::TooSlow { index, axis, broken, least_speed, longest }
     }
 

@@ -180,7 +180,11 @@ fn what_a_board_cannot_do_is_said_with_what_would_do() {
     let icestick = board("icestick").unwrap();
     let said = |error: &dyn std::error::Error| error.to_string();
     let unknown = said(&board("icestik").unwrap_err());
-    assert!(unknown.starts_with("no board is called 'icestik'; there are icestick, icebreaker, "), "{unknown}");
+    assert!(
+        unknown
+            .starts_with("no board is called 'icestik' (did you mean 'icestick'?); there are icestick, icebreaker, "),
+        "{unknown}"
+    );
     assert!(unknown.ends_with(", cmod-s7"), "{unknown}");
     let s3board = board("s3board").unwrap();
     assert_eq!(s3board.part(None).unwrap().ordered(), "xc3s400-ft256-4");

@@ -41,6 +41,8 @@ struct AxisReport {
     position: i32,
     /// Where it stands, machine coordinate in units of the axis; nothing where it is not homed.
     machine: Option<f64>,
+    /// What the axis is measured in.
+    unit: String,
     homed: bool,
 }
 
@@ -48,9 +50,9 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: build {}", self.port, self.build)?;
         writeln!(f, "{:<6}  {:>11}  {:>11}  {:>11}  {:>12}", "axis", "before", "switch at", "position", "machine")?;
-        for AxisReport { axis, before, edge, position, machine, .. } in &self.axes {
+        for AxisReport { axis, before, edge, position, machine, unit, .. } in &self.axes {
             let edge = edge.map_or_else(|| "-".to_owned(), |edge| edge.to_string());
-            let machine = machine.map_or_else(|| "-".to_owned(), |machine| format!("{machine:.4}"));
+            let machine = machine.map_or_else(|| "-".to_owned(), |machine| format!("{machine:.4} {unit}"));
             writeln!(f, "{axis:<6}  {before:>11}  {edge:>11}  {position:>11}  {machine:>12}")?;
         }
         match self.ended {
@@ -182,6 +184,7 @@ fn drive(
                 edge: edges.map(|edges| edges[number]),
                 position: end.positions[number],
                 machine: memory.coordinate(number, end.positions[number]),
+                unit: machine.axes[number].unit.name.clone(),
                 homed: edges.is_some(),
             })
             .collect(),

@@ -132,7 +132,8 @@ impl Checked<'_> {
         let pull_off = self.distance(&raw.pull_off, "pull_off")?;
         let least = steps_up(accepted(slow, self.guard)) + 1;
         if u64::from(pull_off) < least {
-            let message = format!("pull_off is {pull_off} steps: the axis would rest on its switch");
+            let far = self.axis.unit.both(f64::from(pull_off), 0);
+            let message = format!("pull_off is {far}: the axis would rest on its switch");
             return Err(self.at(&raw.pull_off, message).help(self.at_least(least)));
         }
         let max_travel = match (&raw.max_travel, self.axis.travel) {
@@ -145,7 +146,8 @@ impl Checked<'_> {
         };
         if max_travel <= move_off {
             let span = raw.max_travel.as_ref().map_or_else(|| self.span.clone(), Spanned::span);
-            let message = format!("max_travel is {max_travel} steps: not over move_off, which is {move_off} steps");
+            let [far, off] = [max_travel, move_off].map(|steps| self.axis.unit.both(f64::from(steps), 0));
+            let message = format!("max_travel is {far}: not over move_off, which is {off}");
             return Err(InputError::at(self.source, span, message)
                 .help("the search first goes back over what the axis has moved off"));
         }
@@ -161,21 +163,16 @@ impl Checked<'_> {
         InputError::at(self.source, value.span(), message)
     }
 
-    /// Steps in units of the axis, for messages.
-    fn units(&self, steps: u64) -> f64 {
-        steps as f64 / decimal::to_f64(&self.axis.steps_per_unit)
-    }
-
     fn at_least(&self, steps: u64) -> String {
-        format!("at least {:.6} units ({steps} steps) are needed", self.units(steps))
+        format!("at least {} are needed", self.axis.unit.both(steps as f64, 0))
     }
 
     /// A speed of the file, at most another one in steps/s.
     fn speed(&self, value: &Spanned<f64>, key: &str, most: &BigDecimal, of: &str) -> Result<u64, InputError> {
         let steps = positive(self.source, value, key)? * &self.axis.steps_per_unit;
         if steps > *most {
-            let units = decimal::to_f64(most) / decimal::to_f64(&self.axis.steps_per_unit);
-            return Err(self.at(value, format!("{key} is over {of}")).help(format!("at most {units} units/s")));
+            let most = self.axis.unit.at_most(decimal::to_f64(most), 1);
+            return Err(self.at(value, format!("{key} is over {of}")).help(format!("at most {most}")));
         }
         let speed = per_tick(&steps, self.timebase);
         if speed == 0 {
@@ -214,10 +211,9 @@ impl Checked<'_> {
         match u32::try_from(steps) {
             Ok(steps) if i64::from(steps) <= (high - low) / 2 => Ok(steps),
             _ => {
-                let units = self.units(steps);
-                let message = format!(
-                    "move_off would be {units:.6} units, from speed_limit and stop_accel: over half of the travel"
-                );
+                let far = self.axis.unit.both(steps as f64, 0);
+                let message =
+                    format!("move_off would be {far}, from speed_limit and stop_accel: over half of the travel");
                 Err(InputError::at(self.source, self.span.clone(), message).help("give move_off in the home table"))
             }
         }
@@ -231,8 +227,9 @@ impl Checked<'_> {
         }
         let span = raw.move_off.as_ref().map_or_else(|| self.span.clone(), Spanned::span);
         let message = format!(
-            "move_off is {move_off} steps: from seek_speed the axis runs {} steps over its switch until it rests",
-            least - 1
+            "move_off is {}: from seek_speed the axis runs {} over its switch until it rests",
+            self.axis.unit.both(f64::from(move_off), 0),
+            self.axis.unit.both((least - 1) as f64, 0)
         );
         let help = format!("{}, and the travel of the switch; or a slower seek_speed", self.at_least(least));
         Err(InputError::at(self.source, span, message).help(help))
@@ -245,11 +242,11 @@ impl Checked<'_> {
             return Ok(());
         }
         let seconds = ticks as f64 * self.timebase.tick_ns() as f64 * 1e-9;
-        let most = 1.0 / seconds / decimal::to_f64(&self.axis.steps_per_unit);
+        let most = self.axis.unit.at_most(1.0 / seconds, 1);
         let message =
             "slow_speed is over a step between two looks at the switch: two homes could differ by more than a step";
         Err(self.at(&raw.slow_speed, message).help(format!(
-            "at most {most:.6} units/s; or a shorter watchdog_ms, enable_ms or debounce_us: the longest of them says how often \
+            "at most {most}; or a shorter watchdog_ms, enable_ms or debounce_us: the longest of them says how often \
              a limit is looked at"
         )))
     }
