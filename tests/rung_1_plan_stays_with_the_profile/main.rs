@@ -8,7 +8,7 @@ mod slow;
 mod verify;
 
 use carrystep_plan::{PlanError, plan};
-use carrystep_spec::ProfileKind;
+use carrystep_spec::{MoveFile, ProfileKind};
 use carrystep_tests::random_moves::{Pace, RandomMoves, random_moves};
 use proptest::prelude::*;
 use verify::verify;
@@ -18,9 +18,19 @@ const LINEAR: [ProfileKind; 3] = [ProfileKind::Ranade, ProfileKind::Trapezoid, P
 
 fn verified(case: &RandomMoves) {
     for file in case.files() {
-        let plan = plan::<f64>(&file).unwrap_or_else(|error| panic!("{error}"));
-        verify(&file, &plan, Some(2e-9));
+        match plan::<f64>(&file) {
+            Ok(plan) => verify(&file, &plan, Some(2e-9)),
+            Err(error) => assert!(is_too_slow(&file, &error), "{error}"),
+        }
     }
+}
+
+/// Whether a move of hours is refused because it needs too many segments, with a shorter time that would do; `slow.rs` plans
+/// such moves in the time that is named.
+fn is_too_slow(file: &MoveFile, error: &PlanError) -> bool {
+    let PlanError::TooSlow { index, longest: Some(longest), .. } = error else { return false };
+    let given = file.moves[*index].time.as_ref().map(|time| time.to_string().parse::<f64>().unwrap());
+    given.is_some_and(|given| given > 1e4 && *longest < given)
 }
 
 #[test]
@@ -67,6 +77,7 @@ proptest! {
                 Ok(plan) => verify(&file, &plan, None),
                 // A time that is just enough may round to one that is not.
                 Err(PlanError::Refused { .. }) => {}
+                Err(error) if is_too_slow(&file, &error) => {}
                 Err(error) => {
                     // Times that f32 cannot tell apart: then no plan is given, never a wrong one.
                     let long = plan::<f64>(&file).unwrap().moves[error.move_index().unwrap()].ticks > 1 << 24;
