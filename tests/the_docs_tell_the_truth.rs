@@ -130,6 +130,20 @@ fn a_byte_takes_the_clocks_that_the_page_of_the_link_says() {
 }
 
 #[test]
+fn ten_steps_in_a_thousand_ticks_are_what_the_protocol_s_page_says() {
+    let text = page("protocol.md");
+    let (way, ticks) = (10_u128 << 64, 1000);
+    let (whole, rest) = (way / ticks, way % ticks);
+    assert!(text.contains(&format!("10 x 2^64 / 1000 = {whole}.{:02}", rest / 10)));
+    assert!(text.contains(&format!(
+        "send two segments: {rest} ticks with\nV = {}, then {} with V = {whole}",
+        whole + 1,
+        ticks - rest
+    )));
+    assert_eq!(rest * (whole + 1) + (ticks - rest) * whole, way);
+}
+
+#[test]
 fn table_1_of_the_article_is_what_adding_gives() {
     let text = page("five-minutes.md");
     let row = |name: &str| text.lines().find_map(|line| line.trim().strip_prefix(name)).expect("the table");

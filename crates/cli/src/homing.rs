@@ -85,11 +85,18 @@ pub fn fault(machine: &Machine, mask: u8, why: HomingFault) -> String {
         axes.map(|(_, axis)| &*axis.name).collect::<Vec<_>>().join(", ")
     };
     match why {
-        HomingFault::NotFound => format!(
-            "no limit was met: moved {}, which is max_travel; look at the switch, its wiring and limit_level. A switch that is \
-             still closed after moving off is not seen where limits = \"each\" or \"one\"",
-            of(|home| home.max_travel)
-        ),
+        HomingFault::NotFound => {
+            let unseen = match machine.guard.limits {
+                Limits::Pair | Limits::None => "",
+                Limits::Each | Limits::One => {
+                    ". A switch that is still closed after moving off is not seen in this wiring"
+                }
+            };
+            let far = of(|home| home.max_travel);
+            format!(
+                "no limit was met: moved {far}, which is max_travel; look at the switch, its wiring and limit_level{unseen}"
+            )
+        }
         HomingFault::Closed => format!(
             "a limit of {} closed while it moved away from its home switch: the other end of the axis, or a switch that bounces \
              for longer than debounce_us; jog toward the home switch until the limit is open, then home again",

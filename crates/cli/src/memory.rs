@@ -166,6 +166,11 @@ pub fn freezes(cause: u8, guard: &Guard) -> bool {
     }
 }
 
+/// Whether a cause stops the axes at once on every machine, whatever its file says of limits.
+pub const fn always_freezes(cause: Cause) -> bool {
+    matches!(cause, Cause::EStop | Cause::Overrun | Cause::Protocol | Cause::Overspeed)
+}
+
 /// Where the files are.
 fn folder() -> Option<PathBuf> {
     match std::env::var_os(FOLDER) {

@@ -51,6 +51,11 @@ pub struct Look {
 impl Panel {
     /// The panel of a machine, with these limits, `AXIS=STEPS`.
     pub fn new(machine: &Machine, min: &[String], max: &[String]) -> Result<Self, Failure> {
+        if machine.guard.limits == Limits::None && !(min.is_empty() && max.is_empty()) {
+            return Err(Failure::input(
+                "--min and --max are limit switches, and the machine has no input for them: [machine.guard] limits is \"none\"",
+            ));
+        }
         let axes: Vec<String> = machine.axes.iter().map(|axis| axis.name.clone()).collect();
         let mut limits = Vec::new();
         for (end, option, texts) in [(End::Min, "--min", min), (End::Max, "--max", max)] {

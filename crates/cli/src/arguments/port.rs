@@ -99,7 +99,8 @@ pub struct Status {
 pub struct Stop {
     #[command(flatten)]
     pub peer: Peer,
-    /// Then resume: queues empty, positions as they are. Whatever had stopped the machine is forgotten.
+    /// Then resume: queues empty, positions as they are. Whatever had stopped the machine is forgotten. A `run`, `jog` or
+    /// `home` that is stopped clears its own stop.
     #[arg(long)]
     pub clear: bool,
     /// Then take the drivers' power away.

@@ -4,8 +4,8 @@ use crate::arguments::Status;
 use crate::connection::{self, Connection};
 use crate::control::{self, Reply, Request};
 use crate::failure::Failure;
-use crate::found::{Found, Known};
-use crate::memory::Memory;
+use crate::found::{self, Found, Known};
+use crate::memory::{self, Memory};
 use crate::output;
 use carrystep_link::frame;
 use carrystep_link::registers::DISCARDED;
@@ -59,10 +59,12 @@ pub fn look(connection: Connection) -> Result<Found, Failure> {
     for axis in (0..).take(axes.len()) {
         discarded.push(board.register(frame::of_axis(DISCARDED, axis)).map_err(failed)?);
     }
+    // Motors may have lost steps: the next clear forgets where they are, and nobody should trust it before that.
+    let frozen = found::cause(&status.answer).is_some_and(memory::always_freezes);
     let known = Known { port, facts: *board.facts(), axes, steps_per_unit };
     let mut found = Found::new(&status, &known, Some(&discarded));
     for (number, axis) in found.axes.iter_mut().enumerate() {
-        axis.machine = memory.coordinate(number, axis.position);
+        axis.machine = memory.coordinate(number, axis.position).filter(|_| !frozen);
     }
     Ok(found)
 }

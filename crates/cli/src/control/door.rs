@@ -5,8 +5,10 @@ use std::io::{self, Read as _, Write as _};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
 
-/// Most callers at once; further ones wait in the system's queue.
+/// Most callers that are kept from one look to the next; the oldest go first, so that idle ones keep out nobody.
 const CALLERS: usize = 16;
+/// Most callers that are taken in one look: what the system keeps in its queue.
+const QUEUE: usize = 128;
 /// Most bytes of a request.
 const LONGEST: usize = 64;
 
@@ -37,7 +39,7 @@ impl Door {
 
     /// Answers what has been asked since the last look; whether a stop was among it. Takes microseconds.
     pub fn poll(&mut self, answer: &mut dyn FnMut(Request) -> String) -> bool {
-        while self.callers.len() < CALLERS {
+        for _ in 0..QUEUE {
             let Ok((stream, _)) = self.listener.accept() else { break };
             if stream.set_nonblocking(true).is_ok() {
                 self.callers.push(Caller { stream, line: Vec::new() });
@@ -53,6 +55,8 @@ impl Door {
             }
             stays
         });
+        let idle = self.callers.len().saturating_sub(CALLERS);
+        self.callers.drain(..idle);
         stop
     }
 }
@@ -82,5 +86,30 @@ impl Caller {
 impl Drop for Door {
     fn drop(&mut self) {
         let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Programs that ask once and never hang up must not keep out the one that wants a stop.
+    #[test]
+    fn idle_callers_do_not_keep_out_a_stop() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("door");
+        let mut door = Door::open(path.clone()).unwrap();
+        let mut answer = |_: Request| "yes".to_owned();
+        let idle: Vec<UnixStream> = (0..3 * CALLERS).map(|_| UnixStream::connect(&path).unwrap()).collect();
+        assert!(!door.poll(&mut answer));
+        let mut caller = UnixStream::connect(&path).unwrap();
+        caller.write_all(b"stop\n").unwrap();
+        assert!(door.poll(&mut answer));
+        let mut said = [0; 4];
+        caller.read_exact(&mut said).unwrap();
+        assert_eq!((&said, door.callers.len()), (b"yes\n", CALLERS));
+        drop(idle);
+        assert!(!door.poll(&mut answer));
+        assert_eq!(door.callers.len(), 1);
     }
 }
