@@ -86,6 +86,7 @@ pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline
         let steps = plan.moves.iter().map(|m| m.axes[i].steps);
         AxisSetup {
             name: &axis.name,
+            unit: Some(&axis.unit),
             timeline,
             pins_ns: axis.pins_ns,
             expected_pulses: steps.clone().map(i64::unsigned_abs).sum(),

@@ -7,13 +7,15 @@ use crate::pins::{PinWatch, Stretch};
 use crate::report::AxisReport;
 use crate::spread::Spread;
 use carrystep_profile::{Crossing, Timeline};
-use carrystep_spec::{StartPhase, Timebase};
+use carrystep_spec::{StartPhase, Timebase, Unit};
 
 /// What one axis is checked against.
 #[derive(Debug, Clone, Copy)]
 pub struct AxisSetup<'a> {
     /// Its name, for the report.
     pub name: &'a str,
+    /// What it is measured in, for people; without it they read steps.
+    pub unit: Option<&'a Unit>,
     /// The float profile of all moves.
     pub timeline: &'a Timeline,
     /// What the driver asks for, ns: width, gap, set-up, hold.
@@ -280,6 +282,7 @@ impl<'a> AxisCheck<'a> {
         self.failures.append(&mut self.pulse_failures);
         AxisReport {
             axis: self.setup.name.to_owned(),
+            unit: self.setup.unit.cloned(),
             passed: self.failures.is_empty(),
             pulses_expected: self.setup.expected_pulses,
             pulses_found: found,

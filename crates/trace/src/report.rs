@@ -1,5 +1,6 @@
 //! What the checker found: figures with stable names, sentences, and a table for a terminal.
 
+use carrystep_spec::Unit;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
@@ -92,6 +93,9 @@ pub struct AxisReport {
     pub line_off_max_steps: Option<f64>,
     /// Half a step, and what the axis travels in the time by which edges may be late: it must not be off further.
     pub line_off_bound_steps: Option<f64>,
+    /// What the axis is measured in, for [`fmt::Display`].
+    #[serde(skip)]
+    pub unit: Option<Unit>,
     /// What is wrong, in sentences.
     pub failures: Vec<String>,
     /// Failures beyond those that are spelled out.
@@ -198,7 +202,11 @@ impl fmt::Display for Report {
         }
         for axis in &self.axes {
             if let (Some(off), Some(bound)) = (axis.line_off_max_steps, axis.line_off_bound_steps) {
-                writeln!(f, "straight: axis {} up to {off:.3} steps off the line, bound {bound:.3}", axis.axis)?;
+                let far = |steps: f64| match &axis.unit {
+                    Some(unit) => unit.both(steps, 0),
+                    None => format!("{steps:.3} steps"),
+                };
+                writeln!(f, "straight: axis {} up to {} off the line, bound {}", axis.axis, far(off), far(bound))?;
             }
         }
         for axis in &self.axes {

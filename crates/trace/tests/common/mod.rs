@@ -55,6 +55,7 @@ impl Machine {
     pub fn setup(&self, origin: Origin) -> Setup<'_> {
         let axes = self.timelines.iter().zip(NAMES).map(|(timeline, name)| AxisSetup {
             name,
+            unit: None,
             timeline,
             pins_ns: PINS_NS,
             expected_pulses: timeline.legs.iter().map(|leg| leg.steps).sum(),
