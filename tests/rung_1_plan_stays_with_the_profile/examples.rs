@@ -1,8 +1,8 @@
 //! Plans that were hard once: an hour, one step, the article's own, reversals, refusals.
 
 use crate::verify::{STEP, edges_of, verify};
+use carrystep_files::MoveFile;
 use carrystep_plan::{Plan, PlanError, plan};
-use carrystep_spec::MoveFile;
 use carrystep_tests::random_moves::file;
 
 /// A machine of one axis, x, at 1 us ticks.
@@ -126,7 +126,7 @@ fn reversals_rest_only_where_pins_need_it() {
 
 #[test]
 fn programs_are_in_the_order_of_need() {
-    use carrystep_spec::Command;
+    use carrystep_core::Command;
     let moves =
         "[[move]]\nprofile = \"ranade\"\nto = { x = 300, y = -7 }\n[[move]]\nprofile = \"ranade\"\nto = { y = 30 }\n";
     let text = machine("0.0", "5000.0", "25000.0", "half") + &axis_table("y", "10.0", "700.0", "900.0") + moves;

@@ -7,8 +7,8 @@ mod examples;
 mod slow;
 mod verify;
 
+use carrystep_files::{MoveFile, ProfileKind};
 use carrystep_plan::{PlanError, plan};
-use carrystep_spec::{MoveFile, ProfileKind};
 use carrystep_tests::random_moves::{Pace, RandomMoves, random_moves};
 use proptest::prelude::*;
 use verify::verify;

@@ -2,8 +2,8 @@
 //! own, and on the pins of the fast model by the product's checker.
 
 use crate::verify::verify;
+use carrystep_files::{MoveFile, ProfileKind};
 use carrystep_plan::{Plan, PlanError, plan};
-use carrystep_spec::{MoveFile, ProfileKind};
 use carrystep_tests::moves;
 use carrystep_tests::random_moves::file;
 use proptest::prelude::*;

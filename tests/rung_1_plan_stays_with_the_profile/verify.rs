@@ -1,9 +1,10 @@
 //! What must hold of any plan, found by arithmetic of its own: sums in i128, and the edge phase bit by bit as
 //! the arithmetic contract defines it.
 
+use carrystep_core::Segment;
+use carrystep_files::{BigDecimal, MoveFile};
 use carrystep_plan::Plan;
 use carrystep_profile::Profile;
-use carrystep_spec::{BigDecimal, MoveFile, Segment};
 
 pub const STEP: i128 = 1 << 64;
 
@@ -152,7 +153,7 @@ fn lands(file: &MoveFile, plan: &Plan, axis: usize) {
 }
 
 /// Limits, from V, A and J at the ends and extremes of each segment, in exact decimals.
-fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_spec::Axis, tick_ns: u64, f64_used: bool) {
+fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_files::Axis, tick_ns: u64, f64_used: bool) {
     let one = BigDecimal::from(STEP);
     let tick = BigDecimal::new(tick_ns.into(), 9);
     let speed = &axis.speed_limit * &one * &tick;

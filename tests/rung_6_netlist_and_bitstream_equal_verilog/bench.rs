@@ -1,10 +1,10 @@
 //! The same random programs, with all that may happen around them, on every stage: what the model does, in every clock.
 
 use crate::stages::{self, Stages};
-use carrystep_levels::Level;
-use carrystep_levels::engine::replay::{self, Recording};
-use carrystep_synthesis::ice40;
+use carrystep_simulators::Level;
+use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_tests::{effort, engine_programs};
+use carrystep_tools::ice40;
 use proptest::strategy::{Strategy as _, ValueTree as _};
 use proptest::test_runner::{Config, TestRunner};
 

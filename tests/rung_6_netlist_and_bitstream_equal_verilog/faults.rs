@@ -1,12 +1,12 @@
 //! What goes wrong in a netlist or a bitstream is caught.
 
 use crate::stages::{self, Stages};
-use carrystep_levels::Level;
-use carrystep_levels::engine::replay::{self, Recording};
-use carrystep_spec::{Command, Segment};
-use carrystep_synthesis::equivalence::{self, Verdict};
-use carrystep_synthesis::{SynthesisError, ice40};
+use carrystep_core::{Command, Segment};
+use carrystep_simulators::Level;
+use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_tests::effort;
+use carrystep_tools::equivalence::{self, Verdict};
+use carrystep_tools::{SynthesisError, ice40};
 use std::ops::Range;
 
 /// Where the cells of a type stand in a netlist.

@@ -1,8 +1,8 @@
 //! Each stage is proved to be the one before it.
 
 use crate::stages;
-use carrystep_synthesis::equivalence::{self, Verdict};
 use carrystep_tests::effort;
+use carrystep_tools::equivalence::{self, Verdict};
 
 #[test]
 fn the_netlist_is_proved_to_be_the_verilog() {
@@ -24,7 +24,7 @@ fn the_bitstream_is_proved_to_be_the_netlist() {
 #[test]
 fn the_memories_begin_as_they_should() {
     let stages = stages::shipped();
-    let verilog = equivalence::memories_of_verilog(&stages.verilog, carrystep_export::ENGINE_NAME).expect("memories");
+    let verilog = equivalence::memories_of_verilog(&stages.verilog, carrystep_verilog::ENGINE_NAME).expect("memories");
     let [netlist, bitstream] = [&stages.netlist.verilog, &stages.read_back].map(|text| equivalence::memories(text));
     assert_eq!(verilog.len(), 8);
     assert!(verilog.values().all(|memory| memory.len() == 18));

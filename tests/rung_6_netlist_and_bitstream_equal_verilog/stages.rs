@@ -1,8 +1,9 @@
 //! The engine at each stage: Verilog, netlist, placed design, bitstream read back.
 
-use carrystep_spec::engine::Guard;
-use carrystep_spec::{EngineBuild, Machine};
-use carrystep_synthesis::ice40::{self, Netlist, Part, Placed};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::Guard;
+use carrystep_files::Machine;
+use carrystep_tools::ice40::{self, Netlist, Part, Placed};
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -20,7 +21,7 @@ pub struct Stages {
 
 impl Stages {
     fn new(build: EngineBuild, verilog: String) -> Self {
-        let netlist = ice40::synthesise(&verilog, carrystep_export::ENGINE_NAME).expect("a netlist");
+        let netlist = ice40::synthesise(&verilog, carrystep_verilog::ENGINE_NAME).expect("a netlist");
         let clock_hz = build.timebase.clock_hz();
         let placed = netlist.place(PART, clock_hz, 1).expect("a placed design");
         let read_back = placed.read_back(&netlist, &placed.asc).expect("a bitstream");
@@ -40,7 +41,7 @@ fn shipped_build() -> EngineBuild {
 pub fn shipped() -> &'static Stages {
     static STAGES: OnceLock<Stages> = OnceLock::new();
     STAGES.get_or_init(|| {
-        let file = root().join("hdl-out/core").join(format!("{}.v", carrystep_export::ENGINE_NAME));
+        let file = root().join("hdl-out/core").join(format!("{}.v", carrystep_verilog::ENGINE_NAME));
         Stages::new(shipped_build(), std::fs::read_to_string(file).expect("the exported Verilog"))
     })
 }
@@ -52,7 +53,7 @@ pub fn hurried() -> &'static Stages {
         let build = shipped_build();
         let guard = Guard { round: 2, debounce: 3, watchdog: 40, enable: 2, ..build.guard };
         let build = EngineBuild { guard, ..build };
-        let verilog = carrystep_export::engine_verilog(&build, "a test").expect("a fine build");
+        let verilog = carrystep_verilog::engine_verilog(&build, "a test").expect("a fine build");
         Stages::new(build, verilog)
     })
 }

@@ -5,7 +5,7 @@ mod port;
 mod profile;
 mod table;
 
-use carrystep_levels::Level;
+use carrystep_simulators::Level;
 use carrystep_sweep::Shard;
 use clap::{Args, Parser};
 pub use machine::{Machine, MachineCommand, MachineNew};

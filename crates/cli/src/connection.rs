@@ -5,12 +5,12 @@ use crate::control::{self, Control, Holder, Request};
 use crate::failure::Failure;
 use crate::found::{Known, names};
 use crate::interrupt;
+use carrystep_core::engine::CAUSES;
+use carrystep_core::link::{BuildId, Line, Uart};
+use carrystep_files::{Axis, Machine, decimal};
 use carrystep_link::host::SystemClock;
 use carrystep_link::line::serial::{OpenError, SerialLine};
 use carrystep_link::{Facts, Host, HostError, Patience};
-use carrystep_spec::engine::CAUSES;
-use carrystep_spec::link::{BuildId, Line, Uart};
-use carrystep_spec::{Axis, Machine, decimal};
 use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -146,7 +146,7 @@ fn connect(
 /// The doctor knows more of why a port may not be used.
 fn opening(port: &str, error: &OpenError) -> String {
     let access = match error {
-        OpenError::Busy { .. } | OpenError::NotPermitted { .. } => carrystep_doctor::obstacle(Path::new(port)),
+        OpenError::Busy { .. } | OpenError::NotPermitted { .. } => carrystep_tools::doctor::obstacle(Path::new(port)),
         OpenError::Absent { .. } | OpenError::NoPort { .. } | OpenError::Unusable { .. } => None,
     };
     access.map_or_else(|| error.to_string(), |access| format!("serial port {port} {access}"))

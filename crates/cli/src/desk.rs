@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::switches::Panel;
-use carrystep_board::{Desk, DeskError, Edges, Gateware};
+use carrystep_virtual_board::{Desk, DeskError, Edges, Gateware};
 use std::io::Write as _;
 use std::sync::atomic::Ordering;
 

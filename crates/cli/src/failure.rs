@@ -3,13 +3,13 @@
 use crate::colour;
 use crate::excerpt::Excerpt;
 use crate::output;
-use carrystep_export::ExportError;
-use carrystep_levels::LevelError;
+use carrystep_boards::BoardError;
+use carrystep_check::TraceError;
+use carrystep_files::{InputError, MoveFile};
 use carrystep_plan::PlanError;
-use carrystep_spec::board::BoardError;
-use carrystep_spec::{InputError, MoveFile};
-use carrystep_synthesis::SynthesisError;
-use carrystep_trace::TraceError;
+use carrystep_simulators::LevelError;
+use carrystep_tools::SynthesisError;
+use carrystep_verilog::ExportError;
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, Report};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -249,7 +249,7 @@ pub fn refused(file: &MoveFile, error: &PlanError) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use carrystep_spec::Source;
+    use carrystep_files::Source;
 
     #[test]
     fn nothing_that_a_terminal_obeys_is_shown() {

@@ -1,6 +1,6 @@
 //! What a user has to know before trusting a curve, as a table with a column for each kind.
 
-use carrystep_reference::{Drive, Length, Reference};
+use carrystep_profile::reference::{Drive, Length, Reference};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;

@@ -2,8 +2,8 @@
 //! command that drives it.
 
 use crate::control::Holder;
+use carrystep_core::engine::{CAUSES, Cause};
 use carrystep_link::{Answer, Facts, Status};
-use carrystep_spec::engine::{CAUSES, Cause};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;

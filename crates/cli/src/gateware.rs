@@ -1,8 +1,8 @@
 //! The two cores behind one face: when a plan's first segments are loaded, and a run whose pins are watched.
 
-use carrystep_levels::engine::run::EngineJob;
-use carrystep_levels::{Job, Level, LevelError};
-use carrystep_spec::engine::Cause;
+use carrystep_core::engine::Cause;
+use carrystep_simulators::engine::run::EngineJob;
+use carrystep_simulators::{Job, Level, LevelError};
 
 /// A plan on one of the cores.
 #[derive(Clone, Copy)]
@@ -24,7 +24,7 @@ impl Gateware<'_> {
     /// The cycle in which the first segments are loaded.
     pub fn origin(&self) -> Result<u64, LevelError> {
         match self {
-            Self::Parallel(job) => carrystep_levels::origin(job),
+            Self::Parallel(job) => carrystep_simulators::origin(job),
             Self::Engine(job) => job.origin(),
         }
     }
@@ -33,8 +33,9 @@ impl Gateware<'_> {
     pub fn run(&self, level: Level, watch: &mut dyn FnMut(u64, u8, u8)) -> Result<Ended, LevelError> {
         match self {
             Self::Parallel(job) => {
-                let outcome =
-                    carrystep_levels::run(level, job, &mut |cycle, outputs| watch(cycle, outputs.step, outputs.dir))?;
+                let outcome = carrystep_simulators::run(level, job, &mut |cycle, outputs| {
+                    watch(cycle, outputs.step, outputs.dir)
+                })?;
                 let (positions, faults) = (outcome.last.position.to_vec(), outcome.last.faults);
                 Ok(Ended { clocks: outcome.clocks, positions, fault: faults.any().then(|| faults.to_string()) })
             }

@@ -2,10 +2,10 @@
 
 use crate::failure::Failure;
 use crate::memory::Memory;
+use carrystep_core::engine::Limits;
+use carrystep_files::machine::{End, Home as AxisHome};
+use carrystep_files::{Axis, Machine};
 use carrystep_link::{AxisHoming, Homing, HomingFault, Status, Wiring};
-use carrystep_spec::engine::Limits;
-use carrystep_spec::machine::{End, Home as AxisHome};
-use carrystep_spec::{Axis, Machine};
 
 /// The axes to home, in the order of the machine, a bit each.
 pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {

@@ -7,16 +7,17 @@ use crate::interrupt;
 use crate::progress::Progress;
 use crate::table::{self, Limits};
 use crate::wanted::Wanted;
-use carrystep_levels::engine::run::EngineJob;
-use carrystep_levels::pins::PinFeed;
-use carrystep_levels::{Job, Level, LevelError};
-use carrystep_plan::Plan;
-use carrystep_profile::Timeline;
-use carrystep_spec::{EngineBuild, MoveFile};
-use carrystep_trace::{
+use carrystep_check::{
     AxisSetup, AxisWaves, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee,
     VcdWriter, Waves, save_file,
 };
+use carrystep_core::EngineBuild;
+use carrystep_files::MoveFile;
+use carrystep_plan::Plan;
+use carrystep_profile::Timeline;
+use carrystep_simulators::engine::run::EngineJob;
+use carrystep_simulators::pins::PinFeed;
+use carrystep_simulators::{Job, Level, LevelError};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
@@ -82,7 +83,7 @@ pub fn load(path: &Path, fit_ns: Option<u64>) -> Result<MoveFile, Failure> {
 
 /// What a capture of this plan is checked against.
 pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], origin: Origin) -> Setup<'a> {
-    let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_spec::Axis, &'a Timeline))| {
+    let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_files::Axis, &'a Timeline))| {
         let steps = plan.moves.iter().map(|m| m.axes[i].steps);
         AxisSetup {
             name: &axis.name,
@@ -126,7 +127,7 @@ fn engine(file: &MoveFile, core: Core) -> Result<Option<EngineBuild>, Failure> {
 /// Runs a plan on a core at a level, checks every pulse and writes what is wanted.
 pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
     let engine = engine(file, core)?;
-    carrystep_levels::available(level)?;
+    carrystep_simulators::available(level)?;
     fits_a_capture(plan)?;
     let mut files = wanted.begin()?;
     let program = plan.program();

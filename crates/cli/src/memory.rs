@@ -15,8 +15,8 @@
 
 use crate::connection::{Board, Connection};
 use crate::found;
+use carrystep_core::engine::{Cause, Guard};
 use carrystep_link::Status;
-use carrystep_spec::engine::{Cause, Guard};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! Progress of anything longer than a second, on a terminal only.
 
-use carrystep_levels::{HowFar, Level, Stage};
+use carrystep_simulators::{HowFar, Level, Stage};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal as _;
 use std::sync::Arc;

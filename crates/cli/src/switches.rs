@@ -6,9 +6,9 @@
 //! ```
 
 use crate::failure::Failure;
-use carrystep_board::Switches;
-use carrystep_spec::Machine;
-use carrystep_spec::engine::Limits;
+use carrystep_core::engine::Limits;
+use carrystep_files::Machine;
+use carrystep_virtual_board::Switches;
 use std::io::BufRead as _;
 use std::sync::mpsc::{Receiver, channel};
 

@@ -1,9 +1,10 @@
 //! What a plan asks of each axis, beside what the machine allows. No plan exceeds a limit: it would
 //! have been refused.
 
+use carrystep_core::Segment;
+use carrystep_files::unit::digits;
+use carrystep_files::{Axis, MoveFile, Unit, decimal};
 use carrystep_plan::Plan;
-use carrystep_spec::unit::digits;
-use carrystep_spec::{Axis, MoveFile, Segment, Unit, decimal};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;

@@ -21,11 +21,11 @@
 //! Here are its ports and its parts; `wiring` connects them.
 
 use crate::HdlError;
-use crate::constant::{Literal, Parameter};
-use crate::lanes::Lanes;
-use crate::register::{Input, Register};
-use crate::word::Word;
-use carrystep_spec::EngineBuild;
+use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::lanes::Lanes;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
+use carrystep_core::EngineBuild;
 use rust_hdl::prelude::*;
 
 pub mod adder;
@@ -123,7 +123,7 @@ pub struct Engine<const N: usize> {
     pub fault: Signal<Out, Bit>,
     /// and no axis moves any more.
     pub halted: Signal<Out, Bit>,
-    /// Why, numbered as [`carrystep_spec::engine::Cause`];
+    /// Why, numbered as [`carrystep_core::engine::Cause`];
     pub cause: Signal<Out, Word<3>>,
     /// the axes that it came from.
     pub culprits: Signal<Out, Word<N>>,

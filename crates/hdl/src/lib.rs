@@ -1,37 +1,31 @@
 //! The gateware as Rust-HDL modules: what docs/clock-by-clock.md says, register by register.
 //!
-//! Read [`axis`] first: the accumulator whose every carry is a step. [`shaper`] keeps the pins' promises,
-//! [`tick`] gives the beat, [`six_axis`] puts them together, [`sim`] runs them.
+//! - [`engine`]: the product. One adder serves up to eight axes in time slots.
+//! - [`parallel`]: its sibling, one adder chain an axis, as the article draws it. Read
+//!   [`parallel::axis`] first: the accumulator whose every carry is a step.
+//! - [`parts`]: what both are made of: the shaper of the pins, the edge, the tick.
+//! - [`link`] and [`line`]: the host's requests, and the bytes that carry them.
+//! - [`primitives`]: registers, memories, words and constants that Rust-HDL lacks.
 //!
 //! What a module promises, and why it holds, is `promises.sv` in its folder: `cargo xtask prove` asks a solver.
 //!
 //! A module's `Default` is its skeleton, all parameters zero: build modules with `new`.
 
-pub mod axis;
-pub mod constant;
-pub mod edge;
 pub mod engine;
-pub mod lanes;
 pub mod line;
 pub mod link;
-pub mod memory;
-pub mod register;
-pub mod sequencer;
-pub mod shaper;
-pub mod sim;
-pub mod six_axis;
-pub mod tick;
-pub mod word;
+pub mod parallel;
+pub mod parts;
+pub mod primitives;
+mod sim;
 
-pub use axis::Axis;
 pub use engine::{AnyEngine, EngineSim, engine};
 pub use line::{Spi, SpiSim, UartLine, UartSim};
 pub use link::{AnyLink, LinkSim, link};
-pub use sim::{AxisSim, SixAxisSim};
-pub use six_axis::SixAxis;
+pub use parallel::{Axis, AxisSim, SixAxis, SixAxisSim};
 
-use carrystep_spec::build::MAX_CLOCKS;
-use carrystep_spec::engine::EngineError;
+use carrystep_core::build::MAX_CLOCKS;
+use carrystep_core::engine::EngineError;
 use thiserror::Error;
 
 /// Why there is no gateware for a build.

@@ -12,10 +12,10 @@
 //!
 //! A request lies in block RAM until its CRC has come; only then a word of it reaches the engine.
 
-use crate::register::Input;
-use crate::word::Word;
-use carrystep_spec::EngineBuild;
-use carrystep_spec::link::{BuildId, facts, image};
+use crate::primitives::register::Input;
+use crate::primitives::word::Word;
+use carrystep_core::EngineBuild;
+use carrystep_core::link::{BuildId, facts, image};
 use rust_hdl::prelude::*;
 
 pub mod check;
@@ -169,8 +169,8 @@ impl<const N: usize> Logic for Link<N> {
 mod tests {
     use super::*;
     use crate::sim::assert_synthesizes;
-    use carrystep_spec::link::Line;
-    use carrystep_spec::{AXES, Build, PinTiming, StartPhase, Timebase};
+    use carrystep_core::link::Line;
+    use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 
     #[test]
     fn link_synthesizes() {

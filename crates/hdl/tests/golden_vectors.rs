@@ -2,8 +2,8 @@
 //! ladder goes on to the last.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+use carrystep_core::{Segment, StartPhase};
 use carrystep_hdl::AxisSim;
-use carrystep_spec::{Segment, StartPhase};
 use serde_json::Value;
 
 const VECTORS: &str = include_str!("../../../tests/golden/engine_vectors.json");

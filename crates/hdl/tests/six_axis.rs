@@ -1,9 +1,9 @@
 //! The core from its ports: starts, latency, faults and clear.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+use carrystep_core::ports::{Inputs, Outputs};
+use carrystep_core::{AXES, Build, PinTiming, Segment, StartPhase, Timebase};
 use carrystep_hdl::SixAxisSim;
-use carrystep_spec::ports::{Inputs, Outputs};
-use carrystep_spec::{AXES, Build, PinTiming, Segment, StartPhase, Timebase};
 
 const C: u64 = 48;
 const LAST: Segment = Segment { ticks: 8, v: 1 << 61, a: 0, j: 0, last: true };

@@ -1,6 +1,6 @@
 /* What the gateware and its clients agree on: constants, the register map, the answer's fields.
  *
- * Generated from crates/spec/src/link by `cargo xtask generate`: change that, not this. */
+ * Generated from crates/core/src/link by `cargo xtask generate`: change that, not this. */
 #ifndef CARRYSTEP_REGISTERS_H
 #define CARRYSTEP_REGISTERS_H
 

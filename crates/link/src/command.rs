@@ -157,23 +157,23 @@ impl Source for Program<'_> {
 }
 
 #[cfg(feature = "std")]
-mod from_spec {
+mod from_core {
     use super::{Command, Segment};
-    use carrystep_spec as spec;
+    use carrystep_core as planned;
 
-    impl From<spec::Segment> for Segment {
-        fn from(spec::Segment { ticks, v, a, j, last }: spec::Segment) -> Self {
+    impl From<planned::Segment> for Segment {
+        fn from(planned::Segment { ticks, v, a, j, last }: planned::Segment) -> Self {
             Self { ticks, v, a, j, last }
         }
     }
 
     impl Command {
         /// A planned command, where the link has it: a wait or a clear is no part of a program here.
-        pub fn of(command: &spec::Command) -> Option<Self> {
+        pub fn of(command: &planned::Command) -> Option<Self> {
             match *command {
-                spec::Command::Segment { axis, segment } => Some(Self::Segment { axis, segment: segment.into() }),
-                spec::Command::Start { mask } => Some(Self::Start { mask }),
-                spec::Command::Wait { .. } | spec::Command::Clear => None,
+                planned::Command::Segment { axis, segment } => Some(Self::Segment { axis, segment: segment.into() }),
+                planned::Command::Start { mask } => Some(Self::Start { mask }),
+                planned::Command::Wait { .. } | planned::Command::Clear => None,
             }
         }
     }

@@ -1,5 +1,5 @@
 //! What the driver says to gateware that it was not made for, to others, to nobody, and to a program that no gateware takes.
-//! What it does with a board is in crates/board/tests.
+//! What it does with a board is in crates/virtual-board/tests.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;

@@ -1,5 +1,5 @@
 //! The lines themselves: SPI as a bus sees it, serial ports that are there, busy, absent or none at all. With a host at the
-//! one end and a board at the other they are in crates/board/tests.
+//! one end and a board at the other they are in crates/virtual-board/tests.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_link::line::serial::{OpenError, SerialLine};

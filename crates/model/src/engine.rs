@@ -13,9 +13,9 @@ mod lane;
 mod plain;
 mod told;
 
-use crate::shaper;
-use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, Limits, PUT_BEAT, Put, TURN};
+use crate::parts::shaper;
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, Limits, PUT_BEAT, Put, TURN};
 use guard::{Stop, Watch, freezes};
 use lane::{Lane, Look, Segment, Tick};
 use std::sync::Arc;

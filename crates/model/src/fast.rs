@@ -26,8 +26,8 @@ pub use engine::FastEngine;
 pub(crate) use lane::Moving;
 
 use crate::SixAxis;
-use carrystep_spec::Build;
-use carrystep_spec::ports::{Inputs, Outputs};
+use carrystep_core::Build;
+use carrystep_core::ports::{Inputs, Outputs};
 use passage::Passages;
 
 /// The parallel core, and the clock cycle that it is in.
@@ -89,7 +89,8 @@ impl Fast {
 
     /// Cycles before the strobe that ends the first segment.
     fn clocks_to_load(&self) -> u64 {
-        let left = |lane: &crate::six_axis::Lane| lane.axis.running.then_some(lane.axis.left.saturating_sub(1));
+        let left =
+            |lane: &crate::parallel::six_axis::Lane| lane.axis.running.then_some(lane.axis.left.saturating_sub(1));
         let plain = self.core.lanes.iter().filter_map(left).min().unwrap_or(u32::MAX);
         let clocks = u64::from(self.core.build.timebase.clocks_per_tick());
         (u64::from(plain) + 1) * clocks - 1 - self.core.clock_of_tick()

@@ -10,7 +10,7 @@
 //!                                                '-------'
 //! ```
 //!
-//! What the machine's instructions mean is in `carrystep_spec::link::machine`, what they do in its `image()`.
+//! What the machine's instructions mean is in `carrystep_core::link::machine`, what they do in its `image()`.
 
 mod check;
 mod facts;
@@ -19,9 +19,9 @@ mod machine;
 mod spi;
 mod uart;
 
-use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{EngineInputs, Put};
-use carrystep_spec::link::{Line, LinkInputs, LinkOutputs, image};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{EngineInputs, Put};
+use carrystep_core::link::{Line, LinkInputs, LinkOutputs, image};
 use facts::Facts;
 use line::End;
 use machine::{Inputs, Machine, Waits};

@@ -2,8 +2,8 @@
 
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+use carrystep_files::{MoveFile, Source};
 use carrystep_plan::plan;
-use carrystep_spec::{MoveFile, Source};
 use std::fmt::Write;
 
 fn main() {

@@ -112,7 +112,7 @@ pub(crate) fn jerk_distance(n: i128, j: i128) -> Option<i128> {
 mod tests {
     use super::*;
     use crate::check::speeds;
-    use carrystep_spec::Segment;
+    use carrystep_core::Segment;
 
     const LIMITS: ExactLimits =
         ExactLimits { start_speed: 0, speed: 1 << 60, acceleration: 1 << 40, jerk: None, tolerance: 1 };

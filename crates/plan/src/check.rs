@@ -4,7 +4,7 @@ use crate::edges::travel;
 use crate::error::Broken;
 use crate::limits::ExactLimits;
 use crate::peaks::Peaks;
-use carrystep_spec::Segment;
+use carrystep_core::Segment;
 
 /// What the segments of one axis must do in one move, the rest before it left out.
 pub(crate) struct Duty {

@@ -7,8 +7,9 @@
 use crate::demand::{Clock, float};
 use crate::exchange::Row;
 use crate::share::Piece;
+use carrystep_core::StartPhase;
+use carrystep_core::fixed::ONE_STEP;
 use carrystep_profile::{Profile, Real};
-use carrystep_spec::{StartPhase, fixed::ONE_STEP};
 
 /// Fewest edges of a stretch that samples may stand for, and the number of these samples.
 const SAMPLES: u32 = 16;

@@ -4,8 +4,9 @@ use crate::error::PlanError;
 use crate::limits::float_limits;
 use crate::line;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
+use carrystep_core::{StartPhase, Timebase};
+use carrystep_files::{MoveFile, PathKind, ProfileKind};
 use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, rule};
-use carrystep_spec::{MoveFile, PathKind, ProfileKind, StartPhase, Timebase};
 use std::sync::Arc;
 
 /// Most ticks of a move, 10^6 s at 250 ns: closed forms over it stay well inside i128, its segments in memory.
@@ -54,7 +55,7 @@ pub(crate) fn demand<F: Real>(
     }
     let refused = |axis: usize, refusal: Refusal, least_time| {
         let (axis, refusal) = if straight { line::blame(moved.profile, &own, axis, refusal) } else { (axis, refusal) };
-        let carrystep_spec::Axis { name, unit, .. } = &file.machine.axes[axis];
+        let carrystep_files::Axis { name, unit, .. } = &file.machine.axes[axis];
         PlanError::Refused { index, axis: name.clone(), refusal, unit: unit.clone(), least_time }
     };
 

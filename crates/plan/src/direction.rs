@@ -3,7 +3,7 @@
 //! DIR follows the sign of V. A rest of 1 + r ticks turns it early and leaves P as it was: one tick with
 //! V = -r, which DIR already points to, then r ticks with V = 1 unit in the new direction.
 
-use carrystep_spec::{PinTiming, Segment, StartPhase, Timebase};
+use carrystep_core::{PinTiming, Segment, StartPhase, Timebase};
 
 /// The pins of one axis after the moves planned so far; times in clocks from the origin, latency left out.
 #[derive(Debug, Clone, Copy)]

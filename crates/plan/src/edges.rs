@@ -1,6 +1,7 @@
 //! When the pins move, exactly, from the integers of a plan.
 
-use carrystep_spec::{Segment, Timebase, fixed::ONE_STEP};
+use carrystep_core::fixed::ONE_STEP;
+use carrystep_core::{Segment, Timebase};
 
 /// Units travelled in the first `n` ticks of a segment.
 pub(crate) fn travel(segment: &Segment, n: i128) -> i128 {

@@ -1,7 +1,7 @@
 //! Why a file cannot be planned.
 
+use carrystep_files::{TooManyAxes, Unit};
 use carrystep_profile::Refusal;
-use carrystep_spec::{TooManyAxes, Unit};
 use thiserror::Error;
 
 /// A move that cannot be done as asked, and what to do. `index` counts moves from 0, messages from 1.
@@ -111,7 +111,7 @@ pub enum Broken {
 }
 
 impl PlanError {
-    /// The move that it is about, from 0: [`carrystep_spec::MoveFile::move_error`] shows its place.
+    /// The move that it is about, from 0: [`carrystep_files::MoveFile::move_error`] shows its place.
     pub const fn move_index(&self) -> Option<usize> {
         match self {
             Self::Axes(_) => None,

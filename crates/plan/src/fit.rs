@@ -11,8 +11,8 @@ use crate::check::{speeds, start_speed};
 use crate::corridor::{Corridor, JOINT, Samples, Stretch, basis, peak, steps};
 use crate::exchange::{Row, solve};
 use crate::limits::ExactLimits;
+use carrystep_core::Segment;
 use carrystep_profile::Real;
-use carrystep_spec::Segment;
 
 /// The part of the tolerance that a segment may use up.
 const FULL: f64 = 0.97;

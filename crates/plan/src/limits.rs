@@ -1,8 +1,9 @@
 //! The limits of an axis in the gateware's units, exactly, and in the profile's floats.
 
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
+use carrystep_core::Timebase;
+use carrystep_files::Axis;
 use carrystep_profile::{Limits, Real};
-use carrystep_spec::{Axis, Timebase};
 
 /// Limits in 2^-64 step per tick, per tick^2 and per tick^3, rounded down from the file's decimals.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +40,7 @@ impl ExactLimits {
 }
 
 fn units(value: &BigDecimal, ticks: &[&BigDecimal]) -> Option<i128> {
-    let one_step = BigDecimal::from(carrystep_spec::fixed::ONE_STEP);
+    let one_step = BigDecimal::from(carrystep_core::fixed::ONE_STEP);
     let product = ticks.iter().fold(value * one_step, |product, &tick| product * tick);
     product.with_scale_round(0, RoundingMode::Down).to_i128()
 }

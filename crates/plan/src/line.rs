@@ -3,8 +3,8 @@
 //! Every profile scales with its limits. So it is enough to give each axis those of the line, in its own steps: what
 //! the axis with the least room for a step of its own leaves to all of them.
 
+use carrystep_files::ProfileKind;
 use carrystep_profile::{Limit, Limits, Real, Refusal};
-use carrystep_spec::ProfileKind;
 
 /// Steps of an axis and what it can do.
 type Travel<F> = (F, Limits<F>);

@@ -1,7 +1,7 @@
 //! The longest time in which a move can be done that is too slow as it stands.
 
 use bigdecimal::{BigDecimal, ToPrimitive};
-use carrystep_spec::Timebase;
+use carrystep_core::Timebase;
 
 /// The search ends where the longest time is known within this factor.
 const CLOSE: f64 = 1.003;

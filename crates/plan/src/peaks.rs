@@ -1,6 +1,6 @@
 //! The greatest values that a plan reaches, exactly, in the gateware's units.
 
-use carrystep_spec::Timebase;
+use carrystep_core::Timebase;
 
 /// Greatest values over a move, in magnitude, from the integers of its segments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

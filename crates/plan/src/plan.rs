@@ -1,8 +1,9 @@
 //! What planning gives: for each move and axis a profile, and the segments that follow it.
 
 use crate::peaks::Peaks;
+use carrystep_core::{Build, Command, Program, Segment};
+use carrystep_files::PathKind;
 use carrystep_profile::{Leg, Line, SharedProfile, Timeline};
-use carrystep_spec::{Build, Command, PathKind, Program, Segment};
 
 /// All moves of a file, ready for the gateware; origin is the first tick of the first move.
 #[derive(Debug, Clone)]

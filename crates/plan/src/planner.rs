@@ -16,8 +16,10 @@ use crate::share::{Breakpoints, Piece, share};
 use crate::slow::{self, Pulses};
 use crate::units;
 use bigdecimal::{BigDecimal, ToPrimitive as _};
+use carrystep_core::fixed::ONE_STEP;
+use carrystep_core::{Build, Segment};
+use carrystep_files::{Axis, Move, MoveFile, ProfileKind};
 use carrystep_profile::{Profile, Real, SharedProfile, Widened};
-use carrystep_spec::{Axis, Build, Move, MoveFile, ProfileKind, Segment, fixed::ONE_STEP};
 use std::sync::Arc;
 
 /// Plans all moves of a file, in floats of type `F`.

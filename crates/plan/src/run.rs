@@ -9,8 +9,8 @@ use crate::landing;
 use crate::limits::ExactLimits;
 use crate::share::{self, Piece};
 use crate::units;
+use carrystep_core::{Segment, StartPhase};
 use carrystep_profile::{Profile, Real};
-use carrystep_spec::{Segment, StartPhase};
 
 /// How far the rounding of A, J and V may move an edge, seconds; the rest of 2 ns is for the 32-bit bisection, and for
 /// the floats of the profile, which are good to 0.3 ns after 10^6 s.

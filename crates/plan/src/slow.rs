@@ -10,8 +10,9 @@
 use crate::demand::{Clock, float};
 use crate::error::Broken;
 use crate::run::MOST_SEGMENTS;
+use carrystep_core::fixed::ONE_STEP;
+use carrystep_core::{StartPhase, Timebase};
 use carrystep_profile::{Profile, Real};
-use carrystep_spec::{StartPhase, Timebase, fixed::ONE_STEP};
 
 /// One unit of what the bisection sees, 2^-64 step.
 pub(crate) const SEEN: i128 = 1 << 32;

@@ -1,7 +1,7 @@
 //! Floats to units of 2^-64 step, exactly.
 
+use carrystep_core::fixed::FRACTION_BITS;
 use carrystep_profile::Real;
-use carrystep_spec::fixed::FRACTION_BITS;
 
 /// `steps` in units of 2^-64 step, rounded to the nearest; `None` if not finite or out of i128.
 pub(crate) fn nearest<F: Real>(steps: F) -> Option<i128> {

@@ -2,8 +2,8 @@
 
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
+use carrystep_files::{MoveFile, Source};
 use carrystep_plan::{PlannedAxis, plan};
-use carrystep_spec::{MoveFile, Source};
 
 /// The move at a tolerance; only the seven segments have a jerk limit, which the reference's sine would pass.
 fn reference(profile: &str, fit_ns: u32) -> PlannedAxis {

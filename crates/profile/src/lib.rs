@@ -16,6 +16,7 @@ mod profile;
 mod ramp;
 mod ramped;
 mod ranade;
+pub mod reference;
 mod refusal;
 mod scurve;
 mod sine;

@@ -1,7 +1,7 @@
 //! All moves of one axis, one after the other, and when each pulse is due.
 
 use crate::profile::SharedProfile;
-use carrystep_spec::StartPhase;
+use carrystep_core::StartPhase;
 
 /// The float reference of one axis over all moves.
 #[derive(Debug, Clone)]

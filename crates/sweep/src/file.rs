@@ -1,6 +1,6 @@
 //! The sweep file: a move file with blanks, and what they are filled with.
 
-use carrystep_spec::{InputError, MoveFile, Source};
+use carrystep_files::{InputError, MoveFile, Source};
 use minijinja::{Environment, UndefinedBehavior};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -65,14 +65,14 @@ enum Chore {
 /// Times everything; what is printed is the bench's own.
 fn bench(json: bool) -> shell::Done {
     tools::install()?;
-    let arguments = ["run", "--quiet", "--release", "-p", "carrystep-bench", "--", "--json"];
+    let arguments = ["bench", "--quiet", "-p", "carrystep-xtask", "--bench", "levels", "--", "--json"];
     shell::run("cargo", &arguments[..arguments.len() - usize::from(!json)])
 }
 
 /// Size and speed of every row of the table.
 fn resources() -> shell::Done {
     tools::install()?;
-    shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-synthesis"])
+    shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-tools"])
 }
 
 fn main() -> ExitCode {

@@ -18,7 +18,7 @@ pub fn generate() -> Done {
     let write = ["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core", "--core"];
     ["parallel", "engine"].iter().try_for_each(|core| shell::run("cargo", &[write.as_slice(), &[core]].concat()))?;
     shell::run("cargo", &["run", "--quiet", "--release", "--", "schemas", "--out", "docs/schemas"])?;
-    shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-export", "--example", "generated"])
+    shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-verilog", "--example", "generated"])
 }
 
 /// Fails where the README or the committed plot is not what the demo gives now.

@@ -20,7 +20,7 @@ pub struct Peer {
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
     /// The baud rate, where no machine says it.
-    #[arg(long, value_name = "BAUD", conflicts_with = "machine", default_value_t = carrystep_spec::link::DEFAULT_BAUD)]
+    #[arg(long, value_name = "BAUD", conflicts_with = "machine", default_value_t = carrystep_core::link::DEFAULT_BAUD)]
     pub baud: u32,
 }
 

@@ -1,7 +1,7 @@
 //! `carrystep profile`
 
-use carrystep_reference::{Drive, Kind, Length, Listing, Quantity, Request, Travel};
-use carrystep_spec::StartPhase;
+use carrystep_core::StartPhase;
+use carrystep_profile::reference::{Drive, Kind, Length, Listing, Quantity, Request, Travel};
 use clap::Args;
 use std::path::PathBuf;
 

@@ -3,10 +3,10 @@
 use crate::arguments::Boards;
 use crate::failure::Failure;
 use crate::output;
-use carrystep_export::Gateware;
-use carrystep_spec::Source;
-use carrystep_spec::board::{Board, BoardError, Mapped, Measured, Part, Place, Placed, board, boards};
-use carrystep_spec::clock::mhz;
+use carrystep_boards::{Board, BoardError, Mapped, Measured, Part, Place, Placed, board, boards};
+use carrystep_core::tick::mhz;
+use carrystep_files::Source;
+use carrystep_verilog::Gateware;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::borrow::Cow;

@@ -5,12 +5,12 @@ use crate::commands::boards;
 use crate::failure::Failure;
 use crate::output;
 use crate::progress::Stages;
-use carrystep_export::{Gateware, TextFile};
-use carrystep_spec::board::{Board, Toolchain};
-use carrystep_spec::clock::mhz;
-use carrystep_spec::{InputError, Machine};
-use carrystep_synthesis::board::{Built, Job, build};
-use carrystep_synthesis::ice40;
+use carrystep_boards::{Board, Toolchain};
+use carrystep_core::tick::mhz;
+use carrystep_files::{InputError, Machine};
+use carrystep_tools::board::{Built, Job, build};
+use carrystep_tools::ice40;
+use carrystep_verilog::{Gateware, TextFile};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::io::Write as _;
@@ -55,7 +55,7 @@ pub fn run(arguments: &Build) -> Result<(), Failure> {
     let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
     let files = gateware.files()?;
-    carrystep_export::write(&out, &files)?;
+    carrystep_verilog::write(&out, &files)?;
     match board.family.toolchain() {
         Toolchain::Open => bitstream(arguments, &board, &gateware, &files, &out),
         Toolchain::Ise => Err(not_ours(&out, "ISE 14.7", "./build.sh, with ISE's settings64.sh read")),

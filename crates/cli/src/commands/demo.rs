@@ -5,8 +5,8 @@ use crate::failure::{Failure, refused};
 use crate::job::{self, Done};
 use crate::output::{self, write_file};
 use crate::wanted::Wanted;
+use carrystep_files::{Machine, MoveFile};
 use carrystep_plan::plan;
-use carrystep_spec::{Machine, MoveFile};
 use std::path::Path;
 
 /// The shipped machine's file name.
@@ -16,7 +16,7 @@ const MOVES: &str = include_str!("../../../../sim/demo.toml");
 
 /// The shipped machine.
 pub fn machine() -> Result<Machine, Failure> {
-    let source = carrystep_spec::Source { path: MACHINE_FILE.into(), text: MACHINE.into() };
+    let source = carrystep_files::Source { path: MACHINE_FILE.into(), text: MACHINE.into() };
     Ok(Machine::from_source(&source)?)
 }
 
@@ -27,7 +27,7 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
     write_file(&out("demo.toml"), MOVES)?;
     let file = MoveFile::load(&out("demo.toml"))?;
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
-    let verilog = carrystep_export::write_core(&arguments.out, &plan.build, MACHINE_FILE)
+    let verilog = carrystep_verilog::write_core(&arguments.out, &plan.build, MACHINE_FILE)
         .map_err(|error| Failure::Run(error.to_string()))?;
     let wanted = Wanted {
         vcd: Some(out("demo.vcd")),

@@ -4,7 +4,7 @@ use crate::arguments::Doctor;
 use crate::commands::boards;
 use crate::failure::Failure;
 use crate::output;
-use carrystep_doctor::{Access, Host, Report};
+use carrystep_tools::doctor::{Access, Host, Report};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;

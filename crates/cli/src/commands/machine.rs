@@ -8,11 +8,12 @@ use crate::commands::boards;
 use crate::failure::Failure;
 use crate::output::{self, OutputFile};
 use axis::Axis;
-use carrystep_export::Gateware;
-use carrystep_spec::board::Board;
-use carrystep_spec::clock::mhz;
-use carrystep_spec::tick::Ticks;
-use carrystep_spec::{ChosenTick, InputError, Machine, Source, Timebase};
+use carrystep_boards::Board;
+use carrystep_core::tick::Ticks;
+use carrystep_core::tick::mhz;
+use carrystep_core::{ChosenTick, Timebase};
+use carrystep_files::{InputError, Machine, Source};
+use carrystep_verilog::Gateware;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -174,7 +175,7 @@ impl Wishes {
                 let clocking = &board.clocks[0];
                 let (hz, phases) = (clocking.clock_hz, clocking.phases);
                 let fits = Timebase::new(hz, clocking.tick_ns, phases)
-                    .is_ok_and(|time| carrystep_spec::engine::check_schedule(axes, &time).is_ok());
+                    .is_ok_and(|time| carrystep_core::engine::check_schedule(axes, &time).is_ok());
                 if fits {
                     return Ok((hz, clocking.tick_ns, phases, "the board's".to_owned()));
                 }

@@ -4,10 +4,10 @@ use crate::arguments::Profile;
 use crate::failure::Failure;
 use crate::figures::{self, FiguresJson};
 use crate::output::{self, OutputFile};
-use carrystep_reference::{
+use carrystep_core::StartPhase;
+use carrystep_profile::reference::{
     CsvError, Drive, Kind, Length, Listing, PictureError, Reference, ReferenceError, Row, Scale, picture, write_csv,
 };
-use carrystep_spec::StartPhase;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::io;

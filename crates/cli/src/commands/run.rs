@@ -5,8 +5,8 @@ use crate::connection;
 use crate::drive::{Driven, Streamed, drive};
 use crate::failure::{Failure, refused};
 use crate::{job, output};
+use carrystep_files::{Machine, MoveFile, Source, decimal};
 use carrystep_plan::plan;
-use carrystep_spec::{Machine, MoveFile, Source, decimal};
 use std::path::Path;
 
 /// Makes the moves of a file.

@@ -4,10 +4,10 @@ use crate::arguments::{Core, Verilog};
 use crate::commands::{boards, demo};
 use crate::failure::Failure;
 use crate::output;
-use carrystep_export::{CORE_NAME, ENGINE_NAME, ExportError};
-use carrystep_spec::engine::GuardFigures;
-use carrystep_spec::link::Uart;
-use carrystep_spec::{Machine, Source};
+use carrystep_core::engine::GuardFigures;
+use carrystep_core::link::Uart;
+use carrystep_files::{Machine, Source};
+use carrystep_verilog::{CORE_NAME, ENGINE_NAME, ExportError};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -72,7 +72,7 @@ fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
     let board = boards::find(board)?;
     let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
-    let files = carrystep_export::write(&out, &gateware.files()?)?;
+    let files = carrystep_verilog::write(&out, &gateware.files()?)?;
     let tick_note = gateware.chosen_tick().map(|chosen| chosen.to_string());
     if arguments.json {
         return output::print_json(&WrittenForBoard {
@@ -112,12 +112,12 @@ fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Writte
     match core {
         Core::Parallel => {
             let build = machine.build().map_err(|error| Failure::input(format!("{name}: {error}")))?;
-            let files = carrystep_export::write_core(out, &build, name).map_err(refused)?;
+            let files = carrystep_verilog::write_core(out, &build, name).map_err(refused)?;
             Ok(Written { passed: true, top: CORE_NAME, tick_ns, tick_note, guard: None, files })
         }
         Core::Engine => {
             let build = machine.engine();
-            let files = carrystep_export::write_engine(out, &build, name).map_err(refused)?;
+            let files = carrystep_verilog::write_engine(out, &build, name).map_err(refused)?;
             Ok(Written {
                 passed: true,
                 top: ENGINE_NAME,

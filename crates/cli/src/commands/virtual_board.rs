@@ -7,12 +7,13 @@ use crate::failure::Failure;
 use crate::gateware;
 use crate::output::{self, OutputFile};
 use crate::switches::Panel;
-use carrystep_board::{Board, Desk, Gateware, Pace, Terminal, VerilatedBoard};
-use carrystep_levels::pins::PinFeed;
-use carrystep_levels::replay::Replay;
-use carrystep_spec::engine::EngineOutputs;
-use carrystep_spec::{EngineBuild, Machine};
-use carrystep_trace::{OwnCapture, PinsVcd};
+use carrystep_check::{OwnCapture, PinsVcd};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::EngineOutputs;
+use carrystep_files::Machine;
+use carrystep_simulators::pins::PinFeed;
+use carrystep_simulators::replay::Replay;
+use carrystep_virtual_board::{Board, Desk, Gateware, Pace, Terminal, VerilatedBoard};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -113,7 +114,7 @@ fn capture(
 }
 
 fn served(board: &impl Gateware, machine: &Machine, files: Vec<PathBuf>) -> Served {
-    let axis = |(number, axis): (usize, &carrystep_spec::Axis)| AxisServed {
+    let axis = |(number, axis): (usize, &carrystep_files::Axis)| AxisServed {
         axis: axis.name.clone(),
         position: board.position(number),
         discarded: board.discarded(number),

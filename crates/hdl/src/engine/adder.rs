@@ -14,9 +14,9 @@
 //! added. Its sum then stays in R as its complement (`top` says so), so that the adder only ever adds:
 //! X is R, or not R. What halving an odd number loses (`odd`) comes back as a carry.
 
-use crate::constant::Literal;
-use crate::register::{Input, Register};
-use crate::word::{Word, bit_cast};
+use crate::primitives::constant::Literal;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
 /// Operands, sum, and what the sums say.

@@ -7,9 +7,9 @@
 //! slows    _________________________/^^^^^^^^^^^^\____   in its turns only: a ramp, until it rests
 //! ```
 
-use crate::constant::{Literal, Parameter};
-use crate::register::{Input, Register};
-use crate::word::Word;
+use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
 /// The axes that wait for their limit, and those that have met it.

@@ -6,11 +6,11 @@
 //!
 //! The pin goes through two flip-flops behind the choice of the axis: it has the whole turn to settle.
 
-use crate::constant::{Literal, Parameter};
-use crate::memory::Memory;
-use crate::register::{Input, Register};
-use crate::word::{Word, bit_cast};
-use carrystep_spec::engine::{Guard, Limits as Wiring};
+use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::memory::Memory;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::{Word, bit_cast};
+use carrystep_core::engine::{Guard, Limits as Wiring};
 use rust_hdl::prelude::*;
 
 /// Debounce, and what a switch means for the axis.

@@ -1,4 +1,4 @@
-//! From events to pins: the shaper of the engine. Its pins are those of [`crate::shaper`] in every clock.
+//! From events to pins: the shaper of the engine. Its pins are those of [`crate::parts::shaper`] in every clock.
 //!
 //! ```text
 //! DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
@@ -12,11 +12,11 @@
 //! Pulses and discarded steps are counted modulo eight; the engine carries them on in memory, one a tick.
 
 use crate::HdlError;
-use crate::constant::{Literal, Parameter, used_bits};
-use crate::register::{Input, Register};
-use crate::word::{Word, bit_cast};
-use carrystep_spec::PinTiming;
-use carrystep_spec::build::MAX_CLOCKS;
+use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::{Word, bit_cast};
+use carrystep_core::PinTiming;
+use carrystep_core::build::MAX_CLOCKS;
 use rust_hdl::prelude::*;
 
 /// STEP and DIR of one axis.

@@ -13,10 +13,10 @@
 //! `live 3, newest 3, running, unfit, position's low bits 3, discarded's low bits 3, back, known`: the last two
 //! belong to a ramp, whose first tick finds which way the axis goes.
 
-use crate::constant::Literal;
-use crate::memory::Memory;
-use crate::register::{Input, Register};
-use crate::word::{Word, bit_cast};
+use crate::primitives::constant::Literal;
+use crate::primitives::memory::Memory;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
 /// The control words, and the present one at work.

@@ -2,10 +2,10 @@
 
 use super::Engine;
 use crate::HdlError;
+use crate::primitives::word::Word;
 use crate::sim::{mask, rising_edge, settle};
-use crate::word::Word;
-use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{CAUSES, EngineError, EngineInputs, EngineOutputs, Put};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{CAUSES, EngineError, EngineInputs, EngineOutputs, Put};
 use rust_hdl::prelude::{Block, check_all};
 
 /// An engine of any number of axes.

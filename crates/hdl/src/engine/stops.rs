@@ -9,10 +9,10 @@
 //! clearing ____________________________________/^^^^\____
 //! ```
 
-use crate::constant::{Literal, Parameter};
-use crate::register::{Input, Register};
-use crate::word::Word;
-use carrystep_spec::engine::Guard;
+use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
+use carrystep_core::engine::Guard;
 use rust_hdl::prelude::*;
 
 /// The stop that is under way.

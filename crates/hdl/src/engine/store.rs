@@ -12,11 +12,11 @@
 //!
 //! A sum is written four beats after its word was read, the host's word in between.
 
-use crate::constant::{Literal, Parameter};
-use crate::memory::Memory;
-use crate::register::Input;
-use crate::word::{Word, bit_cast};
-use carrystep_spec::StartPhase;
+use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::memory::Memory;
+use crate::primitives::register::Input;
+use crate::primitives::word::{Word, bit_cast};
+use carrystep_core::StartPhase;
 use rust_hdl::prelude::*;
 
 /// The memory and its addresses.

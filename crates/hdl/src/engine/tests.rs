@@ -1,8 +1,8 @@
 //! Which engines there are, and that yosys takes them.
 
 use super::*;
-use carrystep_spec::engine::EngineError;
-use carrystep_spec::{AXES, Build, PinTiming, StartPhase, Timebase};
+use carrystep_core::engine::EngineError;
+use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 
 fn build() -> EngineBuild {
     let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();

@@ -9,9 +9,9 @@
 //!
 //! A beat is one flip-flop of a long shift register: what happens in a beat costs no decoder.
 
-use crate::constant::{Literal, Parameter};
-use crate::register::{Input, Register};
-use crate::word::Word;
+use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
 /// The beats, and the axis, of N.
@@ -92,8 +92,8 @@ impl<const N: usize> Logic for Turn<N> {
 mod tests {
     use super::*;
     use crate::sim::{assert_synthesizes, rising_edge, settle};
-    use carrystep_spec::AXES;
-    use carrystep_spec::engine::TURN;
+    use carrystep_core::AXES;
+    use carrystep_core::engine::TURN;
 
     #[test]
     fn every_axis_has_thirteen_beats() {

@@ -6,10 +6,10 @@
 //! e-stop   __________/^^^^^^^^^^^^^^                    pressed when it has been so for a tick
 //! ```
 
-use crate::constant::{Literal, Parameter, used_bits};
-use crate::register::{Input, Register};
-use crate::word::Word;
-use carrystep_spec::engine::Guard;
+use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
+use carrystep_core::engine::Guard;
 use rust_hdl::prelude::*;
 
 /// E-stop, watchdog, ENABLE, and the round.

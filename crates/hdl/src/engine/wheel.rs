@@ -11,12 +11,12 @@
 //!
 //! So no axis keeps its phase, compares it, or waits for it.
 
-use crate::constant::{Literal, Parameter};
-use crate::memory::Memory;
-use crate::register::{Input, Register};
-use crate::tick::Tick;
-use crate::word::{Word, bit_cast};
-use carrystep_spec::Timebase;
+use crate::parts::tick::Tick;
+use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::memory::Memory;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::{Word, bit_cast};
+use carrystep_core::Timebase;
 use rust_hdl::prelude::*;
 
 /// The tick, and the events in it.

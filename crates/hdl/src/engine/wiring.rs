@@ -9,7 +9,7 @@
 //! ```
 
 use super::Engine;
-use crate::word::bit_cast;
+use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
 
 impl<const N: usize> Logic for Engine<N> {

@@ -2,9 +2,9 @@
 
 use super::{Spi, UartLine};
 use crate::HdlError;
+use crate::primitives::word::Word;
 use crate::sim::{connected, rising_edge, settle};
-use crate::word::Word;
-use carrystep_spec::link::Uart;
+use carrystep_core::link::Uart;
 
 /// What a line tells the link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -11,10 +11,10 @@
 //! MISO waits for no fall of SCK: with the two clocks that it takes to see an edge, half a bit would be too short.
 //! Where there is nothing to say it says END; an END behind an END is not passed on, so the host may ask by ENDs.
 
-use crate::constant::Literal;
-use crate::register::{Input, Register};
-use crate::word::Word;
-use carrystep_spec::link::END;
+use crate::primitives::constant::Literal;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
+use carrystep_core::link::END;
 use rust_hdl::prelude::*;
 
 /// The host's SPI, to which this is a peripheral.

@@ -2,9 +2,9 @@
 
 use super::uart_in::UartIn;
 use super::uart_out::UartOut;
-use crate::register::Input;
-use crate::word::Word;
-use carrystep_spec::link::Uart;
+use crate::primitives::register::Input;
+use crate::primitives::word::Word;
+use carrystep_core::link::Uart;
 use rust_hdl::prelude::*;
 
 /// Receiver and transmitter.

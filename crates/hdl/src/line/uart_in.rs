@@ -7,9 +7,9 @@
 //! valid                                             /^\    where the stop bit is high; else there was no byte
 //! ```
 
-use crate::constant::{Literal, Parameter, used_bits};
-use crate::register::{Input, Register};
-use crate::word::Word;
+use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
 /// The receiver.

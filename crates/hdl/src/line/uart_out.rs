@@ -6,9 +6,9 @@
 //!             |<- B ->|
 //! ```
 
-use crate::constant::{Literal, Parameter, used_bits};
-use crate::register::{Input, Register};
-use crate::word::{Word, bit_cast};
+use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
 /// The transmitter.

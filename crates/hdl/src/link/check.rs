@@ -6,9 +6,9 @@
 //! over     ________________/^^^\____
 //! ```
 
-use crate::constant::Literal;
-use crate::register::{Input, Register};
-use crate::word::Word;
+use crate::primitives::constant::Literal;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
 /// The CRC's register.
@@ -40,7 +40,7 @@ pub struct Check {
     by_one: Literal<1, 1>,
     ones: Literal<32, 0xffff_ffff>,
     top: Literal<32, 0x8000_0000>,
-    polynomial: Literal<32, { carrystep_spec::link::CRC_POLYNOMIAL as u64 }>,
+    polynomial: Literal<32, { carrystep_core::link::CRC_POLYNOMIAL as u64 }>,
 }
 
 impl Logic for Check {

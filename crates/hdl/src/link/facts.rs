@@ -8,10 +8,10 @@
 //! All items are asked for in turn, all the time; so they are never older than a few ticks. An axis that waits for its
 //! limit says its position in each of its turns, and the last one stays.
 
-use crate::constant::Literal;
-use crate::memory::Memory;
-use crate::register::{Input, Register};
-use crate::word::{Word, bit_cast};
+use crate::primitives::constant::Literal;
+use crate::primitives::memory::Memory;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
 /// The memory of facts.

@@ -1,16 +1,16 @@
-//! The little machine that reads requests, does what they ask for and writes answers: `carrystep_spec::link::machine`
-//! says what its instructions are, `carrystep_spec::link::program` what it does.
+//! The little machine that reads requests, does what they ask for and writes answers: `carrystep_core::link::machine`
+//! says what its instructions are, `carrystep_core::link::program` what it does.
 //!
 //! ```text
 //! stage     | fetch | address | execute |       the program memory, the data memory, what comes of it
 //! ```
 
 use super::check::Check;
-use crate::constant::Literal;
-use crate::memory::Memory;
-use crate::register::{Input, Register};
-use crate::word::{Word, bit_cast};
-use carrystep_spec::link::Image;
+use crate::primitives::constant::Literal;
+use crate::primitives::memory::Memory;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::{Word, bit_cast};
+use carrystep_core::link::Image;
 use rust_hdl::prelude::*;
 
 /// The machine for N axes.
@@ -339,6 +339,6 @@ mod tests {
 
     #[test]
     fn machine_synthesizes() {
-        assert_synthesizes(Machine::<6>::new(&carrystep_spec::link::image()), "carrystep_machine");
+        assert_synthesizes(Machine::<6>::new(&carrystep_core::link::image()), "carrystep_machine");
     }
 }

@@ -3,11 +3,11 @@
 use super::Link;
 use crate::HdlError;
 use crate::line::{LineOutputs, UartSim};
+use crate::primitives::word::Word;
 use crate::sim::{rising_edge, settle};
-use crate::word::Word;
-use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{EngineError, EngineInputs, Put};
-use carrystep_spec::link::{BuildId, LinkInputs, LinkOutputs, Uart};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{EngineError, EngineInputs, Put};
+use carrystep_core::link::{BuildId, LinkInputs, LinkOutputs, Uart};
 use rust_hdl::prelude::{Block, check_all};
 
 /// A link for any number of axes.

@@ -1,6 +1,6 @@
 //! What the engine's guard watches, and how a stop goes on: docs/clock-by-clock.md, "Stops".
 
-use carrystep_spec::engine::{Cause, EngineInputs, Guard};
+use carrystep_core::engine::{Cause, EngineInputs, Guard};
 
 /// E-stop, watchdog and ENABLE.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,10 +1,10 @@
 //! One axis of the engine: what a tick makes of it.
 
-use crate::axis::Step;
-use crate::phase::{bisect, crosses};
-use crate::shaper;
-use crate::six_axis::Stage;
-use carrystep_spec::engine::{Cause, Guard, Limits, QUEUE, SEGMENT_WORDS};
+use crate::parallel::axis::Step;
+use crate::parallel::six_axis::Stage;
+use crate::parts::phase::{bisect, crosses};
+use crate::parts::shaper;
+use carrystep_core::engine::{Cause, Guard, Limits, QUEUE, SEGMENT_WORDS};
 use std::collections::VecDeque;
 
 /// A segment as the queue holds it.

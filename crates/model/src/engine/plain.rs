@@ -8,7 +8,7 @@ use super::lane::{Lane, Limit};
 use super::{Engine, LOOK_BEAT, bits};
 use crate::engine::guard::Stop;
 use crate::fast::{Cubic, Moving};
-use carrystep_spec::engine::{EngineInputs, Limits, PUT_BEAT, QUEUE, TURN};
+use carrystep_core::engine::{EngineInputs, Limits, PUT_BEAT, QUEUE, TURN};
 
 impl Engine {
     /// Clocks of a tick.
@@ -17,7 +17,7 @@ impl Engine {
     }
 
     /// The build parameters.
-    pub fn build(&self) -> &carrystep_spec::EngineBuild {
+    pub fn build(&self) -> &carrystep_core::EngineBuild {
         &self.build
     }
 

@@ -2,7 +2,7 @@
 
 use super::lane::Lane;
 use super::{Engine, bits};
-use carrystep_spec::engine::{Cause, TURN};
+use carrystep_core::engine::{Cause, TURN};
 
 /// The beat of a turn in which `get` is answered.
 const GET_BEAT: u32 = 11;
@@ -84,8 +84,8 @@ impl Engine {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use carrystep_spec::engine::EngineInputs;
-    use carrystep_spec::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
+    use carrystep_core::engine::EngineInputs;
+    use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 
     #[test]
     fn answers_are_counted_as_they_come() {

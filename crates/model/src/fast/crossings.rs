@@ -1,7 +1,7 @@
 //! The ticks of a stretch that step: found by jumping from one to the next, or by ticking.
 
 use super::cubic::{Cubic, first};
-use crate::phase::bisect_all;
+use crate::parts::phase::bisect_all;
 
 /// A stretch is ticked where a step is expected in every so many ticks or fewer: there an addition a
 /// tick costs less than a root an edge.

@@ -1,7 +1,7 @@
 //! What happens on the pins, and six streams of it as one.
 
-use crate::shaper;
-use carrystep_spec::engine::MAX_AXES;
+use crate::parts::shaper;
+use carrystep_core::engine::MAX_AXES;
 
 /// What changes on an axis' pins. STEP falls W clocks after it rises, always, so that is not told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -7,8 +7,8 @@ use super::edges::{self, Edges};
 use super::passage::{From, Passages};
 use crate::Engine;
 use crate::fast::Moving;
-use carrystep_spec::EngineBuild;
-use carrystep_spec::engine::{EngineInputs, EngineOutputs, MAX_AXES};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{EngineInputs, EngineOutputs, MAX_AXES};
 
 /// The engine, and the clock cycle that it is in.
 ///

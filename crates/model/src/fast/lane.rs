@@ -4,11 +4,11 @@ use super::crossings::{BATCH, Stretch};
 use super::cubic::Cubic;
 use super::edges::Record;
 use super::pins::{Overrun, Pins};
-use crate::axis::Step;
-use crate::phase::{bisect, crosses};
-use crate::shaper;
-use crate::six_axis::Stage;
-use carrystep_spec::{PinTiming, Timebase};
+use crate::parallel::axis::Step;
+use crate::parallel::six_axis::Stage;
+use crate::parts::phase::{bisect, crosses};
+use crate::parts::shaper;
+use carrystep_core::{PinTiming, Timebase};
 
 /// What strobes that only add, and the clocks between them, change of an axis.
 #[derive(Debug, Clone, Copy)]

@@ -3,8 +3,8 @@
 use super::cubic::MOST_TICKS;
 use super::edges::{Edges, Window as EdgeWindow};
 use super::lane::{self, FaultIn, Moving, Window};
-use carrystep_spec::engine::MAX_AXES;
-use carrystep_spec::{PinTiming, Timebase};
+use carrystep_core::engine::MAX_AXES;
+use carrystep_core::{PinTiming, Timebase};
 
 /// Most ticks of a window where edges are dense: its edges are to stay in the cache.
 const DENSE_TICKS: u32 = 1 << 13;

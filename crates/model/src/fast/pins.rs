@@ -5,8 +5,8 @@
 //! clock by clock through [`shaper::clock`] until it is calm again.
 
 use super::edges::{Change, Edge, Record};
-use crate::shaper::{self, Input};
-use carrystep_spec::PinTiming;
+use crate::parts::shaper::{self, Input};
+use carrystep_core::PinTiming;
 
 /// A clock in which the shaper would latch an overrun.
 pub(super) struct Overrun(pub u64);

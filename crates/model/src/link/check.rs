@@ -1,6 +1,6 @@
 //! The CRC's register: a bit a clock, eight clocks a byte.
 
-use carrystep_spec::link::CRC_POLYNOMIAL;
+use carrystep_core::link::CRC_POLYNOMIAL;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Check {

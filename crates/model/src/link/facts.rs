@@ -1,10 +1,10 @@
 //! What can be read: the build's facts, and what the engine has last said of each axis. All items are asked for in turn,
 //! one a turn of the engine.
 
-use carrystep_spec::EngineBuild;
-use carrystep_spec::link::machine::SCAN;
-use carrystep_spec::link::registers as map;
-use carrystep_spec::link::{self, BuildId, LinkInputs};
+use carrystep_core::EngineBuild;
+use carrystep_core::link::machine::SCAN;
+use carrystep_core::link::registers as map;
+use carrystep_core::link::{self, BuildId, LinkInputs};
 
 /// Words of the memory.
 const WORDS: usize = 128;

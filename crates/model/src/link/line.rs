@@ -2,7 +2,7 @@
 
 use super::spi::Spi;
 use super::uart::{Receiver, Transmitter};
-use carrystep_spec::link::{Line, LinkInputs};
+use carrystep_core::link::{Line, LinkInputs};
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum End {

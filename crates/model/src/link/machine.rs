@@ -3,13 +3,13 @@
 //! Its memories give in a clock what they were asked for in the one before, and the old value of a word that was written then.
 
 use super::check::{Check, Told};
-use carrystep_spec::engine::EngineOutputs;
-use carrystep_spec::link::Image;
-use carrystep_spec::link::machine::{
+use carrystep_core::engine::EngineOutputs;
+use carrystep_core::link::Image;
+use carrystep_core::link::machine::{
     ACTS, BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, Code, Condition, FOR_ROOM, GOES, HOMING,
     INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, Source, TAX, UNLESS, WAIT, XOR,
 };
-use carrystep_spec::link::registers::{CONTROL_ENABLE, CONTROL_STOP};
+use carrystep_core::link::registers::{CONTROL_ENABLE, CONTROL_STOP};
 use std::sync::Arc;
 
 /// Words of each memory of bytes, and of the program.

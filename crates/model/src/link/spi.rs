@@ -1,6 +1,6 @@
 //! SPI mode 0, the gateware being the peripheral: a byte is whole where SCK rises for the eighth time, seen two clocks late.
 
-use carrystep_spec::link::END;
+use carrystep_core::link::END;
 
 /// The pins from the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

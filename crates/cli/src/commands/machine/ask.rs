@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::{Clock, Wishes};
 use crate::commands::boards;
 use crate::failure::Failure;
-use carrystep_spec::BigDecimal;
+use carrystep_files::BigDecimal;
 use std::io::{BufRead as _, Write as _};
 
 /// Asks for what is open.
@@ -39,7 +39,7 @@ fn clock(text: &str) -> Result<Clock, String> {
         let hz = mhz * BigDecimal::from(1_000_000);
         hz.is_integer().then(|| hz.normalized().to_plain_string().parse().ok()).flatten()
     };
-    match carrystep_spec::decimal::parse(text) {
+    match carrystep_files::decimal::parse(text) {
         Some(mhz) => hz(mhz).map(Clock::Hz).ok_or_else(|| format!("{text} MHz is no whole number of Hz")),
         None => boards::find(text).map(|board| Clock::Board(Box::new(board))).map_err(|failure| failure.message()),
     }

@@ -1,8 +1,8 @@
 //! One axis of a new machine file: the keys of `[[machine.axis]]` and their values, as options or answers give them.
 
 use crate::failure::Failure;
-use carrystep_spec::decimal;
-use carrystep_spec::driver::drivers;
+use carrystep_files::decimal;
+use carrystep_files::driver::drivers;
 use std::collections::BTreeMap;
 
 /// What a key holds.

@@ -1,0 +1,135 @@
+//! How a part makes its clock of the oscillator's: exact settings of the clock manager, or the nearest clock that it can.
+//!
+//! ```text
+//! iCE40      F x (DIVF + 1) / (DIVR + 1) / 2^DIVQ         PLL
+//! Spartan-3  F x M / D                                    DCM (3E and 6 too)
+//! Spartan-7  F x M / D / O                                MMCM
+//! ```
+//!
+//! A clock is exact or refused: a tick that is a thousandth off makes every speed a thousandth wrong.
+
+use carrystep_core::tick::mhz;
+use schemars::JsonSchema;
+use serde::Serialize;
+use thiserror::Error;
+
+mod dcm;
+mod ice40;
+mod mmcm;
+
+pub use dcm::Dcm;
+pub use ice40::Ice40Pll;
+pub use mmcm::Mmcm;
+
+/// What makes a clock of another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ClockManager {
+    /// Nothing: the oscillator is the clock.
+    Oscillator,
+    /// The PLL of an iCE40.
+    Ice40Pll(Ice40Pll),
+    /// The frequency synthesiser of a Spartan's DCM.
+    Dcm(Dcm),
+    /// The MMCM of a Spartan-7.
+    Mmcm(Mmcm),
+}
+
+/// Which clock managers a family has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClockManagers {
+    /// An iCE40's PLL.
+    Ice40,
+    /// A DCM whose synthesised clock is within these, Hz.
+    Dcm {
+        /// Slowest input.
+        least_in: u64,
+        /// Slowest output.
+        least_out: u64,
+        /// Fastest output.
+        most_out: u64,
+    },
+    /// An MMCM of speed grade -1.
+    Mmcm,
+}
+
+/// A clock that cannot be made of the oscillator's.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{manager} makes no clock of {} MHz from {} MHz; {}", mhz(*.wanted_hz), mhz(*.oscillator_hz), nearest_said(.nearest_hz))]
+pub struct ClockError {
+    /// PLL, DCM or MMCM.
+    pub manager: &'static str,
+    /// The oscillator, Hz.
+    pub oscillator_hz: u64,
+    /// What was asked for, Hz.
+    pub wanted_hz: u64,
+    /// The nearest that can be made and is whole Hz.
+    pub nearest_hz: Option<u64>,
+}
+
+fn nearest_said(nearest_hz: &Option<u64>) -> String {
+    match nearest_hz {
+        Some(hz) => format!("the nearest that it makes is {} MHz", mhz(*hz)),
+        None => "it makes none of that at all".to_owned(),
+    }
+}
+
+/// One way to set a clock manager, and the clock that it makes.
+struct Way {
+    manager: ClockManager,
+    /// Hz, as numerator and denominator.
+    made: (u64, u64),
+}
+
+impl ClockManagers {
+    /// The settings for exactly this clock.
+    ///
+    /// # Errors
+    /// [`ClockError`] names the nearest clock of whole Hz that can be made.
+    pub fn solve(self, oscillator_hz: u64, wanted_hz: u64) -> Result<ClockManager, ClockError> {
+        if oscillator_hz == wanted_hz {
+            return Ok(ClockManager::Oscillator);
+        }
+        let (manager, ways): (_, Vec<Way>) = match self {
+            Self::Ice40 => ("the PLL", ice40::ways(oscillator_hz).collect()),
+            Self::Dcm { least_in, least_out, most_out } => {
+                ("the DCM", dcm::ways(oscillator_hz, least_in, least_out..=most_out).collect())
+            }
+            Self::Mmcm => ("the MMCM", mmcm::ways(oscillator_hz).collect()),
+        };
+        // The first of the exact ones, in the order of each manager's preference.
+        let exact = |way: &&Way| way.made.0 == u64::saturating_mul(wanted_hz, way.made.1);
+        if let Some(way) = ways.iter().find(exact) {
+            return Ok(way.manager);
+        }
+        let whole = ways.iter().filter(|way| way.made.0.is_multiple_of(way.made.1)).map(|way| way.made.0 / way.made.1);
+        let nearest_hz = whole.min_by_key(|hz| hz.abs_diff(wanted_hz));
+        Err(ClockError { manager, oscillator_hz, wanted_hz, nearest_hz })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_that_cannot_be_made_is_refused_with_the_nearest() {
+        let refused = |managers: ClockManagers, from, to| managers.solve(from, to).unwrap_err().to_string();
+        assert_eq!(
+            refused(ClockManagers::Ice40, 12_000_000, 40_000_000),
+            "the PLL makes no clock of 40 MHz from 12 MHz; the nearest that it makes is 39.75 MHz"
+        );
+        assert_eq!(
+            refused(ClockManagers::Ice40, 12_000_000, 80_000_000),
+            "the PLL makes no clock of 80 MHz from 12 MHz; the nearest that it makes is 79.5 MHz"
+        );
+        // 47.916666.. MHz is nearer, but no number of Hz.
+        assert!(refused(ClockManagers::Ice40, 100_000_000, 48_000_000).ends_with("makes is 48.125 MHz"));
+        assert!(refused(ClockManagers::Ice40, 1_000_000, 48_000_000).ends_with("it makes none of that at all"));
+    }
+
+    #[test]
+    fn the_oscillator_itself_needs_no_manager() {
+        assert_eq!(ClockManagers::Mmcm.solve(12_000_000, 12_000_000), Ok(ClockManager::Oscillator));
+    }
+}

@@ -1,0 +1,166 @@
+//! Configuration pins: what the FPGA itself does with a pin before the design has it, for each package (`data/packages.toml`).
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::LazyLock;
+
+const DATA: &str = include_str!("../data/packages.toml");
+
+/// How an FPGA gets its bitstream. JTAG needs no user pin, so it is no mode here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, JsonSchema, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// The pin has its function in every mode.
+    Any,
+    /// Bit by bit, from a PROM or a host.
+    Serial,
+    /// From an SPI flash.
+    Spi,
+    /// Byte by byte: SelectMAP, or a parallel flash.
+    Parallel,
+    /// The data lines beyond the first eight.
+    Wide,
+    /// The address lines of a parallel flash.
+    Bpi,
+}
+
+impl fmt::Display for Mode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Any => "every mode",
+            Self::Serial => "serial",
+            Self::Spi => "SPI",
+            Self::Parallel => "parallel, 8 bits",
+            Self::Wide => "parallel, over 8 bits",
+            Self::Bpi => "addresses of a parallel flash",
+        })
+    }
+}
+
+/// The configuration pins of a package.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a [[package]] table")]
+pub(super) struct Package {
+    pub name: String,
+    /// The parts that have these pins in it.
+    pub parts: Vec<String>,
+    /// What the table was made from.
+    pub sources: Vec<String>,
+    #[serde(default)]
+    any: Functions,
+    #[serde(default)]
+    serial: Functions,
+    #[serde(default)]
+    spi: Functions,
+    #[serde(default)]
+    parallel: Functions,
+    #[serde(default)]
+    wide: Functions,
+    #[serde(default)]
+    bpi: Functions,
+}
+
+/// Functions by pin.
+type Functions = BTreeMap<String, String>;
+
+impl Package {
+    /// The function of a pin in each mode in which it has one.
+    pub fn functions(&self, pin: &str) -> Vec<(Mode, &str)> {
+        let modes = [
+            (Mode::Any, &self.any),
+            (Mode::Serial, &self.serial),
+            (Mode::Spi, &self.spi),
+            (Mode::Parallel, &self.parallel),
+            (Mode::Wide, &self.wide),
+            (Mode::Bpi, &self.bpi),
+        ];
+        modes.into_iter().filter_map(|(mode, pins)| Some((mode, pins.get(pin)?.as_str()))).collect()
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Packages {
+    package: Vec<Package>,
+}
+
+/// The tables that carrystep has.
+pub(super) fn packages() -> &'static [Package] {
+    static PACKAGES: LazyLock<Vec<Package>> = LazyLock::new(|| {
+        let read: Result<Packages, _> = toml::from_str(DATA);
+        read.unwrap_or_else(|error| unreachable!("data/packages.toml: {error}")).package
+    });
+    &PACKAGES
+}
+
+/// A port on a configuration pin: the board's page shows each of them.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Shared {
+    /// `step[0]`, or `the oscillator`.
+    pub port: String,
+    /// Pin of the package.
+    pub pin: String,
+    /// What the pin is in configuration, `HSWAPEN`; several with a `/` between.
+    pub function: String,
+    /// The modes in which it is that.
+    pub modes: Vec<Mode>,
+    /// Why the port may be there although the board is configured in one of these modes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+}
+
+/// An input that says from when on lines of the board may be driven.
+///
+/// The lines have high impedance until the input has been high for `wait_ns`, and again as soon as it is low.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Gate {
+    /// Its port of the top level.
+    pub port: String,
+    /// Pin of the package.
+    pub pin: String,
+    /// So long it must have been high, ns.
+    pub wait_ns: u64,
+    /// The outputs that wait for it.
+    pub holds: Vec<String>,
+    /// What for.
+    pub why: String,
+}
+
+impl Gate {
+    /// Bits of a counter of the clock that runs for `wait_ns` or longer before its highest bit is set.
+    pub fn counter_bits(&self, clock_hz: u64) -> u32 {
+        let clocks = (u128::from(self.wait_ns) * u128::from(clock_hz)).div_ceil(1_000_000_000).max(1);
+        clocks.next_power_of_two().trailing_zeros() + 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_counter_runs_for_the_time_or_longer() {
+        let gate = |wait_ns| Gate { port: "go".into(), pin: "P1".into(), wait_ns, holds: vec![], why: String::new() };
+        // Highest bit is set after 2^(bits - 1) clocks.
+        for (wait_ns, clock_hz, bits) in [(400_000, 80_000_000, 16), (12_800, 80_000_000, 11), (12_801, 80_000_000, 12)]
+        {
+            assert_eq!(gate(wait_ns).counter_bits(clock_hz), bits, "{wait_ns} ns at {clock_hz} Hz");
+        }
+        assert_eq!(gate(0).counter_bits(80_000_000), 1);
+    }
+
+    #[test]
+    fn every_table_has_pins_and_a_source() {
+        assert_eq!(packages().len(), 11);
+        for package in packages() {
+            assert!(!package.sources.is_empty() && !package.parts.is_empty(), "{}", package.name);
+            assert!(!package.spi.is_empty() || !package.serial.is_empty(), "{}", package.name);
+        }
+        let mojo = packages().iter().find(|package| package.name == "tqg144").expect("a table");
+        assert_eq!(mojo.functions("P144"), [(Mode::Any, "HSWAPEN")]);
+        assert_eq!(mojo.functions("P59"), [(Mode::Wide, "D10")]);
+        assert_eq!(mojo.functions("P8"), []);
+    }
+}

@@ -1,0 +1,322 @@
+//! Boards as data: what is on them, which pin does what, and how their clock is made. One file of `data/boards/` each.
+
+use crate::clock::ClockManager;
+use carrystep_core::engine::Limits;
+use carrystep_core::link::{BaudError, Uart};
+use carrystep_files::error::{InputError, Source};
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::path::Path;
+use std::sync::LazyLock;
+
+pub mod clock;
+mod configuration;
+mod error;
+mod family;
+mod measured;
+mod port;
+mod raw;
+mod reach;
+
+pub use configuration::{Gate, Mode, Shared};
+pub use error::BoardError;
+pub use family::{Family, IoStandard, PllInput, Toolchain};
+pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
+pub use port::{OSCILLATOR, PORTS, Port, Way};
+
+/// Baud rates that are proposed, the fastest first: those that USB serial chips make exactly, and the usual ones.
+pub const BAUDS: [u32; 7] = [3_000_000, 2_000_000, 1_500_000, 1_000_000, 500_000, 230_400, 115_200];
+
+/// The files, in the order in which boards are listed.
+const DATA: [&str; 14] = [
+    include_str!("../data/boards/icestick.toml"),
+    include_str!("../data/boards/icebreaker.toml"),
+    include_str!("../data/boards/tinyfpga-bx.toml"),
+    include_str!("../data/boards/alchitry-cu.toml"),
+    include_str!("../data/boards/hx8k-evn.toml"),
+    include_str!("../data/boards/upduino3.toml"),
+    include_str!("../data/boards/icesugar.toml"),
+    include_str!("../data/boards/s3board.toml"),
+    include_str!("../data/boards/nexys2.toml"),
+    include_str!("../data/boards/papilio-one.toml"),
+    include_str!("../data/boards/papilio-pro.toml"),
+    include_str!("../data/boards/mojo-v3.toml"),
+    include_str!("../data/boards/arty-s7.toml"),
+    include_str!("../data/boards/cmod-s7.toml"),
+];
+
+/// A board whose every fact has been checked against the others.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Board {
+    /// As on the command line.
+    pub name: String,
+    /// As its maker calls it.
+    pub title: String,
+    /// Which toolchain, which clock manager.
+    pub family: Family,
+    /// The parts that it is sold with; the first is the default.
+    pub parts: Vec<Part>,
+    /// The clock that comes from outside.
+    pub oscillator: Oscillator,
+    /// The clocks that are proposed; the first is the default.
+    pub clocks: Vec<Clocking>,
+    /// What the gateware's pins are set to.
+    pub io: IoStandard,
+    /// How the oscillator reaches an iCE40's PLL.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pll: Option<PllInput>,
+    /// VCCAUX of a Spartan-6, V: ISE takes 2.5 V unless told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vccaux: Option<String>,
+    /// Where each port of the top level goes, in the order of [`PORTS`].
+    pub wires: Vec<Wire>,
+    /// Pins that must be driven although the gateware has no use for them.
+    pub ties: Vec<Tie>,
+    /// Modes in which its bitstream may be loaded, besides JTAG.
+    pub configured: Vec<Mode>,
+    /// Its ports that are on configuration pins, and why they may be.
+    pub shared: Vec<Shared>,
+    /// What the tables of configuration pins were made from.
+    pub configuration_sources: Vec<String>,
+    /// The input that says from when on some of its lines may be driven.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gate: Option<Gate>,
+    /// Its LED lights where the pin is low.
+    pub led_low: bool,
+    /// Greatest baud rate of its serial chip, where that is under the fastest of [`BAUDS`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_baud: Option<u32>,
+    /// The command that loads the bitstream, `FILE` in its place.
+    pub flash: String,
+    /// Extension of the bitstream.
+    pub bitstream: String,
+    /// What ISE's `bitgen` must be told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bitgen: Option<String>,
+    /// Vendor and product of its USB chip, as in `0403:6010`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub usb: Option<String>,
+    /// What else one should know.
+    pub notes: Vec<String>,
+    /// Where its sources contradict each other.
+    pub conflicts: Vec<String>,
+    /// Repository, commit and file of what this was taken from.
+    pub sources: Vec<String>,
+}
+
+/// An FPGA.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Part {
+    /// `hx1k`, `xc3s400`.
+    pub name: String,
+    /// `tq144`, `ft256`.
+    pub package: String,
+    /// Speed grade of a Spartan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<u8>,
+    /// Logic cells of an iCE40.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub logic_cells: Option<u32>,
+    /// Block RAMs.
+    pub block_rams: u32,
+}
+
+/// The clock that comes from outside.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Oscillator {
+    /// Pin of the package.
+    pub pin: String,
+    /// Hz.
+    pub hz: u64,
+    /// What its pin is set to.
+    pub io: IoStandard,
+}
+
+/// A clock of a board, and the tick and phases that go with it.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Clocking {
+    /// Hz.
+    pub clock_hz: u64,
+    /// ns.
+    pub tick_ns: u64,
+    /// 1, 4 or 16.
+    pub phases: u32,
+    /// How it is made of the oscillator's.
+    pub made_by: ClockManager,
+    /// Why this one.
+    pub why: String,
+}
+
+/// Where a bit of a port goes.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Wire {
+    /// `uart_rx`, `step[0]`.
+    pub port: String,
+    /// Pin of the package.
+    pub pin: String,
+    /// Where it is on a connector.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at: Option<Place>,
+}
+
+/// A place that a person can see.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Place {
+    /// The connector.
+    pub connector: String,
+    /// What is printed beside the pin.
+    pub label: String,
+}
+
+/// A pin that is driven to one level for ever.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Tie {
+    /// Its port of the top level.
+    pub port: String,
+    /// Pin of the package.
+    pub pin: String,
+    /// 0 or 1.
+    pub level: u8,
+    /// What for.
+    pub why: String,
+}
+
+/// All boards.
+pub fn boards() -> &'static [Board] {
+    static BOARDS: LazyLock<Vec<Board>> = LazyLock::new(|| {
+        let read = |text: &&str| {
+            let source = Source { path: "data/boards".into(), text: (*text).into() };
+            Board::from_source(&source).unwrap_or_else(|error| unreachable!("{error}"))
+        };
+        DATA.iter().map(read).collect()
+    });
+    &BOARDS
+}
+
+/// Names of all boards, for messages.
+fn names() -> String {
+    let names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
+    names.join(", ")
+}
+
+/// The board of this name.
+///
+/// # Errors
+/// [`BoardError::Unknown`] names those that there are.
+pub fn board(name: &str) -> Result<&'static Board, BoardError> {
+    boards().iter().find(|board| board.name == name).ok_or_else(|| BoardError::Unknown { name: name.to_owned() })
+}
+
+impl Board {
+    /// Reads a board of one's own.
+    ///
+    /// # Errors
+    /// [`InputError`] with file, line and column.
+    pub fn load(path: &Path) -> Result<Self, InputError> {
+        Self::from_source(&Source::read(path)?)
+    }
+
+    /// Checks a board whose text is already there.
+    ///
+    /// # Errors
+    /// [`InputError`] with file, line and column.
+    pub fn from_source(source: &Source) -> Result<Self, InputError> {
+        raw::read(source)
+    }
+
+    /// The part of this name; without one, the default.
+    ///
+    /// # Errors
+    /// [`BoardError::Part`] names those that there are.
+    pub fn part(&self, name: Option<&str>) -> Result<&Part, BoardError> {
+        let found = self.parts.iter().find(|part| name.is_none_or(|name| part.name == name));
+        found.ok_or_else(|| BoardError::Part {
+            board: self.name.clone(),
+            part: name.unwrap_or_default().to_owned(),
+            parts: self.parts.iter().map(|part| part.name.clone()).collect(),
+        })
+    }
+
+    /// How it makes this clock.
+    ///
+    /// # Errors
+    /// [`BoardError::Clock`] names the nearest that it can.
+    pub fn clock(&self, clock_hz: u64) -> Result<ClockManager, BoardError> {
+        self.family.clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
+            board: self.name.clone(),
+            source,
+            proposed: self.proposed(None),
+        })
+    }
+
+    /// The fastest of the [`BAUDS`] that this clock makes within 2 % and that its serial chip takes.
+    ///
+    /// # Errors
+    /// [`BaudError`]: the clock makes none of them.
+    pub fn uart(&self, clock_hz: u64) -> Result<Uart, BaudError> {
+        let most = self.max_baud.unwrap_or(BAUDS[0]);
+        let made = BAUDS.into_iter().filter(|baud| *baud <= most).find_map(|baud| Uart::new(clock_hz, baud).ok());
+        made.map_or_else(|| Uart::new(clock_hz, most), Ok)
+    }
+
+    /// Whether its serial chip takes this baud rate.
+    ///
+    /// # Errors
+    /// [`BoardError::Baud`] names the greatest that it takes.
+    pub fn takes(&self, baud: u32) -> Result<(), BoardError> {
+        match self.max_baud {
+            Some(most) if most < baud => Err(BoardError::Baud { board: self.name.clone(), most, wanted: baud }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether it has pins for so many axes and their limit switches.
+    ///
+    /// # Errors
+    /// [`BoardError`] says what it has pins for.
+    pub fn carries(&self, axes: usize, limits: Limits) -> Result<(), BoardError> {
+        let board = || self.name.clone();
+        let has = self.bits("step");
+        if axes > has {
+            return Err(BoardError::Axes { board: board(), has, wanted: axes });
+        }
+        let (low, high) = (self.bits("limit_min"), self.bits("limit_max"));
+        let (needs_low, needs_high, wanted) = match limits {
+            Limits::None => (0, 0, String::new()),
+            Limits::One => (1, 0, "one for all axes".to_owned()),
+            Limits::Each => (axes, 0, format!("one for each of {axes} axes")),
+            Limits::Pair => (axes, axes, format!("two for each of {axes} axes")),
+        };
+        if needs_low <= low && needs_high <= high {
+            return Ok(());
+        }
+        let instead = if axes <= low { "limits = \"each\" or \"one\" would do" } else { "limits = \"one\" would do" };
+        Err(BoardError::Limits { board: board(), low, high, wanted, instead })
+    }
+
+    /// The wire of a port's bit.
+    ///
+    /// # Errors
+    /// [`BoardError::Port`]: it goes nowhere on this board.
+    pub fn wire(&self, port: &str) -> Result<&Wire, BoardError> {
+        let found = self.wires.iter().find(|wire| wire.port == port);
+        found.ok_or_else(|| BoardError::Port { board: self.name.clone(), port: port.to_owned() })
+    }
+
+    /// How many bits of a port have a pin.
+    pub fn bits(&self, port: &str) -> usize {
+        self.wires.iter().filter(|wire| wire.port.split('[').next() == Some(port)).count()
+    }
+}
+
+impl Part {
+    /// What ISE and Vivado call it: `xc3s400-ft256-4`, `xc7s25csga324-1`; as well the name of an iCE40 in its package.
+    pub fn ordered(&self) -> String {
+        let Self { name, package, speed, .. } = self;
+        match speed {
+            None => format!("iCE40{}-{}", name.to_uppercase(), package.to_uppercase()),
+            Some(speed) if name.starts_with("xc7") => format!("{name}{package}-{speed}"),
+            Some(speed) => format!("{name}-{package}-{speed}"),
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What the shipped gateware takes of each board: `data/measured.toml`, which `cargo xtask long boards` writes.
+
+use super::Board;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// The file, seen from the root of the workspace.
+pub const MEASURED_AT: &str = "crates/boards/data/measured.toml";
+
+/// What the shipped gateware takes of a board, on its first part with its first clock.
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Measured {
+    /// On the pins of an iCE40.
+    Placed(Placed),
+    /// A Spartan's: its own tools place it, which nobody here has done.
+    Mapped(Mapped),
+}
+
+/// By nextpnr and icetime.
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Placed {
+    /// Logic cells.
+    pub logic_cells: u32,
+    /// Block RAMs.
+    pub block_rams: u32,
+    /// The clock that it reaches, MHz, as nextpnr has it,
+    pub nextpnr_mhz: f64,
+    /// and as icetime has it.
+    pub icetime_mhz: f64,
+    /// The first of nextpnr's seeds that reaches the clock, or the best.
+    pub seed: u32,
+}
+
+/// By yosys.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mapped {
+    /// LUTs of all widths, inverters included, and those that are memory.
+    pub luts: u32,
+    /// Flip-flops.
+    pub flip_flops: u32,
+    /// Cells of the carry chain: a bit each up to Spartan-3E (`MUXCY`, `XORCY`), four bits each from Spartan-6 on (`CARRY4`).
+    pub carries: u32,
+    /// Block RAMs of all sizes.
+    pub block_rams: u32,
+}
+
+/// By the names of the boards.
+pub type AllMeasured = BTreeMap<String, Measured>;
+
+impl Board {
+    /// What the gateware takes of it; nothing is known of a board of one's own.
+    pub fn measured(&self) -> Option<Measured> {
+        static MEASURED: LazyLock<AllMeasured> = LazyLock::new(|| {
+            let text = include_str!("../data/measured.toml");
+            toml::from_str(text).unwrap_or_else(|error| unreachable!("{error}"))
+        });
+        MEASURED.get(&self.name).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Measured, boards};
+
+    #[test]
+    fn every_board_was_measured_and_holds_it() {
+        for board in boards() {
+            let (rams, of) = match board.measured().expect(&board.name) {
+                Measured::Placed(placed) => {
+                    assert!(placed.logic_cells <= board.parts[0].logic_cells.unwrap(), "{}", board.name);
+                    assert!(placed.nextpnr_mhz * 1e6 >= board.clocks[0].clock_hz as f64, "{}", board.name);
+                    (placed.block_rams, board.parts[0].block_rams)
+                }
+                Measured::Mapped(mapped) => (mapped.block_rams, board.parts[0].block_rams),
+            };
+            assert!(rams <= of, "{}", board.name);
+        }
+    }
+}

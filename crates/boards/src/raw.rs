@@ -1,0 +1,354 @@
+//! A board's file as it is written, and its checks.
+
+use super::configuration::{Mode, Package};
+use super::port::{PORTS, Port};
+use super::{Board, Clocking, Family, IoStandard, Oscillator, Part, Place, PllInput, Tie, Wire};
+use carrystep_core::build::Timebase;
+use carrystep_core::engine::{MAX_AXES, check_schedule};
+use carrystep_files::did_you_mean;
+use carrystep_files::error::{InputError, Source};
+use configuration::{Exception, RESERVED, RawGate};
+use pins::Pins;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Range;
+use toml::Spanned;
+
+mod configuration;
+mod pins;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a board")]
+struct RawBoard {
+    name: Spanned<String>,
+    title: String,
+    family: Spanned<Family>,
+    io: Spanned<IoStandard>,
+    pll: Option<Spanned<PllInput>>,
+    vccaux: Option<Spanned<String>>,
+    flash: Spanned<String>,
+    bitstream: Option<String>,
+    bitgen: Option<String>,
+    usb: Option<Spanned<String>>,
+    configured: Spanned<Vec<Mode>>,
+    #[serde(default)]
+    exception: Vec<Exception>,
+    gate: Option<RawGate>,
+    #[serde(default)]
+    package: Vec<Package>,
+    #[serde(default)]
+    led_low: bool,
+    max_baud: Option<u32>,
+    sources: Spanned<Vec<String>>,
+    #[serde(default)]
+    conflicts: Vec<String>,
+    #[serde(default)]
+    notes: Vec<String>,
+    part: Vec<Spanned<RawPart>>,
+    oscillator: RawOscillator,
+    timebase: Vec<Spanned<RawTimebase>>,
+    pins: Ports,
+    #[serde(default)]
+    onboard: Ports,
+    #[serde(default)]
+    tie: Vec<RawTie>,
+    #[serde(default)]
+    reserved: Vec<Reserved>,
+    #[serde(default)]
+    connectors: Connectors,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a [[part]] table")]
+struct RawPart {
+    name: String,
+    package: String,
+    speed: Option<u8>,
+    logic_cells: Option<u32>,
+    block_rams: u32,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an [oscillator] table")]
+struct RawOscillator {
+    pin: Spanned<String>,
+    hz: Spanned<u64>,
+    io: Option<Spanned<IoStandard>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a [[timebase]] table")]
+struct RawTimebase {
+    clock_hz: Spanned<u64>,
+    tick_ns: u64,
+    phases: u32,
+    why: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a [[tie]] table")]
+struct RawTie {
+    port: String,
+    pin: Spanned<String>,
+    level: Spanned<u8>,
+    why: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a [[reserved]] table")]
+struct Reserved {
+    pin: Spanned<String>,
+    why: String,
+}
+
+/// A table of ports.
+type Ports = BTreeMap<Spanned<String>, Spanned<Pins>>;
+
+/// Connectors, their labels, and the pins behind them.
+type Connectors = BTreeMap<String, BTreeMap<Spanned<String>, String>>;
+
+pub(super) fn read(source: &Source) -> Result<Board, InputError> {
+    let raw: RawBoard = source.parse()?;
+    Reader { source, used: BTreeMap::new() }.board(raw)
+}
+
+/// The file, and the pins of the package that already have a use.
+struct Reader<'a> {
+    source: &'a Source,
+    /// By pin: its use, and where that is written.
+    used: BTreeMap<String, (String, Range<usize>)>,
+}
+
+impl Reader<'_> {
+    fn refuse<T>(&self, span: Range<usize>, message: impl Into<String>) -> Result<T, InputError> {
+        Err(InputError::at(self.source, span, message))
+    }
+
+    fn board(mut self, raw: RawBoard) -> Result<Board, InputError> {
+        let (family, io) = (*raw.family.as_ref(), *raw.io.as_ref());
+        self.supply(&raw, family, io)?;
+        let parts = self.parts(&raw, family)?;
+        for Reserved { pin, why } in &raw.reserved {
+            self.take(pin, &format!("{RESERVED}{why}"))?;
+        }
+        self.take(&raw.oscillator.pin, "the oscillator")?;
+        let mut ties = Vec::new();
+        for RawTie { port, pin, level, why } in raw.tie {
+            self.take(&pin, &port)?;
+            if *level.as_ref() > 1 {
+                return self.refuse(level.span(), "a level is 0 or 1");
+            }
+            ties.push(Tie { port, pin: pin.into_inner(), level: level.into_inner(), why });
+        }
+        let wires = self.wires(raw.pins, raw.onboard, &raw.connectors)?;
+        let gate = raw.gate.map(|gate| self.gate(gate, &wires)).transpose()?;
+        let (shared, configuration_sources) =
+            self.configuration(&raw.package, &raw.configured, &raw.exception, &raw.part, &parts)?;
+        let mut board = Board {
+            name: raw.name.into_inner(),
+            title: raw.title,
+            family,
+            parts,
+            oscillator: Oscillator {
+                pin: raw.oscillator.pin.into_inner(),
+                hz: raw.oscillator.hz.into_inner(),
+                io: raw.oscillator.io.map_or(io, Spanned::into_inner),
+            },
+            clocks: Vec::new(),
+            io,
+            pll: raw.pll.map(Spanned::into_inner),
+            vccaux: raw.vccaux.map(Spanned::into_inner),
+            wires,
+            ties,
+            configured: raw.configured.into_inner(),
+            shared,
+            configuration_sources,
+            gate,
+            led_low: raw.led_low,
+            max_baud: raw.max_baud,
+            flash: raw.flash.into_inner(),
+            bitstream: raw.bitstream.unwrap_or_else(|| if family == Family::Ice40 { "bin" } else { "bit" }.to_owned()),
+            bitgen: raw.bitgen,
+            usb: raw.usb.map(Spanned::into_inner),
+            notes: raw.notes,
+            conflicts: raw.conflicts,
+            sources: raw.sources.into_inner(),
+        };
+        self.axes(&board)?;
+        board.clocks =
+            raw.timebase.into_iter().map(|timebase| self.clocking(&board, timebase)).collect::<Result<_, _>>()?;
+        if board.clocks.is_empty() {
+            return self.refuse(0..0, "a board without a [[timebase]]");
+        }
+        Ok(board)
+    }
+
+    /// Everything that stands in the file's head.
+    fn supply(&self, raw: &RawBoard, family: Family, io: IoStandard) -> Result<(), InputError> {
+        let name = raw.name.as_ref();
+        if name.is_empty() || !name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-') {
+            return self.refuse(raw.name.span(), "a name of a board has small letters, digits and - only");
+        }
+        if raw.sources.as_ref().is_empty() {
+            return self.refuse(raw.sources.span(), "no source: where do its pins come from?");
+        }
+        if !raw.flash.as_ref().contains("FILE") {
+            return self.refuse(raw.flash.span(), "the command that loads the bitstream has no FILE in it");
+        }
+        if let Some(usb) = &raw.usb {
+            let hex = |text: &str| text.len() == 4 && text.chars().all(|c| matches!(c, '0'..='9' | 'a'..='f'));
+            if !usb.as_ref().split_once(':').is_some_and(|(vendor, product)| hex(vendor) && hex(product)) {
+                return self.refuse(usb.span(), "vendor and product are expected, as in 0403:6010");
+            }
+        }
+        match (&raw.pll, family == Family::Ice40) {
+            (None, true) => {
+                return self.refuse(raw.family.span(), "an iCE40 needs `pll`: \"pad\" or \"core\"");
+            }
+            (Some(pll), false) => return self.refuse(pll.span(), format!("`pll` is an iCE40's, not a {family}'s")),
+            _ => {}
+        }
+        match (&raw.vccaux, family == Family::Spartan6) {
+            (None, true) => {
+                return self.refuse(raw.family.span(), "a Spartan-6 needs `vccaux`: \"2.5\" or \"3.3\"");
+            }
+            (Some(volts), false) => {
+                return self.refuse(volts.span(), format!("`vccaux` is a Spartan-6's, not a {family}'s"));
+            }
+            (Some(volts), true) if !["2.5", "3.3"].contains(&volts.as_ref().as_str()) => {
+                return self.refuse(volts.span(), "VCCAUX is \"2.5\" or \"3.3\"");
+            }
+            _ => {}
+        }
+        if let Some(other) = raw.oscillator.io.as_ref().filter(|other| other.as_ref().millivolts() != io.millivolts()) {
+            let (theirs, ours) = (other.as_ref().name(), io.name());
+            let message = format!("{theirs} beside pins of {ours}: the voltages of their banks differ");
+            return self.refuse(other.span(), message);
+        }
+        Ok(())
+    }
+
+    fn parts(&self, raw: &RawBoard, family: Family) -> Result<Vec<Part>, InputError> {
+        let mut parts: Vec<Part> = Vec::new();
+        for spanned in &raw.part {
+            let RawPart { name, package, speed, logic_cells, block_rams } = spanned.as_ref();
+            if speed.is_none() != (family == Family::Ice40) {
+                return self.refuse(spanned.span(), "a Spartan needs a `speed` grade, an iCE40 has none");
+            }
+            if parts.iter().any(|part| part.name == *name) {
+                return self.refuse(spanned.span(), format!("two parts are called '{name}'"));
+            }
+            let (name, package) = (name.clone(), package.clone());
+            parts.push(Part { name, package, speed: *speed, logic_cells: *logic_cells, block_rams: *block_rams });
+        }
+        if parts.is_empty() { self.refuse(raw.family.span(), "a board without a [[part]]") } else { Ok(parts) }
+    }
+
+    /// A pin of the package gets a use, its only one.
+    fn take(&mut self, pin: &Spanned<String>, purpose: &str) -> Result<(), InputError> {
+        if let Some((other, _)) = self.used.insert(pin.as_ref().clone(), (purpose.to_owned(), pin.span())) {
+            return self.refuse(pin.span(), format!("pin {} is taken: {other}", pin.as_ref()));
+        }
+        Ok(())
+    }
+
+    /// The pins of all ports, in the order of [`PORTS`].
+    fn wires(&mut self, pins: Ports, onboard: Ports, connectors: &Connectors) -> Result<Vec<Wire>, InputError> {
+        let mut wires: Vec<Wire> = Vec::new();
+        let labelled = pins.into_iter().map(|row| (row, true));
+        for ((name, pins), on_connector) in labelled.chain(onboard.into_iter().map(|row| (row, false))) {
+            let port = self.port(&name)?;
+            if wires.iter().any(|wire| wire.port.split('[').next() == Some(port.name)) {
+                return self.refuse(name.span(), format!("{} stands in [pins] and in [onboard]", port.name));
+            }
+            let span = pins.span();
+            let pins = match (pins.into_inner(), port.per_axis) {
+                (Pins::One(pin), false) => vec![Spanned::new(span, pin)],
+                (Pins::Many(pins), true) => pins,
+                (Pins::One(_), true) => {
+                    return self.refuse(span, format!("{} has a pin for each axis: a list", port.name));
+                }
+                (Pins::Many(_), false) => return self.refuse(span, format!("{} is one pin", port.name)),
+            };
+            for (index, spanned) in pins.into_iter().enumerate() {
+                let bit = if port.per_axis { format!("{}[{index}]", port.name) } else { port.name.to_owned() };
+                let (pin, at) = match on_connector {
+                    false => (spanned.as_ref().clone(), None),
+                    true => self.labelled(&spanned, connectors)?,
+                };
+                self.take(&Spanned::new(spanned.span(), pin.clone()), &bit)?;
+                wires.push(Wire { port: bit, pin, at });
+            }
+        }
+        let place = |wire: &Wire| PORTS.iter().position(|port| wire.port.split('[').next() == Some(port.name));
+        wires.sort_by_key(place);
+        Ok(wires)
+    }
+
+    fn port(&self, name: &Spanned<String>) -> Result<&'static Port, InputError> {
+        PORTS.iter().find(|port| port.name == name.as_ref()).ok_or_else(|| {
+            let known: Vec<&str> = PORTS.iter().map(|port| port.name).collect();
+            let meant = did_you_mean(name.as_ref(), known.iter().copied());
+            InputError::at(self.source, name.span(), format!("no port is called '{}'{meant}", name.as_ref()))
+                .help(format!("known: {}", known.join(", ")))
+        })
+    }
+
+    /// The pin behind a label of a connector.
+    fn labelled(
+        &self,
+        label: &Spanned<String>,
+        connectors: &Connectors,
+    ) -> Result<(String, Option<Place>), InputError> {
+        let text = label.as_ref();
+        let on = |(connector, labels): (&String, &BTreeMap<Spanned<String>, String>)| {
+            let (_, pin) = labels.iter().find(|(label, _)| label.as_ref() == text)?;
+            Some((pin.clone(), Some(Place { connector: connector.clone(), label: text.clone() })))
+        };
+        let mut found = connectors.iter().filter_map(on);
+        match (found.next(), found.next()) {
+            (Some(one), None) => Ok(one),
+            (None, _) => self.refuse(label.span(), format!("no connector has a pin labelled '{text}'")),
+            (Some(_), Some(_)) => self.refuse(label.span(), format!("two connectors have a pin labelled '{text}'")),
+        }
+    }
+
+    /// Every axis is whole, and there is a way to the host.
+    fn axes(&self, board: &Board) -> Result<(), InputError> {
+        let (step, dir) = (board.bits("step"), board.bits("dir"));
+        if step != dir || !(1..=MAX_AXES).contains(&step) {
+            let message =
+                format!("{step} pins for `step` and {dir} for `dir`: one to {MAX_AXES}, and as many, are needed");
+            return self.refuse(0..0, message);
+        }
+        for ends in ["limit_min", "limit_max"] {
+            if board.bits(ends) > step {
+                return self.refuse(0..0, format!("more pins for `{ends}` than axes"));
+            }
+        }
+        let count = |names: &[&str]| names.iter().map(|name| board.bits(name)).sum::<usize>();
+        match (count(&["uart_rx", "uart_tx"]), count(&["spi_cs_n", "spi_sck", "spi_mosi", "spi_miso"])) {
+            (0 | 2, 4) | (2, 0) => {}
+            _ => return self.refuse(0..0, "a host needs both pins of a UART, or all four of an SPI"),
+        }
+        match count(&["estop"]) {
+            1 => Ok(()),
+            _ => self.refuse(0..0, "a board without a pin for the e-stop"),
+        }
+    }
+
+    /// A clock that the board can make, in which the turns of all its axes fit a tick.
+    fn clocking(&self, board: &Board, timebase: Spanned<RawTimebase>) -> Result<Clocking, InputError> {
+        let span = timebase.span();
+        let RawTimebase { clock_hz, tick_ns, phases, why } = timebase.into_inner();
+        let at_clock = |error: &dyn fmt::Display| InputError::at(self.source, clock_hz.span(), error.to_string());
+        let made_by = board.family.clock_managers().solve(board.oscillator.hz, *clock_hz.as_ref());
+        let made_by = made_by.map_err(|error| at_clock(&error))?;
+        let checked = Timebase::new(*clock_hz.as_ref(), tick_ns, phases);
+        let checked = checked.map_err(|error| InputError::at(self.source, span.clone(), error.to_string()))?;
+        check_schedule(board.bits("step"), &checked)
+            .map_err(|error| InputError::at(self.source, span, error.to_string()))?;
+        Ok(Clocking { clock_hz: clock_hz.into_inner(), tick_ns, phases, made_by, why })
+    }
+}

@@ -1,0 +1,125 @@
+//! Checks of a board's file: no port lies on a configuration pin without a reason, and what a gate holds.
+
+use super::super::configuration::{Gate, Mode, Package, Shared, packages};
+use super::super::port::PORTS;
+use super::super::{Part, Wire};
+use super::{RawPart, Reader};
+use carrystep_files::error::InputError;
+use serde::Deserialize;
+use std::collections::BTreeSet;
+use toml::Spanned;
+
+/// Pins that ports may be on although configuration uses them.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an [[exception]] table")]
+pub(super) struct Exception {
+    pins: Vec<Spanned<String>>,
+    why: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a [gate] table")]
+pub(super) struct RawGate {
+    port: Spanned<String>,
+    pin: Spanned<String>,
+    wait_ns: u64,
+    holds: Vec<Spanned<String>>,
+    why: String,
+}
+
+/// Outputs that the top level can let go: those of the line to the host.
+const HELD: [&str; 2] = ["uart_tx", "spi_miso"];
+
+/// What a reserved pin's use begins with.
+pub(super) const RESERVED: &str = "reserved: ";
+
+impl Reader<'_> {
+    /// The gate's pin is taken, and what it holds is there.
+    pub(super) fn gate(&mut self, gate: RawGate, wires: &[Wire]) -> Result<Gate, InputError> {
+        let RawGate { port, pin, wait_ns, holds, why } = gate;
+        if PORTS.iter().any(|known| known.name == port.as_ref()) {
+            return self.refuse(port.span(), format!("the gate needs a port of its own, not {}", port.as_ref()));
+        }
+        self.take(&pin, port.as_ref())?;
+        for held in &holds {
+            if !HELD.contains(&held.as_ref().as_str()) {
+                let message = format!("a gate can hold {}, not '{}'", HELD.join(" and "), held.as_ref());
+                return self.refuse(held.span(), message);
+            }
+        }
+        let holds: Vec<String> = holds.into_iter().map(Spanned::into_inner).collect();
+        let open = HELD
+            .iter()
+            .find(|out| wires.iter().any(|wire| wire.port == **out) && !holds.iter().any(|held| held == *out));
+        if let Some(open) = open {
+            return self.refuse(pin.span(), format!("the gate does not hold {open}: the host's lines belong together"));
+        }
+        Ok(Gate { port: port.into_inner(), pin: pin.into_inner(), wait_ns, holds, why })
+    }
+
+    /// The ports on configuration pins, and the sources of the tables that say which pins those are.
+    ///
+    /// In a mode that the board uses, such a port needs an exception. In another one the pin is the design's from the
+    /// beginning, so the port is only listed.
+    pub(super) fn configuration(
+        &self,
+        own: &[Package],
+        configured: &Spanned<Vec<Mode>>,
+        exceptions: &[Exception],
+        written: &[Spanned<RawPart>],
+        parts: &[Part],
+    ) -> Result<(Vec<Shared>, Vec<String>), InputError> {
+        let modes = configured.as_ref();
+        if modes.is_empty() || modes.contains(&Mode::Any) {
+            return self
+                .refuse(configured.span(), "the modes in which the board is configured are expected, as in [\"spi\"]");
+        }
+        let mut tables = Vec::new();
+        for (part, written) in parts.iter().zip(written) {
+            let mut all = own.iter().chain(packages());
+            let Some(table) = all.find(|table| table.name == part.package && table.parts.contains(&part.name)) else {
+                let message = format!("the configuration pins of {} in {} are not known", part.name, part.package);
+                return Err(InputError::at(self.source, written.span(), message)
+                    .help("add a [[package]] table to this file, in the form of crates/boards/data/packages.toml"));
+            };
+            tables.push(table);
+        }
+        let sources: BTreeSet<&String> = tables.iter().flat_map(|table| &table.sources).collect();
+        let mut shared = Vec::new();
+        for (pin, (port, span)) in self.used.iter().filter(|(_, (port, _))| !port.starts_with(RESERVED)) {
+            let found: BTreeSet<(Mode, &str)> = tables.iter().flat_map(|table| table.functions(pin)).collect();
+            if found.is_empty() {
+                continue;
+            }
+            let mut functions: Vec<&str> = Vec::new();
+            for (_, function) in &found {
+                if !functions.contains(function) {
+                    functions.push(function);
+                }
+            }
+            let (function, in_modes) =
+                (functions.join("/"), found.iter().map(|(mode, _)| *mode).collect::<BTreeSet<_>>());
+            let why = exceptions.iter().find(|exception| exception.pins.iter().any(|named| named.as_ref() == pin));
+            let now = in_modes.iter().find(|mode| **mode == Mode::Any || modes.contains(mode));
+            if let (Some(mode), None) = (now, why) {
+                let message = format!("{port} is on {pin}, which is {function} in configuration ({mode})");
+                return Err(InputError::at(self.source, span.clone(), message)
+                    .help("take another pin, or say in an [[exception]] why this one does no harm"));
+            }
+            shared.push(Shared {
+                port: port.clone(),
+                pin: pin.clone(),
+                function,
+                modes: in_modes.into_iter().collect(),
+                why: why.map(|exception| exception.why.clone()),
+            });
+        }
+        for named in exceptions.iter().flat_map(|exception| &exception.pins) {
+            if !shared.iter().any(|shared| shared.pin == *named.as_ref()) {
+                let message = format!("no port is on the configuration pin {}: this exception is none", named.as_ref());
+                return self.refuse(named.span(), message);
+            }
+        }
+        Ok((shared, sources.into_iter().cloned().collect()))
+    }
+}

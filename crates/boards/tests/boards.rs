@@ -1,0 +1,228 @@
+//! The boards' files: all are read, and each kind of mistake in one is refused at its place.
+
+#![allow(clippy::unwrap_used)] // a test may panic
+
+use carrystep_boards::{Board, Family, Mode, OSCILLATOR, PORTS, board, boards};
+use carrystep_core::engine::Limits;
+use carrystep_files::{InputError, Source};
+
+const ICESTICK: &str = include_str!("../data/boards/icestick.toml");
+const MOJO: &str = include_str!("../data/boards/mojo-v3.toml");
+const PAPILIO_PRO: &str = include_str!("../data/boards/papilio-pro.toml");
+
+fn read(text: &str) -> Result<Board, InputError> {
+    Board::from_source(&Source { path: "board.toml".into(), text: text.into() })
+}
+
+#[test]
+fn all_boards_are_there_once() {
+    let mut names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
+    assert_eq!(names.len(), 14);
+    assert!(names.iter().all(|name| board(name).unwrap().name == *name));
+    names.dedup();
+    assert_eq!(names.len(), 14);
+    assert_eq!(boards().iter().filter(|board| board.family == Family::Ice40).count(), 7);
+}
+
+#[test]
+fn every_board_carries_six_axes_at_every_clock_that_it_proposes() {
+    for board in boards() {
+        board.carries(6, Limits::Each).unwrap();
+        for clock in &board.clocks {
+            assert_eq!(board.clock(clock.clock_hz).unwrap(), clock.made_by, "{}", board.name);
+        }
+        assert_eq!(board.oscillator.io.millivolts(), board.io.millivolts());
+    }
+}
+
+#[test]
+fn no_pin_is_used_twice_and_every_wire_is_a_port_s() {
+    for board in boards() {
+        let pins = board.wires.iter().map(|wire| &wire.pin).chain(board.ties.iter().map(|tie| &tie.pin));
+        let mut pins: Vec<&String> = pins.chain([&board.oscillator.pin]).collect();
+        let all = pins.len();
+        pins.sort();
+        pins.dedup();
+        assert_eq!(pins.len(), all, "{}", board.name);
+        for wire in &board.wires {
+            let name = wire.port.split('[').next().unwrap();
+            assert!(PORTS.iter().any(|port| port.name == name) && name != OSCILLATOR);
+        }
+    }
+}
+
+/// On a pin that configuration uses in a mode of the board there is a port with a reason, or none; no STEP, DIR or ENABLE is on
+/// one that has a function in every mode.
+#[test]
+fn ports_on_configuration_pins_are_listed_with_the_reason() {
+    let mut listed = 0;
+    for board in boards() {
+        for shared in &board.shared {
+            listed += 1;
+            let now = shared.modes.iter().any(|mode| *mode == Mode::Any || board.configured.contains(mode));
+            assert!(!now || shared.why.is_some(), "{}: {shared:?}", board.name);
+            let motion = ["step", "dir", "enable_n"].iter().any(|name| shared.port.starts_with(name));
+            assert!(!(now && motion), "{}: {shared:?}", board.name);
+        }
+    }
+    assert!(listed > 20, "{listed}");
+    let on = |name, port| board(name).unwrap().shared.iter().find(|shared| shared.port == port);
+    assert_eq!(
+        on("mojo-v3", "uart_tx").map(|shared| (shared.function.as_str(), shared.why.is_some())),
+        Some(("D10", false))
+    );
+    assert_eq!(
+        on("mojo-v3", "spi_miso").map(|shared| (shared.function.as_str(), shared.why.is_some())),
+        Some(("D4", true))
+    );
+    assert_eq!(on("papilio-one", "step[2]"), None);
+    assert_eq!(on("icestick", "uart_tx"), None);
+}
+
+/// A package that carrystep has no table of: the board's own file brings one.
+#[test]
+fn a_board_s_file_may_bring_the_table_of_its_package() {
+    let own = ICESTICK.replace("package = \"tq144\"", "package = \"own\"");
+    assert!(read(&own).unwrap_err().message.contains("the configuration pins of hx1k in own are not known"));
+    let table =
+        "\n[[package]]\nname = \"own\"\nparts = [\"hx1k\"]\nsources = [\"data sheet\"]\n[package.spi]\n71 = \"SS\"\n";
+    let with_table = read(&(own.clone() + table)).unwrap();
+    assert_eq!(with_table.configuration_sources, ["data sheet"]);
+    let refused = read(&(own + &table.replace("71", "8"))).unwrap_err();
+    assert!(refused.message.contains("uart_tx is on 8, which is SS in configuration (SPI)"), "{refused}");
+}
+
+/// Each row: what stands there, what is written instead, the words of the refusal, and the text at its place.
+#[test]
+fn a_mistake_is_refused_where_it_stands() {
+    let rows = [
+        (ICESTICK, "\"J1_4\",", "\"J1_3\",", "pin 112 is taken: step[0]", "\"J1_3\", \"J1_5\""),
+        (ICESTICK, "uart_rx = \"9\"", "uart_rx = \"21\"", "pin 21 is taken: the oscillator", "\"21\"\nuart"),
+        (ICESTICK, "estop = \"J1_10\"", "estop = \"J1_11\"", "no connector has a pin labelled 'J1_11'", "\"J1_11\""),
+        (ICESTICK, "enable_n = ", "enabled = ", "no port is called 'enabled'", "enabled = "),
+        (ICESTICK, "enable_n = \"J1_9\"", "enable_n = [\"J1_9\"]", "enable_n is one pin", "[\"J1_9\"]"),
+        (ICESTICK, "led = \"95\"", "led = 95", "expected a pin in quotes, or a list of them", "95\n"),
+        (
+            ICESTICK,
+            "clock_hz = 48_000_000",
+            "clock_hz = 40_000_000",
+            "the nearest that it makes is 39.75 MHz",
+            "40_000_000",
+        ),
+        (ICESTICK, "tick_ns = 2000", "tick_ns = 1000", "6 axes need 13 clocks each", "[[timebase]]"),
+        (ICESTICK, "pll = \"core\"\n", "", "an iCE40 needs `pll`", "\"ice40\""),
+        (ICESTICK, "family = \"ice40\"", "family = \"ice50\"", "unknown variant `ice50`", "\"ice50\""),
+        (ICESTICK, "logic_cells = 1280", "speed = 4", "an iCE40 has none", "[[part]]"),
+        (
+            ICESTICK,
+            "hz = 12_000_000",
+            "hz = 12_000_000\nio = \"LVCMOS25\"",
+            "LVCMOS25 beside pins of LVCMOS33",
+            "\"LVCMOS25\"",
+        ),
+        (ICESTICK, "usb = \"0403:6010\"", "usb = \"6010\"", "vendor and product are expected", "\"6010\""),
+        (ICESTICK, "iceprog FILE", "iceprog", "has no FILE in it", "\"iceprog\""),
+        (
+            ICESTICK,
+            "led = \"95\"",
+            "led = \"95\"\nestop = \"96\"",
+            "estop stands in [pins] and in [onboard]",
+            "estop = \"96\"",
+        ),
+        (PAPILIO_PRO, "vccaux = \"3.3\"\n", "", "a Spartan-6 needs `vccaux`", "\"spartan6\""),
+        (PAPILIO_PRO, "\nspeed = 2", "", "a Spartan needs a `speed` grade", "[[part]]"),
+        (
+            PAPILIO_PRO,
+            "step = [\"C4\"",
+            "step = [\"A7\"",
+            "step[0] is on P75, which is AWAKE in configuration (every mode)",
+            "\"A7\"",
+        ),
+        (PAPILIO_PRO, "\"C5\"", "\"B10\"", "step[1] is on P62, which is MISO2/D1 in configuration (SPI)", "\"B10\""),
+        (PAPILIO_PRO, "enable_n = \"C10\"", "enable_n = \"B8\"", "enable_n is on P74, which is DOUT/BUSY", "\"B8\""),
+        (PAPILIO_PRO, "configured = [\"spi\"]", "configured = []", "the modes in which the board is configured", "[]"),
+        (PAPILIO_PRO, "tqg144", "csg324", "the configuration pins of xc6slx9 in csg324 are not known", "[[part]]"),
+        (MOJO, "\"P9\", \"P142\"", "\"P144\", \"P142\"", "step[0] is on P144, which is HSWAPEN", "\"P144\", \"P142\""),
+        (MOJO, "pins = [\"P55\"]", "pins = [\"P55\", \"P8\"]", "no port is on the configuration pin P8", "\"P8\"]"),
+        (MOJO, "pins = [\"P43\", ", "pins = [", "spi_sck is on P43, which is D6 in configuration", "\"P43\""),
+        (MOJO, "holds = [\"uart_tx\", ", "holds = [", "the gate does not hold uart_tx", "\"P70\""),
+        (MOJO, "\"spi_miso\"]", "\"spi_miso\", \"led\"]", "a gate can hold uart_tx and spi_miso, not 'led'", "\"led\""),
+        (MOJO, "port = \"cclk\"", "port = \"estop\"", "the gate needs a port of its own", "\"estop\""),
+        (MOJO, "pin = \"P70\"", "pin = \"P59\"", "pin P59 is taken: uart_tx", "\"P59\""),
+        (PAPILIO_PRO, "led = \"P112\"", "led = \"P144\"", "pin P144 is taken: reserved: tied", "\"P144\""),
+    ];
+    for (text, old, new, says, place) in rows {
+        assert!(text.contains(old), "the text is gone: {old}");
+        let text = text.replacen(old, new, 1);
+        let error = read(&text).expect_err(says);
+        assert!(error.message.contains(says), "{says}: {error}");
+        let (_, span) = error.place.as_ref().unwrap();
+        assert!(text[span.start..].starts_with(place), "{says}: {error}");
+    }
+}
+
+#[test]
+fn an_axis_is_whole_and_there_is_a_host_and_an_e_stop() {
+    let rows = [
+        ("\"J1_3\", ", "5 pins for `step` and 6 for `dir`"),
+        ("uart_rx = \"9\"\n", "a host needs both pins of a UART, or all four of an SPI"),
+        ("spi_sck = \"PMOD4\"\n", "a host needs both pins of a UART, or all four of an SPI"),
+        ("estop = \"J1_10\"\n", "without a pin for the e-stop"),
+    ];
+    for (gone, says) in rows {
+        let error = read(&ICESTICK.replacen(gone, "", 1)).expect_err(says);
+        assert!(error.message.contains(says), "{error}");
+    }
+}
+
+#[test]
+fn what_a_board_cannot_do_is_said_with_what_would_do() {
+    let icestick = board("icestick").unwrap();
+    let said = |error: &dyn std::error::Error| error.to_string();
+    let unknown = said(&board("icestik").unwrap_err());
+    assert!(
+        unknown
+            .starts_with("no board is called 'icestik' (did you mean 'icestick'?); there are icestick, icebreaker, "),
+        "{unknown}"
+    );
+    assert!(unknown.ends_with(", cmod-s7"), "{unknown}");
+    let s3board = board("s3board").unwrap();
+    assert_eq!(s3board.part(None).unwrap().ordered(), "xc3s400-ft256-4");
+    assert_eq!(
+        said(&s3board.part(Some("xc3s50")).unwrap_err()),
+        "s3board has no part 'xc3s50'; there is xc3s400, xc3s200, xc3s1000"
+    );
+    assert_eq!(
+        said(&icestick.carries(8, Limits::None).unwrap_err()),
+        "icestick has pins for 6 axes, not for 8: leave out axes, or take another board"
+    );
+    assert_eq!(
+        said(&icestick.carries(6, Limits::Pair).unwrap_err()),
+        "icestick has pins for 6 switches at low ends and 0 at high ends, too few for two for each of 6 axes: \
+         limits = \"each\" or \"one\" would do"
+    );
+    assert_eq!(said(&icestick.wire("limit_max[0]").unwrap_err()), "icestick has no pin for limit_max[0]");
+    assert_eq!(
+        said(&icestick.clock(40_000_000).unwrap_err()),
+        "icestick: the PLL makes no clock of 40 MHz from 12 MHz; the nearest that it makes is 39.75 MHz; it is proposed \
+         to run at 48 MHz (ticks of 2000 ns in 16 phases) or 75 MHz (ticks of 1280 ns in 16 phases)"
+    );
+}
+
+/// 37.5 MHz make no 3 Mbaud within 2 %.
+#[test]
+fn a_board_s_default_baud_rate_is_the_fastest_that_its_clock_makes() {
+    let default = |name| {
+        let board: &Board = board(name).unwrap();
+        let uart = board.uart(board.clocks[0].clock_hz).unwrap();
+        (uart.baud(), uart.bit_clocks())
+    };
+    assert_eq!(default("icestick"), (3_000_000, 16));
+    assert_eq!(default("icebreaker"), (2_000_000, 19));
+    assert_eq!(default("alchitry-cu"), (3_000_000, 27));
+    assert_eq!(default("s3board"), (115_200, 347));
+    for board in boards() {
+        assert!(board.clocks.iter().all(|clock| board.uart(clock.clock_hz).is_ok()), "{}", board.name);
+    }
+    assert!(board("s3board").unwrap().uart(500_000).is_err());
+}

@@ -1,0 +1,351 @@
+//! The check of one axis, edge by edge, in constant memory.
+
+use crate::edge::{Pin, PinChange};
+use crate::ideal::{NS, PS, curvature_ps, due_ps, lateness_ps, moment, phase_ps, tick_ps};
+use crate::line_check::Off;
+use crate::pins::{PinWatch, Stretch};
+use crate::report::AxisReport;
+use crate::spread::Spread;
+use carrystep_core::{StartPhase, Timebase};
+use carrystep_files::Unit;
+use carrystep_profile::{Crossing, Timeline};
+
+/// What one axis is checked against.
+#[derive(Debug, Clone, Copy)]
+pub struct AxisSetup<'a> {
+    /// Its name, for the report.
+    pub name: &'a str,
+    /// What it is measured in, for people; without it they read steps.
+    pub unit: Option<&'a Unit>,
+    /// The float profile of all moves.
+    pub timeline: &'a Timeline,
+    /// What the driver asks for, ns: width, gap, set-up, hold.
+    pub pins_ns: [u64; 4],
+    /// Pulses that all moves together take.
+    pub expected_pulses: u64,
+    /// Steps forward less steps back after all moves.
+    pub expected_position: i64,
+}
+
+/// Times are rounded to ps and P to 32 bits; neither can add up to this, in ps.
+const ROUNDING_PS: f64 = 2000.0;
+
+/// Failures of single pulses that are spelled out for each axis; the rest is counted.
+const SPELLED_OUT: usize = 8;
+
+/// A pulse that has found its crossing.
+#[derive(Clone, Copy)]
+struct Paired {
+    ps: u64,
+    lateness_ps: f64,
+    backward: bool,
+    crossing: Crossing,
+}
+
+fn greater(old: Option<f64>, new: f64) -> Option<f64> {
+    Some(old.map_or(new, |old| old.max(new)))
+}
+
+/// The state of one axis' check.
+pub(crate) struct AxisCheck<'a> {
+    setup: AxisSetup<'a>,
+    timebase: Timebase,
+    slack_ps: f64,
+    /// The greatest tolerance of a fit.
+    fit_ps: f64,
+    crossings: Box<dyn Iterator<Item = Crossing> + 'a>,
+    /// The next two crossings: a missing pulse shows by the edge being nearer to the second.
+    next: [Option<Crossing>; 2],
+    /// Number of the crossing in `next[0]`, from 1.
+    number: u64,
+    watch: PinWatch,
+    position: i64,
+    wrong_direction: u64,
+    last: Option<Paired>,
+    errors: Spread,
+    curvature_ps: f64,
+    jitter_ps: Option<f64>,
+    ripple: Option<f64>,
+    shortest_ideal_ps: f64,
+    /// What single pulses did wrong, as far as it is spelled out.
+    pulse_failures: Vec<String>,
+    omitted: u64,
+    /// What is wrong as a whole: a handful at most.
+    failures: Vec<String>,
+}
+
+impl<'a> AxisCheck<'a> {
+    pub(crate) fn new(setup: AxisSetup<'a>, phase: StartPhase, timebase: Timebase, slack_ps: u64) -> Self {
+        let mut crossings: Box<dyn Iterator<Item = Crossing> + 'a> = Box::new(setup.timeline.crossings(phase));
+        let next = [crossings.next(), crossings.next()];
+        let fit_ps = setup.timeline.legs.iter().map(|leg| (leg.fit_seconds * PS).round()).fold(0.0, f64::max);
+        Self {
+            setup,
+            timebase,
+            slack_ps: slack_ps as f64,
+            fit_ps,
+            crossings,
+            next,
+            number: 1,
+            watch: PinWatch::default(),
+            position: 0,
+            wrong_direction: 0,
+            last: None,
+            errors: Spread::default(),
+            curvature_ps: 0.0,
+            jitter_ps: None,
+            ripple: None,
+            shortest_ideal_ps: f64::INFINITY,
+            pulse_failures: Vec::new(),
+            omitted: 0,
+            failures: Vec::new(),
+        }
+    }
+
+    fn fail(&mut self, what: &str) {
+        self.failures.push(format!("axis {}: {what}", self.setup.name));
+    }
+
+    fn fail_pulse(&mut self, what: &str) {
+        if self.pulse_failures.len() < SPELLED_OUT {
+            self.pulse_failures.push(format!("axis {}: {what}", self.setup.name));
+        } else {
+            self.omitted += 1;
+        }
+    }
+
+    fn advance(&mut self) {
+        self.next = [self.next[1], self.crossings.next()];
+        self.number += 1;
+    }
+
+    /// The origin that would put an edge at `ps` exactly on this axis' first crossing.
+    pub(crate) fn origin_for(&self, ps: u64) -> Option<i64> {
+        let first = self.next[0].filter(|_| self.number == 1)?;
+        i64::try_from(i128::from(ps) - due_ps(0, &first, tick_ps(&self.timebase))).ok()
+    }
+
+    pub(crate) fn initial(&mut self, pin: Pin, level: bool) {
+        self.watch.initial(pin, level);
+        if pin == Pin::Step && level {
+            self.fail("STEP is high when the capture begins");
+        }
+    }
+
+    /// Takes a change, and tells whether it is a pulse; `origin_ps` may still be an estimate, the same for all axes,
+    /// `sure` tells.
+    pub(crate) fn change(&mut self, change: PinChange, origin_ps: i64, sure: bool) -> bool {
+        let pulse = self.watch.change(change);
+        if pulse {
+            self.pulse(change, origin_ps, sure);
+        }
+        pulse
+    }
+
+    fn pulse(&mut self, change: PinChange, origin_ps: i64, sure: bool) {
+        let backward = self.watch.backward();
+        self.position += if backward { -1 } else { 1 };
+        if self.is_extra(change.ps, origin_ps, sure) {
+            let after = match self.number - 1 {
+                0 => "before pulse 1".to_owned(),
+                k if self.next[0].is_none() => format!("after pulse {k}, the last"),
+                k => format!("after pulse {k}"),
+            };
+            self.fail_pulse(&format!("one pulse too many at {}, {after}", moment(change.ps)));
+            return;
+        }
+        while self.is_missing(change.ps, origin_ps, sure) {
+            self.miss(origin_ps);
+        }
+        let Some(crossing) = self.next[0] else { return };
+        if crossing.backward != backward {
+            self.wrong_direction += 1;
+            let way = |back| if back { "backward" } else { "forward" };
+            self.fail_pulse(&format!(
+                "pulse {} at {} goes {}, the profile {}",
+                self.number,
+                moment(change.ps),
+                way(backward),
+                way(crossing.backward)
+            ));
+        }
+        self.pair(change.ps, backward, crossing, origin_ps);
+        self.advance();
+    }
+
+    /// Time since the last paired pulse on the pins, and what each of the next two crossings would make of it.
+    fn period(&self, ps: u64, origin_ps: i64, sure: bool) -> Option<(f64, [Option<f64>; 2])> {
+        let tick = tick_ps(&self.timebase);
+        let (since, lateness) = match self.last {
+            Some(last) => (ps.saturating_sub(last.ps) as f64, last.lateness_ps),
+            None if sure => ((i128::from(ps) - i128::from(origin_ps)) as f64, 0.0),
+            None => return None,
+        };
+        // the period of the profile is the period on the pins less the change of lateness
+        let ideal = |c: Crossing| since - (lateness_ps(ps, origin_ps, &c, tick) - lateness);
+        Some((since, self.next.map(|c| c.map(ideal))))
+    }
+
+    /// A period may be off by this much before its edge is taken for another, ps: fitted, each of its two edges.
+    fn tolerance_ps(&self) -> f64 {
+        phase_ps(&self.timebase) + self.slack_ps + 2.0 * self.fit_ps
+    }
+
+    fn is_extra(&self, ps: u64, origin_ps: i64, sure: bool) -> bool {
+        match self.period(ps, origin_ps, sure) {
+            _ if self.next[0].is_none() => true,
+            Some((since, [Some(ideal), _])) => since < ideal / 2.0 - self.tolerance_ps(),
+            _ => false,
+        }
+    }
+
+    fn is_missing(&self, ps: u64, origin_ps: i64, sure: bool) -> bool {
+        match self.period(ps, origin_ps, sure) {
+            Some((since, [Some(this), Some(after)])) => since > f64::midpoint(this, after) + self.tolerance_ps(),
+            _ => false,
+        }
+    }
+
+    /// The next crossing has no pulse.
+    fn miss(&mut self, origin_ps: i64) {
+        if let Some(crossing) = self.next[0] {
+            let due = due_ps(origin_ps, &crossing, tick_ps(&self.timebase));
+            self.fail_pulse(&format!("pulse {} is missing, due at {}", self.number, moment(due)));
+            self.advance();
+        }
+    }
+
+    /// The capture is over, the profile is not.
+    fn miss_rest(&mut self, origin_ps: i64) {
+        match self.next {
+            [Some(first), Some(_)] => {
+                let due = due_ps(origin_ps, &first, tick_ps(&self.timebase));
+                let number = self.number;
+                self.fail_pulse(&format!("pulse {number} and all behind it are missing, due from {}", moment(due)));
+            }
+            _ => self.miss(origin_ps),
+        }
+    }
+
+    fn pair(&mut self, ps: u64, backward: bool, crossing: Crossing, origin_ps: i64) {
+        let lateness_ps = lateness_ps(ps, origin_ps, &crossing, tick_ps(&self.timebase));
+        self.errors.add(lateness_ps, self.number, ps);
+        self.curvature_ps = self.curvature_ps.max(curvature_ps(&crossing, &self.timebase));
+        if let Some(last) = self.last.filter(|last| last.backward == backward) {
+            let since = ps.saturating_sub(last.ps) as f64;
+            let jitter = (lateness_ps - last.lateness_ps).abs();
+            self.jitter_ps = greater(self.jitter_ps, jitter);
+            if last.crossing.start_tick == crossing.start_tick && since > 0.0 {
+                self.ripple = greater(self.ripple, jitter / since);
+                let ideal = (crossing.seconds - last.crossing.seconds) * PS;
+                self.shortest_ideal_ps = self.shortest_ideal_ps.min(ideal);
+            }
+        }
+        self.last = Some(Paired { ps, lateness_ps, backward, crossing });
+    }
+
+    /// Least and greatest lateness so far, in ps.
+    pub(crate) fn range_ps(&self) -> Option<(f64, f64)> {
+        Some((self.errors.min()?.value, self.errors.max()?.value))
+    }
+
+    /// How late or early an edge may be, in ps.
+    pub(crate) fn bound_ps(&self) -> f64 {
+        phase_ps(&self.timebase) + self.curvature_ps + self.fit_ps + ROUNDING_PS + self.slack_ps
+    }
+
+    /// Judges; `origin_ps` is what all changes were given, `shift_ps` is added to it.
+    pub(crate) fn finish(mut self, origin_ps: i64, shift_ps: i64, line: Option<Off>) -> AxisReport {
+        if self.watch.step() {
+            self.fail("STEP is still high when the capture ends");
+        }
+        self.miss_rest(origin_ps.saturating_add(shift_ps));
+        let found = self.watch.pulses();
+        if found != self.setup.expected_pulses {
+            self.fail(&format!("{found} pulses, {} expected", self.setup.expected_pulses));
+        }
+        if self.position != self.setup.expected_position {
+            self.fail(&format!("final position {}, {} expected", self.position, self.setup.expected_position));
+        }
+        let phase = phase_ps(&self.timebase);
+        let (fit, bound) = (self.fit_ps, self.bound_ps());
+        self.judge_errors(shift_ps as f64, bound);
+        if let Some(Off { steps, bound, pulse }) = line.filter(|off| off.steps > off.bound) {
+            self.fail(&format!("{steps:.3} steps off its line after a pulse {pulse}, the bound is {bound:.3} steps"));
+        }
+        let shortest = self.watch.shortest();
+        let measured = [shortest.high, shortest.low, shortest.setup, shortest.hold];
+        self.judge_pins(measured);
+        let [high_min_ns, low_min_ns, setup_min_ns, hold_min_ns] = measured.map(|s| s.map(|s| s.ps as f64 / NS));
+        let [high_required_ns, low_required_ns, setup_required_ns, hold_required_ns] =
+            self.setup.pins_ns.map(|ns| ns as f64);
+        let errors = self.errors.shifted(-(shift_ps as f64));
+        self.failures.append(&mut self.pulse_failures);
+        AxisReport {
+            axis: self.setup.name.to_owned(),
+            unit: self.setup.unit.cloned(),
+            passed: self.failures.is_empty(),
+            pulses_expected: self.setup.expected_pulses,
+            pulses_found: found,
+            position_expected: self.setup.expected_position,
+            position_found: self.position,
+            pulses_wrong_direction: self.wrong_direction,
+            error_min_ns: errors.min().map(|e| e.value / NS),
+            error_max_ns: errors.max().map(|e| e.value / NS),
+            error_rms_ns: errors.rms().map(|rms| rms / NS),
+            error_std_ns: errors.deviation().map(|std| std / NS),
+            error_std_theory_ns: phase / 12_f64.sqrt() / NS,
+            error_fit_ns: fit / NS,
+            error_bound_ns: bound / NS,
+            high_min_ns,
+            high_required_ns,
+            low_min_ns,
+            low_required_ns,
+            setup_min_ns,
+            setup_required_ns,
+            hold_min_ns,
+            hold_required_ns,
+            period_jitter_max_ns: self.jitter_ps.map(|jitter| jitter / NS),
+            period_jitter_theory_ns: (phase + 2.0 * self.curvature_ps) / NS,
+            speed_ripple_max_percent: self.ripple.map(|ripple| 100.0 * ripple),
+            speed_ripple_theory_percent: 100.0 * phase / self.shortest_ideal_ps,
+            line_off_max_steps: line.map(|off| off.steps),
+            line_off_bound_steps: line.map(|off| off.bound),
+            failures: self.failures,
+            failures_omitted: self.omitted,
+        }
+    }
+
+    fn judge_errors(&mut self, shift: f64, bound: f64) {
+        let worst = [(self.errors.min(), "early"), (self.errors.max(), "late")];
+        for (extreme, word) in worst {
+            let Some(extreme) = extreme else { continue };
+            let error = extreme.value - shift;
+            let beyond = if word == "early" { error < -bound } else { error > bound };
+            if beyond {
+                self.fail(&format!(
+                    "pulse {} at {} is {:.1} ns {word}, the bound is {:.1} ns",
+                    extreme.number,
+                    moment(extreme.ps),
+                    error.abs() / NS,
+                    bound / NS
+                ));
+            }
+        }
+    }
+
+    fn judge_pins(&mut self, measured: [Option<Stretch>; 4]) {
+        let names = ["STEP high", "STEP low", "DIR set-up", "DIR hold"];
+        for ((stretch, required), name) in measured.into_iter().zip(self.setup.pins_ns).zip(names) {
+            let Some(stretch) = stretch else { continue };
+            if (stretch.ps as f64 + self.slack_ps) < required as f64 * NS {
+                self.fail(&format!(
+                    "{name} of {:.1} ns at pulse {} ({}), the driver needs {required} ns",
+                    stretch.ps as f64 / NS,
+                    stretch.pulse,
+                    moment(stretch.end)
+                ));
+            }
+        }
+    }
+}

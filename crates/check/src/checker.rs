@@ -1,0 +1,132 @@
+//! The pulse-train checker: it knows the float profile and sees pin edges, nothing else.
+//!
+//! For the k-th rising STEP of an axis, e = m - t, where m is the time of the edge less the origin and
+//! t the time at which the profile crosses the k-th step. Everything is judged from a stream, in
+//! constant memory; a pulse that is missing or one too many is named where it happens, and the pulses
+//! behind it are still compared with the crossings they belong to.
+
+use crate::axis_check::{AxisCheck, AxisSetup};
+use crate::edge::{PinChange, PinSink};
+use crate::error::TraceError;
+use crate::line_check::LinesCheck;
+use crate::report::{OriginKind, Report};
+use carrystep_core::{StartPhase, Timebase};
+use carrystep_profile::Line;
+use std::fmt;
+
+/// Where the times of a capture are counted from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// Our own capture: the load of the first move plus the latency L, in ps of the capture.
+    Known {
+        /// ps of the capture.
+        ps: i64,
+    },
+    /// A foreign capture: one offset for all axes, the midpoint of least and greatest error.
+    /// An offset for each axis would hide a late axis.
+    Midpoint,
+    /// As the user says.
+    Fixed {
+        /// ps of the capture.
+        ps: i64,
+    },
+}
+
+/// What a capture is checked against.
+#[derive(Debug, Clone)]
+pub struct Setup<'a> {
+    /// Clock, tick and phases of the gateware.
+    pub timebase: Timebase,
+    /// Where in a step the moves start.
+    pub phase: StartPhase,
+    /// The axes, in the order of their numbers.
+    pub axes: Vec<AxisSetup<'a>>,
+    /// The moves in which the axes keep to a straight line.
+    pub lines: Vec<Line>,
+    /// Where times are counted from.
+    pub origin: Origin,
+    /// Uncertainty of the capture's times in ps (a logic analyser's sample period); 0 for a simulator.
+    pub slack_ps: u64,
+}
+
+/// Checks a capture as it streams by.
+pub struct Checker<'a> {
+    axes: Vec<AxisCheck<'a>>,
+    lines: LinesCheck,
+    origin: Origin,
+    /// The origin that errors are counted from meanwhile; a foreign capture's comes with its first pulse.
+    base_ps: Option<i64>,
+    slack_ps: u64,
+    phase_ns: f64,
+}
+
+impl fmt::Debug for Checker<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Checker").field("origin", &self.origin).field("base_ps", &self.base_ps).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Checker<'a> {
+    /// A checker that has seen nothing yet.
+    pub fn new(setup: Setup<'a>) -> Self {
+        let Setup { timebase, phase, axes, lines, origin, slack_ps } = setup;
+        let lines = LinesCheck::new(lines, phase, axes.len());
+        let axes = axes.into_iter().map(|axis| AxisCheck::new(axis, phase, timebase, slack_ps)).collect();
+        let base_ps = match origin {
+            Origin::Known { ps } | Origin::Fixed { ps } => Some(ps),
+            Origin::Midpoint => None,
+        };
+        let phase_ns = crate::ideal::phase_ps(&timebase) / crate::ideal::NS;
+        Self { axes, lines, origin, base_ps, slack_ps, phase_ns }
+    }
+
+    /// The verdict: the capture is over.
+    pub fn finish(self) -> Report {
+        let base = self.base_ps.unwrap_or(0);
+        let kind = match self.origin {
+            Origin::Known { .. } => OriginKind::Known,
+            Origin::Midpoint => OriginKind::Midpoint,
+            Origin::Fixed { .. } => OriginKind::Fixed,
+        };
+        let shift = if kind == OriginKind::Midpoint { midpoint(&self.axes) } else { 0 };
+        let late = self.axes.iter().map(AxisCheck::bound_ps).fold(0.0, f64::max) / crate::ideal::PS;
+        let axes = self.axes.into_iter().enumerate();
+        let axes: Vec<_> = axes.map(|(i, axis)| axis.finish(base, shift, self.lines.off(i, late))).collect();
+        Report {
+            passed: axes.iter().all(|axis| axis.passed),
+            origin: kind,
+            origin_ps: base.saturating_add(shift),
+            slack_ns: self.slack_ps as f64 / crate::ideal::NS,
+            phase_ns: self.phase_ns,
+            axes,
+        }
+    }
+}
+
+/// The middle of least and greatest lateness over all axes, in whole ps.
+fn midpoint(axes: &[AxisCheck<'_>]) -> i64 {
+    let ranges = axes.iter().filter_map(AxisCheck::range_ps);
+    let whole = ranges.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
+    whole.map_or(0, |(least, greatest)| f64::midpoint(least, greatest).round() as i64)
+}
+
+impl PinSink for Checker<'_> {
+    fn initial(&mut self, level: PinChange) -> Result<(), TraceError> {
+        if let Some(axis) = self.axes.get_mut(usize::from(level.axis)) {
+            axis.initial(level.pin, level.level);
+        }
+        Ok(())
+    }
+
+    fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
+        if let Some(axis) = self.axes.get_mut(usize::from(change.axis)) {
+            if self.base_ps.is_none() && change.pin == crate::edge::Pin::Step && change.level {
+                self.base_ps = axis.origin_for(change.ps);
+            }
+            if axis.change(change, self.base_ps.unwrap_or(0), self.origin != Origin::Midpoint) {
+                self.lines.pulse(usize::from(change.axis));
+            }
+        }
+        Ok(())
+    }
+}

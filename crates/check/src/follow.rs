@@ -1,0 +1,87 @@
+//! Pulse after pulse of one axis beside the profile: what the waveform, the CSV and the plot show.
+
+use crate::edge::{Pin, PinChange};
+use crate::ideal::{lateness_ps, tick_ps};
+use carrystep_core::{StartPhase, Timebase};
+use carrystep_profile::{Crossing, Timeline};
+use std::fmt;
+
+/// One pulse as the pins show it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pulse {
+    /// Its number on this axis, from 1.
+    pub number: u64,
+    /// When STEP rose, in ps of the capture.
+    pub ps: u64,
+    /// DIR at that time.
+    pub backward: bool,
+    /// Steps forward less steps back, this one included.
+    pub position: i64,
+    /// How late it is against the profile, in ns; `None` beyond the profile's last pulse.
+    pub error_ns: Option<f64>,
+    /// Time since the pulse before in ps, where that went the same way.
+    pub period_ps: Option<u64>,
+}
+
+impl Pulse {
+    /// Speed over the period that this pulse ends, in steps/s, negative backward.
+    pub fn speed(&self) -> Option<f64> {
+        let period = self.period_ps.filter(|&ps| ps > 0)?;
+        let speed = 1e12 / period as f64;
+        Some(if self.backward { -speed } else { speed })
+    }
+}
+
+/// Pairs the k-th rising edge of an axis with the k-th crossing of its profile.
+pub struct Follower<'a> {
+    crossings: Box<dyn Iterator<Item = Crossing> + 'a>,
+    origin_ps: i64,
+    tick_ps: u64,
+    step: bool,
+    dir: bool,
+    last: Option<Pulse>,
+}
+
+impl fmt::Debug for Follower<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Follower").field("last", &self.last).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Follower<'a> {
+    /// Follows one axis; `origin_ps` is the load of the first move plus the latency L.
+    pub fn new(timeline: &'a Timeline, phase: StartPhase, timebase: &Timebase, origin_ps: i64) -> Self {
+        let crossings = Box::new(timeline.crossings(phase));
+        Self { crossings, origin_ps, tick_ps: tick_ps(timebase), step: false, dir: false, last: None }
+    }
+
+    /// The level that a pin has when the capture begins.
+    pub fn initial(&mut self, pin: Pin, level: bool) {
+        match pin {
+            Pin::Step => self.step = level,
+            Pin::Dir => self.dir = level,
+        }
+    }
+
+    /// Takes a change of this axis; the pulse, where STEP rises.
+    pub fn change(&mut self, change: PinChange) -> Option<Pulse> {
+        let rises = change.pin == Pin::Step && change.level && !self.step;
+        self.initial(change.pin, change.level);
+        rises.then(|| {
+            let crossing = self.crossings.next();
+            let lateness = |c| lateness_ps(change.ps, self.origin_ps, &c, self.tick_ps);
+            let (number, position) = self.last.map_or((0, 0), |p| (p.number, p.position));
+            let same_way = self.last.filter(|p| p.backward == self.dir);
+            let pulse = Pulse {
+                number: number + 1,
+                ps: change.ps,
+                backward: self.dir,
+                position: position + if self.dir { -1 } else { 1 },
+                error_ns: crossing.map(|c| lateness(c) / 1e3),
+                period_ps: same_way.map(|p| change.ps.saturating_sub(p.ps)),
+            };
+            self.last = Some(pulse);
+            pulse
+        })
+    }
+}

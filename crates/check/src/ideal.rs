@@ -1,0 +1,97 @@
+//! Where the float profile would have each edge, measured against the edge that is there.
+
+use carrystep_core::Timebase;
+use carrystep_profile::Crossing;
+
+/// Picoseconds in a second.
+pub(crate) const PS: f64 = 1e12;
+
+/// Picoseconds in a nanosecond.
+pub(crate) const NS: f64 = 1e3;
+
+/// A tick in ps.
+pub(crate) const fn tick_ps(timebase: &Timebase) -> u64 {
+    timebase.tick_ns() * 1000
+}
+
+/// A phase, h/Q, in ps.
+pub(crate) fn phase_ps(timebase: &Timebase) -> f64 {
+    tick_ps(timebase) as f64 / f64::from(timebase.phases())
+}
+
+/// Whole ps, and the rest that is less than half of one, from the move's load to the crossing.
+fn due(crossing: &Crossing, tick_ps: u64) -> (i128, f64) {
+    let whole = (crossing.seconds * PS).round();
+    let rest = crossing.seconds.mul_add(PS, -whole);
+    // 64 bits hold 106 days; beyond them a cast stops at its ends.
+    (i128::from(crossing.start_tick) * i128::from(tick_ps) + i128::from(whole as i64), rest)
+}
+
+/// e = m - t in ps: how late a rising edge is. Integers are subtracted first, floats last.
+pub(crate) fn lateness_ps(rise_ps: u64, origin_ps: i64, crossing: &Crossing, tick_ps: u64) -> f64 {
+    let (whole, rest) = due(crossing, tick_ps);
+    let late = i128::from(rise_ps) - i128::from(origin_ps) - whole;
+    // Nearly always 64 bits do, and are quicker.
+    i64::try_from(late).map_or_else(|_| late as f64, |late| late as f64) - rest
+}
+
+/// The time in the capture, in whole ps, at which a crossing is due.
+pub(crate) fn due_ps(origin_ps: i64, crossing: &Crossing, tick_ps: u64) -> i128 {
+    i128::from(origin_ps) + due(crossing, tick_ps).0
+}
+
+/// How far, in ps, the straight line through one tick can move an edge off the parabola:
+/// h^2 |a| / (8 v), and never out of its tick.
+pub(crate) fn curvature_ps(crossing: &Crossing, timebase: &Timebase) -> f64 {
+    let tick = timebase.tick_seconds();
+    let shift = tick * tick * crossing.acceleration.abs() / (8.0 * crossing.speed);
+    // 0 / 0, a crossing at rest without acceleration, cannot be in a profile that moves
+    if shift.is_nan() { tick * PS } else { shift.min(tick) * PS }
+}
+
+/// A time of the capture for a sentence.
+pub(crate) fn moment(ps: impl Into<i128>) -> String {
+    let ps = ps.into() as f64;
+    match ps.abs() {
+        small if small < 1e6 => format!("{:.3} ns", ps / 1e3),
+        small if small < 1e9 => format!("{:.6} us", ps / 1e6),
+        small if small < 1e12 => format!("{:.9} ms", ps / 1e9),
+        _ => format!("{:.9} s", ps / 1e12),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crossing(start_tick: u64, seconds: f64, speed: f64, acceleration: f64) -> Crossing {
+        Crossing { start_tick, seconds, backward: false, speed, acceleration }
+    }
+
+    #[test]
+    fn a_picosecond_counts_after_an_hour() {
+        let (tick, hour) = (1_000_000_u64, 3_600_000_000_u64);
+        for late in [-1_i64, 0, 1, 12_345] {
+            let rise = (hour * tick + 123_456_789).strict_add_signed(late) + 7;
+            let found = lateness_ps(rise, 7, &crossing(hour, 123.456_789e-6, 1.0, 0.0), tick);
+            assert!((found - late as f64).abs() < 1e-6, "{found}");
+        }
+        assert_eq!(due_ps(-7, &crossing(hour, 0.5, 1.0, 0.0), tick), 3_600_500_000_000_000 - 7);
+    }
+
+    #[test]
+    fn the_curvature_never_leaves_its_tick() {
+        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+        let cases = [(100.0, 8e6, 1e4), (0.0, 1.0, 1e6), (0.0, 0.0, 1e6), (10.0, 0.0, 0.0)];
+        for (speed, acceleration, ps) in cases {
+            let found = curvature_ps(&crossing(0, 0.0, speed, acceleration), &timebase);
+            assert!((found - ps).abs() < 1e-6, "{found} {ps}");
+        }
+    }
+
+    #[test]
+    fn moments_read_well() {
+        let texts = [12_345, 12_345_678, 12_345_678_901, 1_234_567_890_123].map(|ps: u64| moment(ps));
+        assert_eq!(texts, ["12.345 ns", "12.345678 us", "12.345678901 ms", "1.234567890 s"]);
+    }
+}

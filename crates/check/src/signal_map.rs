@@ -1,0 +1,203 @@
+//! Which signal of a capture is which pin.
+
+use crate::edge::Pin;
+use crate::error::ReadError;
+use carrystep_core::AXES;
+use carrystep_core::engine::MAX_AXES;
+use vcd::{IdCode, ReferenceIndex};
+
+/// Names of a foreign capture's signals: `x.step=top.la.D0`, `y.dir=bench.pins[3]`.
+///
+/// A pin that the map does not name is looked for under our own names: `<axis>.step` and `<axis>.dir`
+/// in any scope, or the vectors `step` and `dir`, whose bit i is axis i.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct SignalMap {
+    entries: Vec<Entry>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Entry {
+    axis: String,
+    pin: Pin,
+    path: String,
+}
+
+impl SignalMap {
+    /// A map from lines `<axis>.<step|dir>=<path of the signal>`.
+    ///
+    /// # Errors
+    /// [`ReadError::Map`] says what is wrong with a line.
+    pub fn parse<S: AsRef<str>>(lines: impl IntoIterator<Item = S>) -> Result<Self, ReadError> {
+        let mut map = Self::default();
+        for line in lines {
+            let line = line.as_ref();
+            let wrong = |message: &str| ReadError::Map { entry: line.to_owned(), message: message.to_owned() };
+            let form = || wrong("write <axis>.step=<signal> or <axis>.dir=<signal>");
+            let (left, path) = line.split_once('=').ok_or_else(form)?;
+            let (axis, pin) = left.trim().rsplit_once('.').ok_or_else(form)?;
+            let pin = match pin {
+                "step" => Pin::Step,
+                "dir" => Pin::Dir,
+                _ => return Err(form()),
+            };
+            if axis.is_empty() || path.trim().is_empty() {
+                return Err(form());
+            }
+            if map.path(axis, pin).is_some() {
+                return Err(wrong("this pin is already mapped"));
+            }
+            map.entries.push(Entry { axis: axis.to_owned(), pin, path: path.trim().to_owned() });
+        }
+        Ok(map)
+    }
+
+    fn path(&self, axis: &str, pin: Pin) -> Option<&str> {
+        self.entries.iter().find(|e| e.axis == axis && e.pin == pin).map(|e| e.path.as_str())
+    }
+}
+
+/// A signal as the header of a VCD declares it.
+#[derive(Debug, Clone)]
+pub(crate) struct Signal {
+    /// Scopes and name, joined by dots, without a range.
+    pub(crate) path: String,
+    pub(crate) code: IdCode,
+    pub(crate) bits: u32,
+    /// Index of the most and of the least significant bit.
+    pub(crate) range: (i64, i64),
+}
+
+impl Signal {
+    pub(crate) fn new(scopes: &[String], name: &str, index: Option<ReferenceIndex>, code: IdCode, bits: u32) -> Self {
+        // some simulators glue the range to the name
+        let glued = name.find('[').filter(|&at| at > 0 && !name.starts_with('\\'));
+        let (name, tail) = name.split_at(glued.unwrap_or(name.len()));
+        let mut path = scopes.join(".");
+        if !path.is_empty() {
+            path.push('.');
+        }
+        path.push_str(name);
+        let range = match index.or_else(|| tail.parse().ok()) {
+            Some(ReferenceIndex::Range(high, low)) => (i64::from(high), i64::from(low)),
+            Some(ReferenceIndex::BitSelect(bit)) => {
+                // one bit of a vector that was taken apart keeps its index in its name
+                path.push_str(&format!("[{bit}]"));
+                (0, 0)
+            }
+            None => (i64::from(bits) - 1, 0),
+        };
+        Self { path, code, bits, range }
+    }
+
+    /// Place of the bit with this index, counted from the least significant.
+    fn place(&self, index: i64) -> Option<u32> {
+        let (high, low) = self.range;
+        let place = if high >= low { index - low } else { low - index };
+        u32::try_from(place).ok().filter(|&place| place < self.bits)
+    }
+
+    fn depth(&self) -> usize {
+        self.path.matches('.').count()
+    }
+
+    /// Whether the path is `tail`, or ends with it behind a scope.
+    fn ends_with(&self, tail: &str) -> bool {
+        self.path.strip_suffix(tail).is_some_and(|scopes| scopes.is_empty() || scopes.ends_with('.'))
+    }
+}
+
+/// Where the level of a pin is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Source {
+    pub(crate) code: IdCode,
+    /// Bit, counted from the least significant.
+    pub(crate) place: u32,
+}
+
+/// How many names an error suggests.
+const CANDIDATES: usize = 8;
+
+fn missing(signals: &[Signal], wanted: String) -> ReadError {
+    let found = signals.iter().take(CANDIDATES).map(|s| s.path.clone());
+    let more = signals.len().saturating_sub(CANDIDATES);
+    let more = (more > 0).then(|| format!("{more} more"));
+    ReadError::NoSignal { wanted, found: found.chain(more).collect() }
+}
+
+/// The only signal nearest to the top among those that fit.
+fn topmost<'a>(fit: impl Iterator<Item = &'a Signal>, wanted: &str) -> Result<Option<&'a Signal>, ReadError> {
+    let fit: Vec<&Signal> = fit.collect();
+    let Some(top) = fit.iter().map(|s| s.depth()).min() else { return Ok(None) };
+    let mut nearest = fit.into_iter().filter(|s| s.depth() == top);
+    let first = nearest.next();
+    let others: Vec<&Signal> = nearest.filter(|s| Some(s.code) != first.map(|f| f.code)).collect();
+    if others.is_empty() {
+        return Ok(first);
+    }
+    let found = first.into_iter().chain(others).take(CANDIDATES).map(|s| s.path.clone()).collect();
+    Err(ReadError::Ambiguous { wanted: wanted.to_owned(), found })
+}
+
+impl SignalMap {
+    /// The sources of STEP and DIR of all axes.
+    pub(crate) fn resolve(&self, signals: &[Signal], axes: &[&str]) -> Result<Vec<[Source; 2]>, ReadError> {
+        if let Some(stray) = self.entries.iter().find(|e| !axes.contains(&e.axis.as_str())) {
+            return Err(ReadError::Map {
+                entry: format!("{}.{}={}", stray.axis, stray.pin, stray.path),
+                message: format!("there is no axis '{}'; the axes are {}", stray.axis, axes.join(", ")),
+            });
+        }
+        let pin = |index: usize, axis: &str, pin: Pin| match self.path(axis, pin) {
+            Some(path) => explicit(signals, path, axis, pin),
+            None => by_name(signals, (index, axes.len()), axis, pin),
+        };
+        let pair = |(index, axis): (usize, &&str)| Ok([pin(index, axis, Pin::Step)?, pin(index, axis, Pin::Dir)?]);
+        axes.iter().enumerate().map(pair).collect()
+    }
+}
+
+fn explicit(signals: &[Signal], path: &str, axis: &str, pin: Pin) -> Result<Source, ReadError> {
+    let wanted = || format!("{path} for {axis}.{pin}");
+    if let Some(signal) = signals.iter().find(|s| s.path == path) {
+        if signal.bits == 1 {
+            return Ok(Source { code: signal.code, place: 0 });
+        }
+        let message = format!("the signal has {} bits: name one, as in {path}[{}]", signal.bits, signal.range.1);
+        return Err(ReadError::Map { entry: format!("{axis}.{pin}={path}"), message });
+    }
+    let bit = path.strip_suffix(']').and_then(|s| s.rsplit_once('['));
+    let bit = bit.and_then(|(base, index)| Some((base, index.parse::<i64>().ok()?)));
+    let source = bit.and_then(|(base, index)| {
+        let signal = signals.iter().find(|s| s.path == base)?;
+        Some(Source { code: signal.code, place: signal.place(index)? })
+    });
+    source.ok_or_else(|| missing(signals, wanted()))
+}
+
+/// Axis `index` of so many.
+fn by_name(signals: &[Signal], (index, axes): (usize, usize), axis: &str, pin: Pin) -> Result<Source, ReadError> {
+    let own = format!("{axis}.{pin}");
+    let width = |signal: &Signal, wanted: &str| ReadError::Width {
+        signal: signal.path.clone(),
+        bits: signal.bits,
+        wanted: wanted.to_owned(),
+    };
+    let wires = signals.iter().filter(|s| s.bits == 1 && s.ends_with(&own));
+    if let Some(signal) = topmost(wires, &own)? {
+        return Ok(Source { code: signal.code, place: 0 });
+    }
+    if let Some(wide) = signals.iter().find(|s| s.bits != 1 && s.ends_with(&own)) {
+        return Err(width(wide, "a pin has 1"));
+    }
+    let name = pin.to_string();
+    let bit = index as i64;
+    let vectors = signals.iter().filter(|s| s.bits > 1 && s.ends_with(&name) && s.place(bit).is_some());
+    if let Some(signal) = topmost(vectors, &format!("{name}[{index}]"))? {
+        // The gateware's own vectors may be wider than the machine.
+        if ![axes, AXES, MAX_AXES].contains(&(signal.bits as usize)) {
+            return Err(width(signal, &format!("the machine has {axes} axes")));
+        }
+        return Ok(Source { code: signal.code, place: signal.place(bit).unwrap_or(0) });
+    }
+    Err(missing(signals, format!("{own} (nor a vector {name} with a bit {index})")))
+}

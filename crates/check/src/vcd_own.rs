@@ -1,0 +1,62 @@
+//! The marks by which a capture of our own is known: where its time starts, and that it is whole.
+
+use carrystep_core::Timebase;
+use std::fmt;
+
+/// The last comment of a capture of our own; without it the file was cut off.
+pub(crate) const END: &str = "carrystep end";
+
+/// What the header of our own captures says: a comment
+/// `carrystep origin_ps=... clock_hz=... tick_ns=... phases=...`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OwnCapture {
+    /// The load of the first move plus the latency L, in ps of the capture.
+    pub origin_ps: i64,
+    /// Clock, tick and phases of the gateware.
+    pub timebase: Timebase,
+}
+
+impl fmt::Display for OwnCapture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "carrystep origin_ps={} clock_hz={} tick_ns={} phases={}",
+            self.origin_ps,
+            self.timebase.clock_hz(),
+            self.timebase.tick_ns(),
+            self.timebase.phases()
+        )
+    }
+}
+
+impl OwnCapture {
+    /// What a comment says; `None` where it is not one of ours.
+    pub fn from_comment(comment: &str) -> Option<Self> {
+        let mut words = comment.split_whitespace();
+        words.next().filter(|&first| first == "carrystep")?;
+        let mut field = |key: &str| {
+            let (name, value) = words.next()?.split_once('=')?;
+            (name == key).then_some(value)
+        };
+        let origin_ps = field("origin_ps")?.parse().ok()?;
+        let clock_hz = field("clock_hz")?.parse().ok()?;
+        let tick_ns = field("tick_ns")?.parse().ok()?;
+        let phases = field("phases")?.parse().ok()?;
+        let timebase = Timebase::new(clock_hz, tick_ns, phases).ok()?;
+        Some(Self { origin_ps, timebase })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_comment_reads_back() {
+        let own = OwnCapture { origin_ps: -5, timebase: Timebase::new(48_000_000, 1000, 16).unwrap() };
+        assert_eq!(OwnCapture::from_comment(&own.to_string()), Some(own));
+        for foreign in ["", "carrystep", "carrystep end", "carrystep origin_ps=1", "made by carrystep origin_ps=1"] {
+            assert_eq!(OwnCapture::from_comment(foreign), None);
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! A machine with known profiles, and the pulse train that an ideal generator makes of them.
+#![allow(dead_code)] // each test binary uses its own part
+
+use carrystep_check::*;
+use carrystep_core::{Segment, StartPhase, Timebase};
+use carrystep_profile::{Constant, Leg, Ramp, Timeline};
+use std::io::Cursor;
+use std::sync::Arc;
+
+pub const ORIGIN_PS: i64 = 123_456_789;
+pub const NAMES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
+/// Width, gap, set-up, hold.
+pub const PINS_NS: [u64; 4] = [1000, 1000, 200, 200];
+pub const HIGH_PS: u64 = 1_041_667;
+
+pub struct Machine {
+    pub timebase: Timebase,
+    pub timelines: Vec<Timeline>,
+    pub total_ticks: u64,
+}
+
+impl Machine {
+    /// Out in 0.25 s and back in 0.25 s, each axis its own distance; axis i has 1000 / (i + 1) steps.
+    pub fn there_and_back(axes: usize) -> Self {
+        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+        let timeline = |index: usize| {
+            let steps = 1000 / (index as u64 + 1);
+            let leg = |start_tick, backward, profile| Leg { start_tick, backward, steps, profile, fit_seconds: 0.0 };
+            let out = Ramp::triangle(steps as f64, 0.25, 0.0, steps as f64 * 64.0);
+            // four times the distance in the time squared is the least; half as much again leaves a cruise
+            let acceleration = 6.0 * steps as f64 / 0.0625;
+            let cruise = (0.0625 - 4.0 * steps as f64 / acceleration).sqrt();
+            let top = 2.0 * steps as f64 / (0.25 + cruise);
+            let back = Ramp::trapezoid(steps as f64, 0.25, 0.0, top, acceleration, top / acceleration);
+            let flip = index % 2 == 1;
+            let legs = vec![leg(0, flip, Arc::new(out) as _), leg(250_000, !flip, Arc::new(back) as _)];
+            Timeline { tick_seconds: timebase.tick_seconds(), legs }
+        };
+        Self { timebase, timelines: (0..axes).map(timeline).collect(), total_ticks: 500_000 }
+    }
+
+    /// One axis at one speed: `steps` in a second.
+    pub fn steady(steps: u64) -> Self {
+        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+        let profile = Arc::new(Constant::new(steps as f64, 1.0));
+        let legs = vec![Leg { start_tick: 0, backward: false, steps, profile, fit_seconds: 0.0 }];
+        let timelines = vec![Timeline { tick_seconds: timebase.tick_seconds(), legs }];
+        Self { timebase, timelines, total_ticks: 1_000_000 }
+    }
+
+    pub fn names(&self) -> &'static [&'static str] {
+        &NAMES[..self.timelines.len()]
+    }
+
+    pub fn setup(&self, origin: Origin) -> Setup<'_> {
+        let axes = self.timelines.iter().zip(NAMES).map(|(timeline, name)| AxisSetup {
+            name,
+            unit: None,
+            timeline,
+            pins_ns: PINS_NS,
+            expected_pulses: timeline.legs.iter().map(|leg| leg.steps).sum(),
+            expected_position: timeline
+                .legs
+                .iter()
+                .map(|leg| if leg.backward { -(leg.steps as i64) } else { leg.steps as i64 })
+                .sum(),
+        });
+        let (timebase, phase, lines) = (self.timebase, StartPhase::Half, Vec::new());
+        Setup { timebase, phase, axes: axes.collect(), lines, origin, slack_ps: 0 }
+    }
+
+    /// The train of an ideal generator, rounding down to its grid: all axes, in time order.
+    pub fn train(&self) -> Vec<PinChange> {
+        let mut all = Vec::new();
+        for (index, timeline) in self.timelines.iter().enumerate() {
+            let mut dir = false;
+            let mut free = ORIGIN_PS as u64;
+            for crossing in timeline.crossings(StartPhase::Half) {
+                let tick_ps = self.timebase.tick_ns() * 1000;
+                let grid = tick_ps / u64::from(self.timebase.phases());
+                let local = (crossing.seconds * 1e12) as u64 / grid * grid;
+                let ps = ORIGIN_PS as u64 + crossing.start_tick * tick_ps + local;
+                let mut put = |ps, pin, level| all.push(PinChange { ps, axis: index as u8, pin, level });
+                if crossing.backward != dir {
+                    dir = crossing.backward;
+                    put(u64::midpoint(free, ps), Pin::Dir, dir);
+                }
+                put(ps, Pin::Step, true);
+                put(ps + HIGH_PS, Pin::Step, false);
+                free = ps + HIGH_PS;
+            }
+        }
+        all.sort_by_key(|change| change.ps);
+        all
+    }
+
+    pub fn check(&self, train: &[PinChange], origin: Origin) -> Report {
+        self.check_setup(train, self.setup(origin))
+    }
+
+    pub fn check_setup<'a>(&'a self, train: &[PinChange], setup: Setup<'a>) -> Report {
+        let mut checker = Checker::new(setup);
+        play(train, &mut checker);
+        checker.finish()
+    }
+
+    /// Segments of arbitrary content that fill the run: V is what they say, whatever the profile is.
+    pub fn segments(&self) -> Vec<(u64, Segment)> {
+        let piece = self.total_ticks / 5;
+        let segment = |k: u64| Segment {
+            ticks: piece as u32,
+            v: (k as i64 - 2) << 50,
+            a: -(1 << 30) * k as i64,
+            j: (1 << 12) - (k as i64) * 3000,
+            last: k == 4,
+        };
+        (0..5).map(|k| (k * piece, segment(k))).collect()
+    }
+
+    pub fn waves(&self) -> Waves<'_> {
+        let axes = self.timelines.iter().zip(NAMES).map(|(timeline, name)| AxisWaves {
+            name,
+            timeline,
+            segments: Box::new(self.segments().into_iter()),
+        });
+        Waves {
+            timebase: self.timebase,
+            phase: StartPhase::Half,
+            origin_ps: ORIGIN_PS,
+            total_ticks: self.total_ticks,
+            axes: axes.collect(),
+        }
+    }
+
+    pub fn vcd(&self, train: &[PinChange]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        play(train, &mut VcdWriter::new(&mut bytes, self.waves()));
+        bytes
+    }
+
+    pub fn fst(&self, train: &[PinChange]) -> Vec<u8> {
+        let mut file = Cursor::new(Vec::new());
+        play(train, &mut FstWriter::new(&mut file, self.waves()));
+        file.into_inner()
+    }
+
+    pub fn plot_setup(&self) -> PlotSetup<'_> {
+        let axes = self.timelines.iter().zip(NAMES).map(|(timeline, name)| PlotAxis { name, timeline });
+        PlotSetup {
+            title: "There and back",
+            timebase: self.timebase,
+            phase: StartPhase::Half,
+            origin_ps: ORIGIN_PS,
+            total_ticks: self.total_ticks,
+            axes: axes.collect(),
+        }
+    }
+}
+
+pub const KNOWN: Origin = Origin::Known { ps: ORIGIN_PS };
+
+pub fn play(train: &[PinChange], sink: &mut dyn PinSink) {
+    for &change in train {
+        sink.change(change).unwrap();
+    }
+    sink.end(train.last().map_or(0, |change| change.ps) + 1_000_000).unwrap();
+}
+
+/// The place in the train of the `k`-th (from 1) rising STEP of an axis.
+pub fn rise(train: &[PinChange], axis: u8, k: usize) -> usize {
+    let rises = |c: &PinChange| c.axis == axis && c.pin == Pin::Step && c.level;
+    (0..train.len()).filter(|&at| rises(&train[at])).nth(k - 1).unwrap()
+}
+
+/// The place of the falling STEP behind a rising one.
+pub fn fall(train: &[PinChange], rise: usize) -> usize {
+    let axis = train[rise].axis;
+    (rise..train.len()).find(|&at| train[at].axis == axis && train[at].pin == Pin::Step && !train[at].level).unwrap()
+}
+
+/// The place of the `k`-th change of DIR of an axis.
+pub fn turn(train: &[PinChange], axis: u8, k: usize) -> usize {
+    (0..train.len()).filter(|&at| train[at].axis == axis && train[at].pin == Pin::Dir).nth(k - 1).unwrap()
+}

@@ -1,0 +1,147 @@
+//! An independent reader sees in our VCD what was put in, in our FST the same, and every name of the save file is there.
+
+#![allow(clippy::unwrap_used)] // a test may panic
+
+mod common;
+
+use carrystep_check::*;
+use carrystep_core::StartPhase;
+use common::*;
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use wellen::simple::Waveform;
+use wellen::{SignalRef, SignalValueRef};
+
+/// Full name with range -> signal.
+fn open(bytes: Vec<u8>) -> (Waveform, BTreeMap<String, SignalRef>) {
+    let waveform = wellen::simple::read_from_reader(Cursor::new(bytes)).unwrap();
+    let hierarchy = waveform.hierarchy();
+    let name = |var: &wellen::Var| {
+        let range = var.index().map_or(String::new(), |i| format!("[{}:{}]", i.msb(), i.lsb()));
+        (format!("{}{range}", var.full_name(hierarchy)), var.signal_ref())
+    };
+    let signals = hierarchy.all_vars().map(|var| name(&hierarchy[var])).collect();
+    (waveform, signals)
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shown {
+    Bits(u64),
+    Real(f64),
+}
+
+fn changes(waveform: &mut Waveform, signal: SignalRef) -> Vec<(u64, Shown)> {
+    waveform.load_signals(&[signal]);
+    let shown = |value: SignalValueRef<'_>| match value {
+        SignalValueRef::Real(x) => Shown::Real(x),
+        other => Shown::Bits(u64::from_str_radix(&other.to_bit_string().unwrap(), 2).unwrap()),
+    };
+    let found = waveform.get_signal(signal).unwrap();
+    found.iter_changes().map(|(at, value)| (waveform.time_table()[at as usize], shown(value))).collect()
+}
+
+#[test]
+fn another_reader_sees_the_same_edges_and_values() {
+    let machine = Machine::there_and_back(3);
+    let train = machine.train();
+    let (mut waveform, signals) = open(machine.vcd(&train));
+    assert_eq!(signals.len(), 21);
+    for (index, timeline) in machine.timelines.iter().enumerate() {
+        let mut get = |name: &str| changes(&mut waveform, signals[&format!("carrystep.{}.{name}", NAMES[index])]);
+        for pin in [Pin::Step, Pin::Dir] {
+            let mut expected = vec![(0, Shown::Bits(0))];
+            let of_pin = train.iter().filter(|c| c.pin == pin && usize::from(c.axis) == index);
+            expected.extend(of_pin.map(|c| (c.ps, Shown::Bits(c.level.into()))));
+            assert_eq!(get(&pin.to_string()), expected);
+        }
+
+        let mut follower = Follower::new(timeline, StartPhase::Half, &machine.timebase, ORIGIN_PS);
+        let pulses: Vec<Pulse> =
+            train.iter().filter(|c| usize::from(c.axis) == index).filter_map(|&c| follower.change(c)).collect();
+        let positions: Vec<_> =
+            pulses.iter().map(|p| (p.ps, Shown::Bits(u64::from(p.position as i32 as u32)))).collect();
+        assert_eq!(get("position[31:0]")[1..], positions);
+        for ((ps, shown), pulse) in get("error_ns")[1..].iter().zip(&pulses) {
+            let Shown::Real(error) = *shown else { panic!("no real") };
+            assert_eq!(*ps, pulse.ps);
+            assert!((error - pulse.error_ns.unwrap()).abs() < 1e-6 && (-62.5..0.1).contains(&error), "{error}");
+        }
+
+        // the reader leaves out what stays the same
+        for (name, least) in [("profile_position", pulses.len() + 450), ("profile_speed", pulses.len() / 2 + 300)] {
+            let samples = get(name);
+            assert!(samples.len() > least, "{} {least}", samples.len());
+            for &(ps, shown) in &samples[1..] {
+                let tick = (ps as f64 - ORIGIN_PS as f64) / 1e6;
+                let expected =
+                    if name == "profile_speed" { timeline.speed_at(tick) } else { timeline.position_at(tick) };
+                let Shown::Real(found) = shown else { panic!("no real") };
+                assert!((found - expected).abs() < 1e-6 * (1.0 + expected.abs()), "{name} {ps}: {found} {expected}");
+            }
+        }
+
+        // V tick by tick, as the register adds
+        let mut register = Vec::new();
+        for (_, segment) in machine.segments() {
+            let (mut v, mut a) = (segment.v, segment.a);
+            for _ in 0..segment.ticks {
+                register.push(v);
+                v = v.wrapping_add(a);
+                a = a.wrapping_add(segment.j);
+            }
+        }
+        let v = get("v[63:0]");
+        assert!(v.len() > pulses.len());
+        for &(ps, shown) in v.iter().filter(|&&(ps, _)| ps >= ORIGIN_PS as u64) {
+            let tick = (ps - ORIGIN_PS as u64) / 1_000_000;
+            let expected = register.get(tick as usize).copied().unwrap_or(0);
+            assert_eq!(shown, Shown::Bits(expected as u64), "tick {tick}");
+        }
+    }
+}
+
+/// Many blocks of it too.
+#[test]
+fn the_fst_is_the_vcd() {
+    for machine in [Machine::there_and_back(6), Machine::steady(60_000)] {
+        let train = machine.train();
+        let (vcd, fst) = (machine.vcd(&train), machine.fst(&train));
+        assert!(fst.len() < vcd.len() / 2, "{} bytes of FST, {} of VCD", fst.len(), vcd.len());
+        let ((mut vcd, of_vcd), (mut fst, of_fst)) = (open(vcd), open(fst));
+        assert!(of_vcd.keys().eq(of_fst.keys()), "{:?} {:?}", of_vcd.keys(), of_fst.keys());
+        assert_eq!(vcd.hierarchy().timescale(), fst.hierarchy().timescale());
+        for (name, signal) in of_vcd {
+            assert_eq!(changes(&mut fst, of_fst[&name]), changes(&mut vcd, signal), "{name}");
+        }
+    }
+}
+
+#[test]
+fn every_name_of_the_save_file_is_in_the_vcd() {
+    let machine = Machine::there_and_back(6);
+    let (_, signals) = open(machine.vcd(&machine.train()));
+    let save = save_file("run.vcd", machine.names(), 500_000_000_000).unwrap();
+    let is_name = |line: &&str| !line.starts_with(['[', '*', '@', '-']) && !line.is_empty();
+    let names: Vec<&str> = save.lines().filter(is_name).collect();
+    assert_eq!(names.len(), 42);
+    for name in &names {
+        assert!(signals.contains_key(*name), "{name} is not in {signals:?}");
+    }
+    assert!(names.contains(&"carrystep.x.position[31:0]"));
+    assert!(save.contains("[dumpfile] \"run.vcd\"\n"));
+}
+
+#[test]
+fn our_own_capture_is_known_and_passes() {
+    let machine = Machine::there_and_back(6);
+    let bytes = machine.vcd(&machine.train());
+    let reader = VcdReader::new(bytes.as_slice(), machine.names(), &SignalMap::default()).unwrap();
+    let own = reader.own().unwrap();
+    assert_eq!(own, OwnCapture { origin_ps: ORIGIN_PS, timebase: machine.timebase });
+    let mut checker = Checker::new(machine.setup(Origin::Known { ps: own.origin_ps }));
+    let played = reader.play(&mut checker).unwrap();
+    let report = checker.finish();
+    assert!(report.passed(), "{report}");
+    assert_eq!(played.unknown, 0);
+    assert_eq!(report, machine.check(&machine.train(), KNOWN));
+}

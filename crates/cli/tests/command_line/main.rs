@@ -1,0 +1,46 @@
+//! The command from outside: what it says, its exit status, and what it leaves behind.
+
+#![allow(clippy::unwrap_used)] // a test may panic
+
+mod bad_captures;
+mod bad_curves;
+mod bad_files;
+mod bad_machines;
+mod bad_moves;
+mod bad_outputs;
+mod boards;
+#[cfg(unix)]
+mod cache;
+#[cfg(target_os = "linux")]
+mod ci_action;
+mod clocks;
+mod command;
+mod curves;
+#[path = "../../../link/tests/support/device.rs"]
+#[allow(dead_code, reason = "the link's own tests use the rest")]
+mod device;
+mod documents;
+mod engine;
+#[cfg(unix)]
+mod homing;
+#[cfg(unix)]
+mod inputs;
+#[cfg(target_os = "linux")]
+mod interrupts;
+mod json_names;
+mod junit;
+mod machine_new;
+#[cfg(unix)]
+mod outputs;
+mod plots;
+mod profile;
+#[cfg(unix)]
+mod stop_on_the_wire;
+#[cfg(unix)]
+mod stops;
+mod sweeps;
+mod table;
+#[cfg(unix)]
+mod terminal;
+#[cfg(unix)]
+mod virtual_boards;

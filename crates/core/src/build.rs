@@ -1,0 +1,186 @@
+//! Build parameters of the gateware: clock, tick, phases, pin timings, all in clock cycles.
+
+use crate::fixed::StartPhase;
+use thiserror::Error;
+
+/// Axes in the six-axis core; a machine may use fewer.
+pub const AXES: usize = 6;
+
+/// Fewest clocks in a tick: a host must be able to hand over a segment for every axis, and a start.
+pub const MIN_CLOCKS_PER_TICK: u32 = 16;
+
+/// Most clocks in a tick or in one pin timing (timers are at most 17 bits wide).
+pub const MAX_CLOCKS: u32 = 1 << 16;
+
+/// Fastest clock, Hz: captures count time in ps, and a clock must be many of them.
+pub const MAX_CLOCK_HZ: u64 = 1_000_000_000;
+
+/// Clock, tick and phases of a build.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Timebase {
+    clock_hz: u64,
+    tick_ns: u64,
+    phases: u32,
+    clocks_per_tick: u32,
+}
+
+/// Why a [`Timebase`] cannot be.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum TimebaseError {
+    /// No clock, or one too fast.
+    #[error("a clock of {0} Hz: between 1 and {MAX_CLOCK_HZ} Hz are needed")]
+    Clock(u64),
+    /// Q is not 1, 4 or 16.
+    #[error("{0} phases: a tick has 1, 4 or 16 phases")]
+    Phases(u32),
+    /// clock x tick is not a whole number.
+    #[error(
+        "a tick of {tick_ns} ns is not a whole number of clocks at {clock_hz} Hz ({remainder} / 10^9 clock left over)"
+    )]
+    NotWhole {
+        /// Hz.
+        clock_hz: u64,
+        /// ns.
+        tick_ns: u64,
+        /// clock_hz * tick_ns modulo 10^9.
+        remainder: u64,
+    },
+    /// The clocks of a tick do not split into equal phases.
+    #[error("{clocks} clocks per tick do not divide into {phases} equal phases")]
+    NotDivisible {
+        /// Clocks per tick.
+        clocks: u64,
+        /// Phases per tick.
+        phases: u32,
+    },
+    /// Too few or too many clocks in a tick.
+    #[error("{0} clocks per tick: between {MIN_CLOCKS_PER_TICK} and {MAX_CLOCKS} are needed")]
+    Range(u64),
+}
+
+impl Timebase {
+    /// An acceleration of so many units of 2^-64 step per tick^2, in steps/s^2.
+    pub fn steps_per_s2(&self, units: u64) -> f64 {
+        const UNITS_PER_STEP: f64 = 18_446_744_073_709_551_616.0;
+        let tick_ns = self.tick_ns as f64;
+        units as f64 / UNITS_PER_STEP * 1e18 / (tick_ns * tick_ns)
+    }
+
+    /// A timebase in which a tick is a whole number of clocks, divisible by the phases.
+    ///
+    /// # Errors
+    /// [`TimebaseError`] names the parameter that does not fit.
+    pub fn new(clock_hz: u64, tick_ns: u64, phases: u32) -> Result<Self, TimebaseError> {
+        const NS: u128 = 1_000_000_000;
+        if !(1..=MAX_CLOCK_HZ).contains(&clock_hz) {
+            return Err(TimebaseError::Clock(clock_hz));
+        }
+        if ![1, 4, 16].contains(&phases) {
+            return Err(TimebaseError::Phases(phases));
+        }
+        let product = u128::from(clock_hz) * u128::from(tick_ns);
+        let clamp = |x: u128| u64::try_from(x).unwrap_or(u64::MAX);
+        if !product.is_multiple_of(NS) {
+            let remainder = clamp(product % NS);
+            return Err(TimebaseError::NotWhole { clock_hz, tick_ns, remainder });
+        }
+        let clocks = clamp(product / NS);
+        if clocks < u64::from(MIN_CLOCKS_PER_TICK) || clocks > u64::from(MAX_CLOCKS) {
+            return Err(TimebaseError::Range(clocks));
+        }
+        if !clocks.is_multiple_of(u64::from(phases)) {
+            return Err(TimebaseError::NotDivisible { clocks, phases });
+        }
+        let clocks_per_tick = u32::try_from(clocks).map_err(|_| TimebaseError::Range(clocks))?;
+        Ok(Self { clock_hz, tick_ns, phases, clocks_per_tick })
+    }
+
+    /// Clock frequency in Hz.
+    pub const fn clock_hz(&self) -> u64 {
+        self.clock_hz
+    }
+
+    /// Tick in ns.
+    pub const fn tick_ns(&self) -> u64 {
+        self.tick_ns
+    }
+
+    /// Tick in seconds, as the nearest float.
+    pub fn tick_seconds(&self) -> f64 {
+        self.tick_ns as f64 * 1e-9
+    }
+
+    /// Q, phases per tick: 1, 4 or 16.
+    pub const fn phases(&self) -> u32 {
+        self.phases
+    }
+
+    /// log2 Q: 0, 2 or 4.
+    pub const fn phase_bits(&self) -> u32 {
+        self.phases.trailing_zeros()
+    }
+
+    /// C, clocks per tick.
+    pub const fn clocks_per_tick(&self) -> u32 {
+        self.clocks_per_tick
+    }
+
+    /// C / Q, clocks per phase.
+    pub const fn clocks_per_phase(&self) -> u32 {
+        self.clocks_per_tick / self.phases
+    }
+
+    /// L: clocks from the load of a move's first segment to the pin edge of its tick 1, phase 0.
+    pub const fn latency_clocks(&self) -> u64 {
+        2 * self.clocks_per_tick as u64 + 1
+    }
+
+    /// Start of clock cycle `clock` in ps, rounded from the exact product, never accumulated.
+    pub const fn clock_to_ps(&self, clock: u64) -> u64 {
+        const PS: u128 = 1_000_000_000_000;
+        let hz = self.clock_hz as u128;
+        ((clock as u128 * PS + hz / 2) / hz) as u64
+    }
+
+    /// Whole clocks in `ns`, rounded up, at least 1.
+    pub fn clocks_for_ns(&self, ns: u64) -> u64 {
+        let exact = u128::from(ns) * u128::from(self.clock_hz);
+        u64::try_from(exact.div_ceil(1_000_000_000)).unwrap_or(u64::MAX).max(1)
+    }
+}
+
+/// What a driver asks of STEP and DIR, in clocks, each at least 1.
+///
+/// ```text
+/// DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
+///          :<-setup->:<-- hold ->:
+/// STEP ______________/^^^^^^^\________/^^^^^^\__________
+///                    :<width>:<-gap ->:
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct PinTiming {
+    /// STEP high, W.
+    pub width: u32,
+    /// STEP low, S.
+    pub gap: u32,
+    /// DIR stable before a rising STEP, D.
+    pub setup: u32,
+    /// DIR stable after a rising STEP, H.
+    pub hold: u32,
+}
+
+impl PinTiming {
+    /// The shortest timing there is.
+    pub const SHORTEST: Self = Self { width: 1, gap: 1, setup: 1, hold: 1 };
+}
+
+/// All parameters of one gateware build.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Build {
+    /// Clock, tick and phases.
+    pub timebase: Timebase,
+    /// Where in a step moves start.
+    pub phase: StartPhase,
+    /// Pin timing of each axis; axes that the machine does not have are [`PinTiming::SHORTEST`].
+    pub pins: [PinTiming; AXES],
+}

@@ -1,0 +1,66 @@
+//! What a guard does in seconds, as counted: the file's figures are rounded up to rounds of ticks.
+
+use super::{EngineBuild, Limits};
+use alloc::vec::Vec;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// A time as a guard keeps it.
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
+pub struct Between {
+    /// It is never shorter.
+    pub least: f64,
+    /// It is never longer.
+    pub most: f64,
+}
+
+/// A guard in the units of a machine file.
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
+pub struct GuardFigures {
+    /// From one look at a limit to the next, us.
+    pub round_us: f64,
+    /// From the host's last sign to the stop, ms; `None`: it is not missed.
+    pub watchdog_ms: Option<Between>,
+    /// From ENABLE to the first start, ms; `None`: no time.
+    pub enable_ms: Option<Between>,
+    /// From the change of a limit's pin until it is believed, us; `None`: there are no limits.
+    pub debounce_us: Option<Between>,
+    /// The level at which the e-stop is pressed.
+    pub estop: &'static str,
+    /// How the limits are wired.
+    pub limits: Limits,
+    /// The level at which a limit is reached.
+    pub limit_level: &'static str,
+    /// How a limit stops the axes.
+    pub limit_stop: &'static str,
+    /// The ramp of each axis, steps/s^2.
+    pub stop_accel_steps_per_s2: Vec<f64>,
+}
+
+impl EngineBuild {
+    /// What its guard comes to.
+    pub fn guard_figures(&self) -> GuardFigures {
+        let guard = &self.guard;
+        let level = |low| if low { "low" } else { "high" };
+        // Whole ns, and few of them: the floats are the nearest there are.
+        let ns = |ticks: u64| (ticks * self.timebase.tick_ns()) as f64;
+        let round = u64::from(guard.round);
+        // The first of the rounds may be almost over as it begins; what it finds is called a tick later.
+        let between = |rounds: u32, ns_of_unit: f64| {
+            let rounds = u64::from(rounds);
+            let (least, most) = (round * rounds.saturating_sub(1), round * rounds + 1);
+            (rounds > 0).then(|| Between { least: ns(least) / ns_of_unit, most: ns(most) / ns_of_unit })
+        };
+        GuardFigures {
+            round_us: ns(round) / 1e3,
+            watchdog_ms: between(guard.watchdog, 1e6),
+            enable_ms: between(guard.enable, 1e6),
+            debounce_us: between(guard.debounce, 1e3).filter(|_| guard.limits != Limits::None),
+            estop: level(guard.estop_low),
+            limits: guard.limits,
+            limit_level: level(guard.limits_low),
+            limit_stop: if guard.limit_freezes { "freeze" } else { "ramp" },
+            stop_accel_steps_per_s2: guard.stop.iter().map(|&units| self.timebase.steps_per_s2(units)).collect(),
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! The single source of carrystep's facts: number formats, segments, build parameters, faults,
+//! stop causes, registers and the link's program. It needs no standard library.
+//!
+//! Nothing here computes motion. Everything that two crates must agree on stands here once.
+
+#![no_std]
+
+extern crate alloc;
+#[cfg(test)]
+extern crate std;
+
+pub mod build;
+pub mod engine;
+pub mod fault;
+pub mod fixed;
+pub mod link;
+pub mod ports;
+pub mod segment;
+pub mod tick;
+
+pub use build::{AXES, Build, PinTiming, Timebase};
+pub use engine::EngineBuild;
+pub use fault::Faults;
+pub use fixed::StartPhase;
+pub use segment::{Command, Program, Segment};
+pub use tick::ChosenTick;

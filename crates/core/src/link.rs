@@ -1,0 +1,121 @@
+//! What the host and the gateware's link must agree on: frames, registers, the build id (docs/protocol.md).
+//!
+//! ```text
+//! line      END, then the frame with END and ESC escaped, then END         RFC 1055
+//! request   sequence 1 | address 1 | words, 4 each, low byte first | CRC 4
+//! answer    sequence 1 | address 1 | next 1 | state 1 | free 1 | culprits 1 | homing 1 | data 4 | CRC 4
+//! ```
+
+mod assembler;
+mod build_id;
+mod facts;
+mod line;
+pub mod machine;
+mod ports;
+mod program;
+pub mod registers;
+mod uart;
+
+pub use assembler::Image;
+pub use build_id::BuildId;
+pub use facts::facts;
+pub use line::Line;
+pub use ports::{LinkInputs, LinkOutputs};
+pub use program::image;
+pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};
+
+use crate::engine::{CAUSES, Cause};
+
+/// A number that both sides must know; generated into the clients' languages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Constant {
+    /// Its name.
+    pub name: &'static str,
+    /// Its type, in Rust's words: `u8`, `u32` or `usize`.
+    pub kind: &'static str,
+    /// What it is.
+    pub value: u64,
+    /// What it means.
+    pub what: &'static str,
+}
+
+/// Declares each constant once: itself, and its row of the table.
+macro_rules! constants {
+    ($($name:ident: $kind:ident = $value:expr, $what:literal;)*) => {
+        $(#[doc = $what] pub const $name: $kind = $value;)*
+
+        /// The constants above, for the generator.
+        pub const CONSTANTS: &[$crate::link::Constant] = &[$($crate::link::Constant {
+            name: stringify!($name),
+            kind: stringify!($kind),
+            value: $name as u64,
+            what: $what,
+        }),*];
+    };
+}
+pub(crate) use constants;
+
+constants! {
+    END: u8 = 0xc0, "Ends a frame, and begins one.";
+    ESC: u8 = 0xdb, "Says that the next byte stands for another.";
+    ESC_END: u8 = 0xdc, "After ESC: END.";
+    ESC_ESC: u8 = 0xdd, "After ESC: ESC.";
+    CRC_POLYNOMIAL: u32 = 0xedb8_8320, "CRC-32 of Ethernet and zlib, reflected: polynomial.";
+    CRC_RESIDUE: u32 = 0xdebb_20e3, "What its register holds, not yet inverted, after a frame and its CRC.";
+    CRC_BYTES: usize = 4, "Bytes of a CRC.";
+    WRITE: u8 = 0x80, "Set in an address: the frame writes.";
+    REQUEST_HEAD: usize = 2, "Sequence and address.";
+    SEGMENT_FRAME_WORDS: usize = 8, "Words of a segment, the commit included.";
+    LONGEST_REQUEST: usize = REQUEST_HEAD + 4 * SEGMENT_FRAME_WORDS + CRC_BYTES, "The longest request, without END and ESC.";
+    ANSWER_BYTES: usize = 15, "An answer, without END and ESC.";
+    ANSWER_DATA: usize = 7, "First byte of an answer's data.";
+    WINDOW: u8 = 127, "Frames by which a repeated one may lie behind the next; so many may be on their way.";
+}
+
+/// A place in a byte of an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Field {
+    /// Its name, in the documentation and in C.
+    pub name: &'static str,
+    /// Byte of the answer.
+    pub byte: usize,
+    /// Lowest bit.
+    pub bit: u8,
+    /// How many bits.
+    pub bits: u8,
+    /// What it says.
+    pub what: &'static str,
+}
+
+const fn field(name: &'static str, byte: usize, bit: u8, bits: u8, what: &'static str) -> Field {
+    Field { name, byte, bit, bits, what }
+}
+
+/// The answer, byte by byte; data (low byte first) and CRC follow.
+pub const ANSWER: [Field; 13] = [
+    field("sequence", 0, 0, 8, "the request's sequence number"),
+    field("address", 1, 0, 8, "the request's address"),
+    field("next", 2, 0, 8, "the sequence number that the next write must have: all before it have been executed"),
+    field("fault", 3, 0, 1, "a stop has been called; segments and starts are dropped until a clear"),
+    field("halted", 3, 1, 1, "the stop is over: no axis moves any more"),
+    field("idle", 3, 2, 1, "all axes are done, and no start is armed"),
+    field("ready", 3, 3, 1, "the drivers have had power for long enough: starts are taken"),
+    field("armed", 3, 4, 1, "a start waits; another is refused as busy"),
+    field("cause", 3, 5, 3, "why, where there is a fault"),
+    field("free", 4, 0, 3, "segments that the addressed axis still takes"),
+    field("refused", 4, 3, 1, "this write was not executed: out of sequence, or busy"),
+    field("culprits", 5, 0, 8, "where there is a fault: the axes that it came from"),
+    field("homing", 6, 0, 8, "axes that still wait for their limit"),
+];
+
+/// The name of a cause, in documentation and messages, by its number.
+///
+/// ```
+/// use crate::engine::Cause;
+/// use crate::link::CAUSE_NAMES;
+/// assert_eq!(CAUSE_NAMES[Cause::Limit as usize], "limit");
+/// ```
+pub const CAUSE_NAMES: [&str; CAUSES.len()] =
+    ["e-stop", "overrun", "protocol", "watchdog", "overspeed", "limit", "underrun", "stop"];
+
+const _: () = assert!(Cause::EStop as usize == 0 && Cause::Stop as usize == CAUSES.len() - 1);

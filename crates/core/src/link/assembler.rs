@@ -1,0 +1,149 @@
+//! Turns a program with names into what lies in the link machine's memories.
+
+use super::machine::{ACTS, Code, Condition, GOES, INDEXED, INX, JUMPS, SETS, STORES, Source, TAX, UNLESS, WAIT, XOR};
+use alloc::collections::BTreeMap;
+use alloc::vec;
+use alloc::vec::Vec;
+
+/// Words of the program memory, and bytes of the data memory.
+pub const SIZE: usize = 256;
+
+/// What lies in the memories at configuration.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    /// The program.
+    pub program: Vec<Code>,
+    /// The data.
+    pub data: Vec<u8>,
+}
+
+/// A program that is being written.
+#[derive(Debug, Default)]
+pub(super) struct Assembler {
+    program: Vec<Code>,
+    labels: BTreeMap<&'static str, usize>,
+    jumps: Vec<(usize, &'static str)>,
+    constants: BTreeMap<u8, u8>,
+    table: [u8; 4],
+}
+
+/// Bytes that a loop compares lie at the top of the data memory, so that its end is X7 no more.
+const TABLE: u8 = 0xfc;
+/// Constants lie downward from there.
+const TOP: u8 = TABLE - 1;
+
+impl Assembler {
+    /// The next instruction is called so.
+    pub(super) fn label(&mut self, name: &'static str) {
+        let before = self.labels.insert(name, self.program.len());
+        assert!(before.is_none(), "two labels {name}");
+    }
+
+    /// Where a constant lies.
+    fn constant(&mut self, value: u8) -> u8 {
+        let next = TOP - self.constants.len() as u8;
+        *self.constants.entry(value).or_insert(next)
+    }
+
+    /// X <= where these bytes lie, up to the end of the memory; takes A.
+    pub(super) fn index_table(&mut self, bytes: [u8; 4]) {
+        self.table = bytes;
+        self.load_number(TABLE);
+        self.acts(TAX);
+    }
+
+    /// A <= the byte at this address.
+    pub(super) fn load(&mut self, address: u8) {
+        self.program.push(SETS | Code::from(address));
+    }
+
+    /// A <= this number.
+    pub(super) fn load_number(&mut self, number: u8) {
+        let address = self.constant(number);
+        self.load(address);
+    }
+
+    /// A <= what this says; `operand` is the byte of a word, or the number of a port.
+    pub(super) fn load_from(&mut self, source: Source, operand: u8) {
+        self.program.push(SETS | (source as Code) << 8 | Code::from(operand));
+    }
+
+    /// A <= the byte at X, then X <= X + 1.
+    pub(super) fn load_next(&mut self) {
+        self.program.push(SETS | (Source::DataAtX as Code) << 8 | ACTS | INX);
+    }
+
+    /// A <= X.
+    pub(super) fn load_x(&mut self) {
+        self.load_from(Source::X, 0);
+    }
+
+    /// A <= A xor the byte at this address.
+    pub(super) fn xor(&mut self, address: u8) {
+        self.program.push(SETS | XOR | Code::from(address));
+    }
+
+    /// A <= A xor the byte at X.
+    pub(super) fn xor_at_x(&mut self) {
+        self.program.push(SETS | XOR | (Source::DataAtX as Code) << 8);
+    }
+
+    /// A <= A xor this number.
+    pub(super) fn xor_number(&mut self, number: u8) {
+        let address = self.constant(number);
+        self.xor(address);
+    }
+
+    /// The byte at this address <= A.
+    pub(super) fn store(&mut self, address: u8) {
+        self.program.push(STORES | Code::from(address));
+    }
+
+    /// The byte at X <= A, then X <= X + 1.
+    pub(super) fn store_next(&mut self) {
+        self.program.push(STORES | INDEXED | ACTS | INX);
+    }
+
+    /// A goes to the host.
+    pub(super) fn send(&mut self) {
+        self.acts(GOES | WAIT);
+    }
+
+    /// Does all of this.
+    pub(super) fn acts(&mut self, what: Code) {
+        self.program.push(ACTS | what);
+    }
+
+    /// Goes on there.
+    pub(super) fn jump(&mut self, to: &'static str) {
+        self.jump_if(Condition::Always, to);
+    }
+
+    /// Goes on there where the condition holds.
+    pub(super) fn jump_if(&mut self, condition: Condition, to: &'static str) {
+        self.jumps.push((self.program.len(), to));
+        self.program.push(JUMPS | (condition as Code) << 8);
+    }
+
+    /// Goes on there where it does not.
+    pub(super) fn jump_unless(&mut self, condition: Condition, to: &'static str) {
+        self.jump_if(condition, to);
+        if let Some(code) = self.program.last_mut() {
+            *code |= UNLESS;
+        }
+    }
+
+    /// The finished program.
+    pub(super) fn finish(mut self) -> Image {
+        for (at, label) in core::mem::take(&mut self.jumps) {
+            self.program[at] |= self.labels[label] as Code;
+        }
+        assert!(self.program.len() <= SIZE, "{} instructions are too many", self.program.len());
+        let mut data = vec![0; SIZE];
+        for (&value, &address) in &self.constants {
+            data[usize::from(address)] = value;
+        }
+        data[TABLE.into()..].copy_from_slice(&self.table);
+        Image { program: self.program, data }
+    }
+}

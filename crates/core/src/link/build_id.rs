@@ -1,0 +1,82 @@
+//! Which gateware this is: a driver refuses any other than it was made for.
+
+use super::registers::{PROTOCOL_VERSION, REGISTERS};
+use super::{ANSWER, registers};
+use crate::EngineBuild;
+use alloc::borrow::ToOwned;
+use alloc::format;
+use alloc::string::String;
+use core::fmt;
+use sha2::{Digest, Sha256};
+
+/// A hash of the register map and of all build parameters: the first 64 bits of a SHA-256.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct BuildId(pub u64);
+
+impl BuildId {
+    /// The id of a build; `line` says what else the link is built with (its baud rate, for one).
+    pub fn new(build: &EngineBuild, line: &str) -> Self {
+        let mut hash = Sha256::new();
+        for part in [protocol(), parameters(build), line.to_owned()] {
+            hash.update(part);
+            hash.update("\n--\n");
+        }
+        let digest = hash.finalize();
+        Self(digest.iter().take(8).fold(0, |id, &byte| id << 8 | u64::from(byte)))
+    }
+
+    /// As registers [`registers::BUILD_LOW`] and [`registers::BUILD_HIGH`] give it.
+    pub const fn halves(self) -> [u32; 2] {
+        [self.0 as u32, (self.0 >> 32) as u32]
+    }
+}
+
+impl fmt::Display for BuildId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
+    }
+}
+
+/// The map and the answer, in words.
+fn protocol() -> String {
+    let registers = REGISTERS.iter().map(|row| format!("{row:?}\n"));
+    let answer = ANSWER.iter().map(|row| format!("{row:?}\n"));
+    let version = format!("protocol {PROTOCOL_VERSION}, {} words\n", registers::PER_AXIS);
+    [version].into_iter().chain(registers).chain(answer).collect()
+}
+
+/// All parameters: a field that is added to a build is in here by itself.
+fn parameters(build: &EngineBuild) -> String {
+    format!("{build:?}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{AXES, Build, PinTiming, StartPhase, Timebase};
+
+    #[test]
+    fn every_parameter_makes_another_build() {
+        let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
+        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+        let build = EngineBuild::minimal(&build, 1);
+        let id = |change: fn(&mut EngineBuild)| {
+            let mut other = build.clone();
+            change(&mut other);
+            BuildId::new(&other, "uart")
+        };
+        let ids = [
+            id(|_| ()),
+            id(|build| build.pins[5].hold = 2),
+            id(|build| build.guard.watchdog = 9),
+            id(|build| build.guard.stop[0] = 2),
+            id(|build| build.phase = StartPhase::Zero),
+            id(|build| build.timebase = Timebase::new(48_000_000, 2000, 4).unwrap()),
+            BuildId::new(&build, "spi"),
+        ];
+        for (index, one) in ids.iter().enumerate() {
+            assert!(!ids[..index].contains(one), "{index}");
+        }
+        assert_eq!(ids[0], BuildId::new(&build, "uart"));
+    }
+}

@@ -1,0 +1,111 @@
+//! The UART of a build: its baud rate, as whole clocks a bit.
+
+use super::{BuildId, Line};
+use crate::EngineBuild;
+use core::fmt;
+use thiserror::Error;
+
+/// The baud rate of a machine file that names none.
+pub const DEFAULT_BAUD: u32 = 921_600;
+
+/// Fewest clocks of a bit: the line is seen two clocks late, and each byte costs the link some instructions.
+pub const MIN_BIT_CLOCKS: u32 = 8;
+
+/// Most clocks of a bit: one and a half of them are counted in 16 bits.
+pub const MAX_BIT_CLOCKS: u32 = 40_000;
+
+/// How far a baud rate may be from what was asked for, in percent: both ends together may be off by 4.
+pub const BAUD_PERCENT: u64 = 2;
+
+/// A UART that the clock can make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Uart {
+    baud: u32,
+    bit_clocks: u32,
+}
+
+/// A baud rate that the clock cannot make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error(
+    "a clock of {clock_hz} Hz does not make {baud} baud within {BAUD_PERCENT} %: the next ones that it makes are {below} and {above}"
+)]
+pub struct BaudError {
+    /// What was asked for.
+    pub baud: u32,
+    /// The clock, Hz.
+    pub clock_hz: u64,
+    /// The next lower baud rate that fits.
+    pub below: u64,
+    /// The next higher.
+    pub above: u64,
+}
+
+impl Uart {
+    /// The UART of this baud rate at a clock, Hz.
+    ///
+    /// ```
+    /// use crate::link::Uart;
+    /// assert_eq!(Uart::new(48_000_000, 921_600).unwrap().bit_clocks(), 52);
+    /// assert!(Uart::new(48_000_000, 5_600_000).is_err());
+    /// ```
+    ///
+    /// # Errors
+    /// [`BaudError`]: no number of clocks comes within 2 %; it names the baud rates beside it.
+    pub fn new(clock_hz: u64, baud: u32) -> Result<Self, BaudError> {
+        let (least, most) = (u64::from(MIN_BIT_CLOCKS), u64::from(MAX_BIT_CLOCKS));
+        let asked = u64::from(baud.max(1));
+        let bit_clocks = ((2 * clock_hz + asked) / (2 * asked)).clamp(least, most);
+        // clock / bit_clocks against baud, without a division.
+        let off = clock_hz.abs_diff(asked * bit_clocks);
+        if baud == 0 || 100 * u128::from(off) > u128::from(BAUD_PERCENT) * u128::from(asked * bit_clocks) {
+            let slower = clock_hz.div_ceil(asked).clamp(least, most);
+            let faster = (clock_hz / asked).clamp(least, most);
+            return Err(BaudError { baud, clock_hz, below: clock_hz / slower, above: clock_hz / faster });
+        }
+        Ok(Self { baud, bit_clocks: bit_clocks as u32 })
+    }
+
+    /// Bits per second, as asked for: what the host sets.
+    pub const fn baud(self) -> u32 {
+        self.baud
+    }
+
+    /// Clocks of a bit, from [`MIN_BIT_CLOCKS`] to [`MAX_BIT_CLOCKS`].
+    pub const fn bit_clocks(self) -> u32 {
+        self.bit_clocks
+    }
+
+    /// The id of a build with this UART.
+    pub fn build_id(self, build: &EngineBuild) -> BuildId {
+        Line::from(self).build_id(build)
+    }
+}
+
+/// What the build id is made of: two baud rates of one divider are one build.
+impl fmt::Display for Uart {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "uart, {} clocks a bit", self.bit_clocks)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::ToString as _;
+
+    #[test]
+    fn the_nearest_divider_is_taken_and_a_far_one_refused() {
+        let clocks = |clock_hz, baud| Uart::new(clock_hz, baud).map(Uart::bit_clocks);
+        assert_eq!(clocks(48_000_000, 3_000_000), Ok(16));
+        assert_eq!(clocks(48_000_000, 115_200), Ok(417));
+        assert_eq!(clocks(12_000_000, 921_600), Ok(13));
+        assert_eq!(clocks(48_000_000, 3_060_000), Ok(16));
+        let said = clocks(48_000_000, 3_100_000).unwrap_err().to_string();
+        assert!(said.ends_with("the next ones that it makes are 3000000 and 3200000"), "{said}");
+        for (clock_hz, baud) in
+            [(48_000_000, 0), (48_000_000, u32::MAX), (48_000_000, 1), (1, 9600), (12_000_000, 3_000_000)]
+        {
+            clocks(clock_hz, baud).unwrap_err();
+        }
+    }
+}

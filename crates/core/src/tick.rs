@@ -1,0 +1,237 @@
+//! Which ticks a clock can have: a whole number of ns, of clocks, and of clocks in each phase.
+//!
+//! The machine file gives the tick in whole ns, so that all ticks of a clock are multiples of one grain:
+//! `lcm(phases, clock_hz / gcd(clock_hz, 10^9))` clocks.
+
+use crate::build::{MAX_CLOCK_HZ, MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
+use crate::engine;
+use alloc::borrow::ToOwned;
+use alloc::format;
+use alloc::string::String;
+use core::fmt;
+
+/// A machine file without `tick_ns` has this tick, ns, at [`FIXED_CLOCK_HZ`].
+const FIXED_TICK_NS: u64 = 1000;
+
+/// The default clock, Hz. Its default tick is fixed, and not the shortest that an engine takes.
+pub const FIXED_CLOCK_HZ: u64 = 48_000_000;
+
+/// A tick that is chosen and longer than this, ns, comes with a proposal of fewer phases, where they shorten it.
+const LONG_NS: u64 = 4000;
+
+/// Phases that are proposed for a tick that is too long.
+const FEWER_PHASES: u32 = 4;
+
+/// All ticks of a clock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ticks {
+    grain_clocks: u64,
+    grain_ns: u64,
+}
+
+impl Ticks {
+    /// The ticks of a clock, Hz, that divide into so many phases; `None` where even the shortest has more
+    /// clocks than a tick can have.
+    pub fn of(clock_hz: u64, phases: u32) -> Option<Self> {
+        const NS: u64 = 1_000_000_000;
+        if !(1..=MAX_CLOCK_HZ).contains(&clock_hz) {
+            return None;
+        }
+        let clocks = clock_hz / gcd(clock_hz, NS);
+        let phases = u64::from(phases).max(1);
+        let grain_clocks = clocks / gcd(clocks, phases) * phases;
+        if grain_clocks > u64::from(MAX_CLOCKS) {
+            return None;
+        }
+        Some(Self { grain_clocks, grain_ns: grain_clocks * NS / clock_hz })
+    }
+
+    /// All ticks are multiples of this, ns.
+    pub const fn grain_ns(&self) -> u64 {
+        self.grain_ns
+    }
+
+    /// The shortest tick of at least so many clocks, and no fewer than any tick has, ns; `None` where that is over the most
+    /// that there can be.
+    pub fn shortest(&self, clocks: u32) -> Option<u64> {
+        let grains = u64::from(clocks.max(MIN_CLOCKS_PER_TICK)).div_ceil(self.grain_clocks);
+        (grains <= self.most()).then_some(grains * self.grain_ns)
+    }
+
+    /// The nearest ticks that are shorter and longer than this one, ns, both of at least so many clocks.
+    pub fn beside(&self, tick_ns: u64, clocks: u32) -> (Option<u64>, Option<u64>) {
+        let Some(shortest) = self.shortest(clocks) else { return (None, None) };
+        let longest = self.most() * self.grain_ns;
+        let below = (tick_ns.saturating_sub(1) / self.grain_ns * self.grain_ns).min(longest);
+        let above = (tick_ns / self.grain_ns).saturating_add(1).saturating_mul(self.grain_ns).max(shortest);
+        ((below >= shortest).then_some(below), (above <= longest).then_some(above))
+    }
+
+    /// Grains of the longest tick.
+    fn most(&self) -> u64 {
+        u64::from(MAX_CLOCKS) / self.grain_clocks
+    }
+
+    /// The shortest tick that an engine of so many axes takes, ns.
+    pub fn for_engine(clock_hz: u64, phases: u32, axes: usize) -> Option<u64> {
+        Self::of(clock_hz, phases)?.shortest(engine::least_clocks(axes, phases))
+    }
+}
+
+/// The tick of a machine file that gives none, in ns, or what is said where there is none.
+///
+/// It is the shortest that an engine of its axes takes, which the parallel core takes too: one machine has one tick,
+/// whichever core it runs on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ChosenTick {
+    /// Hz.
+    pub clock_hz: u64,
+    /// ns.
+    pub tick_ns: u64,
+    /// 1, 4 or 16.
+    pub phases: u32,
+    /// Axes of the machine.
+    pub axes: usize,
+    /// The tick that fewer phases would allow, ns, where this one is long and that one is shorter.
+    pub fewer_phases_ns: Option<u64>,
+}
+
+impl ChosenTick {
+    /// The shortest tick for an engine; `None` where the clock has none.
+    pub fn new(clock_hz: u64, phases: u32, axes: usize) -> Option<Self> {
+        let tick_ns = Ticks::for_engine(clock_hz, phases, axes)?;
+        let fewer = (tick_ns > LONG_NS && phases > FEWER_PHASES)
+            .then(|| Ticks::for_engine(clock_hz, FEWER_PHASES, axes))
+            .flatten();
+        let fewer_phases_ns = fewer.filter(|&shorter| shorter < tick_ns);
+        Some(Self { clock_hz, tick_ns, phases, axes, fewer_phases_ns })
+    }
+
+    /// What fewer phases would do, where that is proposed.
+    pub fn proposal(&self) -> Option<String> {
+        let Self { fewer_phases_ns, tick_ns, .. } = self;
+        fewer_phases_ns
+            .map(|shorter| format!("{tick_ns} ns is long: `phases = {FEWER_PHASES}` would allow {shorter} ns"))
+    }
+}
+
+impl fmt::Display for ChosenTick {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { clock_hz, tick_ns, phases, axes, .. } = self;
+        let axes = counted(*axes);
+        write!(f, "tick_ns = {tick_ns}, the shortest at {} MHz in {phases} phases with {axes}", mhz(*clock_hz))?;
+        self.proposal().map_or(Ok(()), |proposal| write!(f, "; {proposal}"))
+    }
+}
+
+/// The tick of a clock whose machine file gives none: fixed at the default clock, otherwise the one that is chosen.
+pub fn default_tick(clock_hz: u64, phases: u32, axes: usize) -> Option<(u64, Option<ChosenTick>)> {
+    if clock_hz == FIXED_CLOCK_HZ {
+        return Some((FIXED_TICK_NS, None));
+    }
+    ChosenTick::new(clock_hz, phases, axes).map(|chosen| (chosen.tick_ns, Some(chosen)))
+}
+
+/// The ticks beside one that cannot be, and what an engine takes: a help line.
+pub fn nearest_ticks(clock_hz: u64, tick_ns: u64, phases: u32, axes: usize) -> String {
+    let at = format!("at {} MHz in {phases} phases", mhz(clock_hz));
+    let Some(ticks) = Ticks::of(clock_hz, phases) else {
+        return format!("{at} no tick of whole ns is a whole number of clocks; a multiple of 1 MHz has ticks");
+    };
+    let nearest = match ticks.beside(tick_ns, MIN_CLOCKS_PER_TICK) {
+        (Some(below), Some(above)) => format!("{below} ns and {above} ns are the nearest ticks"),
+        (Some(one), None) | (None, Some(one)) => format!("{one} ns is the nearest tick"),
+        (None, None) => "there is no tick".to_owned(),
+    };
+    let engine = ticks.shortest(engine::least_clocks(axes, phases));
+    let engine =
+        engine.map_or_else(String::new, |ns| format!("; an engine of {} takes {ns} ns or more", counted(axes)));
+    let finer =
+        Ticks::of(clock_hz, FEWER_PHASES).filter(|finer| phases > FEWER_PHASES && finer.grain_ns < ticks.grain_ns);
+    let finer = finer.map_or_else(String::new, |finer| {
+        format!("; `phases = {FEWER_PHASES}` allows multiples of {} ns", finer.grain_ns)
+    });
+    format!("{at}, {nearest}{engine}{finer}")
+}
+
+/// `1 axis`, `6 axes`.
+fn counted(axes: usize) -> String {
+    if axes == 1 { "1 axis".to_owned() } else { format!("{axes} axes") }
+}
+
+/// MHz as exactly as Hz are.
+pub fn mhz(hz: u64) -> String {
+    let digits = format!("{}.{:06}", hz / 1_000_000, hz % 1_000_000);
+    digits.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::build::Timebase;
+    use alloc::string::ToString as _;
+
+    #[test]
+    fn common_clocks_have_the_shortest_tick_that_six_axes_take() {
+        let chosen = |mhz: u64| ChosenTick::new(mhz * 1_000_000, 16, 6).unwrap();
+        let ticks = [25, 27, 50, 80, 100, 125].map(|mhz| chosen(mhz).tick_ns);
+        assert_eq!(ticks, [3200, 16_000, 1600, 1000, 800, 640]);
+        assert_eq!(chosen(27).fewer_phases_ns, Some(4000));
+        assert_eq!(chosen(25).fewer_phases_ns, None);
+        assert_eq!(
+            chosen(27).to_string(),
+            "tick_ns = 16000, the shortest at 27 MHz in 16 phases with 6 axes; 16000 ns is long: `phases = 4` would \
+             allow 4000 ns"
+        );
+    }
+
+    #[test]
+    fn the_chosen_tick_is_the_shortest_of_all_that_fit() {
+        for clock_hz in
+            [1_000_000, 12_000_000, 12_288_000, 25_000_000, 27_000_000, 33_300_000, 125_000_000, 999_000_000]
+        {
+            for phases in [1, 4, 16] {
+                for axes in 1..=8 {
+                    let fits = |ns: &u64| {
+                        Timebase::new(clock_hz, *ns, phases)
+                            .is_ok_and(|time| engine::check_schedule(axes, &time).is_ok())
+                    };
+                    let searched = (1..=200_000_u64).find(fits);
+                    assert_eq!(Ticks::for_engine(clock_hz, phases, axes), searched, "{clock_hz} Hz, {phases}, {axes}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ticks_beside_another_fit_and_none_is_nearer() {
+        let fits = |hz, ns: u64| Timebase::new(hz, ns, 16).is_ok();
+        for hz in [25_000_000, 27_000_000, 48_000_000, 100_000_000] {
+            let ticks = Ticks::of(hz, 16).unwrap();
+            for tick in [1, 100, 640, 1000, 1001, 15_999, 16_000, 100_000] {
+                let (below, above) = ticks.beside(tick, MIN_CLOCKS_PER_TICK);
+                assert_eq!(below, (1..tick).rev().find(|&ns| fits(hz, ns)), "{hz} Hz, {tick} ns");
+                assert_eq!(above, (tick + 1..tick + 100_000).find(|&ns| fits(hz, ns)), "{hz} Hz, {tick} ns");
+            }
+        }
+        // The longest tick of 1 GHz has 65536 clocks.
+        assert_eq!(Ticks::of(1_000_000_000, 16).unwrap().beside(1_000_000, 16), (Some(65_536), None));
+    }
+
+    #[test]
+    fn megahertz_are_as_exact_as_hertz() {
+        let shown = [48_000_000, 37_500_000, 1, 100_000_001].map(mhz);
+        assert_eq!(shown, ["48", "37.5", "0.000001", "100.000001"]);
+    }
+
+    #[test]
+    fn a_clock_without_ticks_says_so() {
+        assert_eq!([33_333_333, 0, u64::MAX].map(|hz| Ticks::of(hz, 16)), [None; 3]);
+        assert_eq!(Ticks::of(48_000_000, u32::MAX), None);
+        assert!(nearest_ticks(33_333_333, 1000, 16, 6).contains("no tick of whole ns"));
+    }
+}

@@ -1,0 +1,202 @@
+//! `[[machine.axis]]`: units, limits and driver of an axis, each checked against the timebase.
+
+use super::home::{RawHome, RawPlace};
+use super::{Axis, stop};
+use crate::decimal;
+use crate::did_you_mean;
+use crate::driver::drivers;
+use crate::error::{InputError, Source, quoted};
+use crate::number::positive;
+use crate::unit::Unit;
+use bigdecimal::{BigDecimal, Zero};
+use carrystep_core::build::{MAX_CLOCKS, PinTiming, Timebase};
+use serde::Deserialize;
+use std::ops::Range;
+use toml::Spanned;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a [[machine.axis]] table")]
+pub(super) struct RawAxis {
+    pub(super) name: Spanned<String>,
+    pub(super) steps_per_unit: Option<Spanned<f64>>,
+    pub(super) unit: Option<Spanned<String>>,
+    pub(super) lead: Option<Spanned<f64>>,
+    pub(super) steps_per_rev: Option<Spanned<u32>>,
+    pub(super) microsteps: Option<Spanned<u32>>,
+    pub(super) start_speed: Option<Spanned<f64>>,
+    pub(super) start_speed_per_min: Option<Spanned<f64>>,
+    pub(super) speed_limit: Option<Spanned<f64>>,
+    pub(super) speed_limit_per_min: Option<Spanned<f64>>,
+    accel_limit: Spanned<f64>,
+    jerk_limit: Option<Spanned<f64>>,
+    stop_accel: Option<Spanned<f64>>,
+    driver: Option<Spanned<String>>,
+    step_ns: Option<Spanned<u64>>,
+    gap_ns: Option<Spanned<u64>>,
+    setup_ns: Option<Spanned<u64>>,
+    hold_ns: Option<Spanned<u64>>,
+    travel: Option<Spanned<Vec<Spanned<f64>>>>,
+    home: Option<Spanned<RawHome>>,
+}
+
+impl RawAxis {
+    /// Takes out what is checked when the guard is known.
+    pub(super) fn place(&mut self) -> RawPlace {
+        RawPlace { travel: self.travel.take(), home: self.home.take() }
+    }
+
+    /// The axis; `table` is where its table stands.
+    pub(super) fn check(self, source: &Source, table: Range<usize>, timebase: &Timebase) -> Result<Axis, InputError> {
+        let name = self.name.as_ref().clone();
+        let fit = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(fit) || name.len() > 32 {
+            return Err(InputError::at(source, self.name.span(), format!("{:?} cannot name an axis", quoted(&name))).help(
+                "a name starts with a letter and has letters, digits and _ only, 32 at most: it becomes a signal name",
+            ));
+        }
+        let steps_per_unit = self.steps_per_unit(source, table.clone())?;
+        let unit = self.unit(source, &steps_per_unit)?;
+        let in_steps = |value: BigDecimal| value * &steps_per_unit;
+        let start = self.start_speed(source, &steps_per_unit)?;
+        let speed = self.speed_limit(source, table, &steps_per_unit)?;
+        let accel_limit = in_steps(positive(source, &self.accel_limit, "accel_limit")?);
+        not_too_slow(source, speed.span.clone(), speed.key, &speed.steps, (&unit, 1))?;
+        not_too_slow(source, self.accel_limit.span(), "accel_limit", &accel_limit, (&unit, 2))?;
+        let jerk_limit = match &self.jerk_limit {
+            None => None,
+            Some(value) => Some(in_steps(positive(source, value, "jerk_limit")?)),
+        };
+        if let Some(start) = start.as_ref().filter(|start| start.steps > speed.steps) {
+            let message = format!("{} is over {}", start.key, speed.key);
+            return Err(InputError::at(source, start.span.clone(), message)
+                .help("the start speed is part of the speed range: at most speed_limit"));
+        }
+        let start_speed = start.map_or_else(BigDecimal::zero, |start| start.steps);
+        let (pins_ns, pins) = self.pins(source, timebase)?;
+        let stop = match &self.stop_accel {
+            None => stop::at_the_limit(&accel_limit, timebase),
+            Some(value) => stop::units(source, value, &steps_per_unit, &unit, timebase)?,
+        };
+        let axis = Axis {
+            name,
+            steps_per_unit,
+            unit,
+            start_speed,
+            speed_limit: speed.steps,
+            accel_limit,
+            jerk_limit,
+            stop,
+            pins_ns,
+            pins,
+            travel: None,
+            home: None,
+        };
+        axis.check_speed(source, speed.span, timebase)?;
+        axis.check_acceleration(source, self.accel_limit.span(), timebase)?;
+        Ok(axis)
+    }
+
+    /// Width, gap, set-up and hold, from the driver's preset and what overrides it.
+    fn pins(&self, source: &Source, timebase: &Timebase) -> Result<([u64; 4], PinTiming), InputError> {
+        let preset = match &self.driver {
+            None => None,
+            Some(name) => Some(drivers().get(name.as_ref().as_str()).ok_or_else(|| {
+                let known: Vec<&str> = drivers().keys().map(String::as_str).collect();
+                let meant = did_you_mean(name.as_ref(), known.iter().copied());
+                InputError::at(source, name.span(), format!("no driver is called '{}'{meant}", quoted(name.as_ref())))
+                    .help(format!("known: {}; or give step_ns, gap_ns, setup_ns and hold_ns", known.join(", ")))
+            })?),
+        };
+        let mut ns = [0; 4];
+        let mut clocks = [0; 4];
+        let rows = [
+            ("step_ns", &self.step_ns, preset.map(|d| d.step_ns)),
+            ("gap_ns", &self.gap_ns, preset.map(|d| d.gap_ns)),
+            ("setup_ns", &self.setup_ns, preset.map(|d| d.setup_ns)),
+            ("hold_ns", &self.hold_ns, preset.map(|d| d.hold_ns)),
+        ];
+        for (slot, (key, given, default)) in rows.into_iter().enumerate() {
+            let Some(value) = given.as_ref().map(|v| *v.as_ref()).or(default) else {
+                return Err(InputError::at(
+                    source,
+                    self.name.span(),
+                    format!("axis '{}' has no driver and no {key}", self.name.as_ref()),
+                )
+                .help("name a driver, or give step_ns, gap_ns, setup_ns and hold_ns"));
+            };
+            ns[slot] = value;
+            let span = given.as_ref().map_or_else(|| self.name.span(), Spanned::span);
+            let exact = timebase.clocks_for_ns(value);
+            clocks[slot] = u32::try_from(exact).ok().filter(|&c| c < MAX_CLOCKS).ok_or_else(|| {
+                InputError::at(
+                    source,
+                    span,
+                    format!("{key} = {value} ns is {exact} clocks: the timers count to {}", MAX_CLOCKS - 1),
+                )
+            })?;
+        }
+        Ok((ns, PinTiming { width: clocks[0], gap: clocks[1], setup: clocks[2], hold: clocks[3] }))
+    }
+}
+
+/// Limits under a thousandth of a step ask for plans of months, and are too coarse in units of 2^-64 step per tick.
+fn not_too_slow(
+    source: &Source,
+    span: Range<usize>,
+    key: &str,
+    limit: &BigDecimal,
+    (unit, seconds): (&Unit, u32),
+) -> Result<(), InputError> {
+    let least = BigDecimal::new(1.into(), 3);
+    if *limit >= least {
+        return Ok(());
+    }
+    let limit = unit.both(decimal::to_f64(limit), seconds);
+    let least = Unit::new(None, 1.0).own(decimal::to_f64(&least), seconds);
+    Err(InputError::at(source, span, format!("{key} is {limit}: under {least}"))
+        .help("check steps_per_unit and the unit of the limit; a moving axis makes a step in a quarter of an hour"))
+}
+
+impl Axis {
+    /// Under half a step per tick, and a period that the driver's width and gap allow.
+    fn check_speed(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
+        let limit = self.unit.both(decimal::to_f64(&self.speed_limit), 1);
+        let doubled = &self.speed_limit * BigDecimal::from(2 * timebase.tick_ns());
+        if doubled >= 1_000_000_000 {
+            let half = self.unit.at_most(0.5e9 / timebase.tick_ns() as f64, 1);
+            return Err(InputError::at(source, span, format!("speed_limit is {limit}: half a step per tick or more"))
+                .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
+        }
+        let PinTiming { width, gap, .. } = self.pins;
+        let clocks = u64::from(width) + u64::from(gap) + u64::from(timebase.clocks_per_phase());
+        if &self.speed_limit * BigDecimal::from(clocks) > timebase.clock_hz() {
+            let most = self.unit.at_most(timebase.clock_hz() as f64 / clocks as f64, 1);
+            return Err(InputError::at(
+                source,
+                span,
+                format!("speed_limit is {limit}: over what the driver's width and gap allow"),
+            )
+            .help(format!(
+                "a pulse takes {width} + {gap} clocks and one phase of {}: at most {most}",
+                timebase.clocks_per_phase()
+            )));
+        }
+        Ok(())
+    }
+
+    /// Under half a step per tick squared, so that A fits its register.
+    fn check_acceleration(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
+        let tick = BigDecimal::from(timebase.tick_ns());
+        if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {
+            let limit = self.unit.both(decimal::to_f64(&self.accel_limit), 2);
+            let half = self.unit.at_most(0.5e18 / (timebase.tick_ns() as f64).powi(2), 2);
+            return Err(InputError::at(
+                source,
+                span,
+                format!("accel_limit is {limit}: half a step per tick^2 or more"),
+            )
+            .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,129 @@
+//! `[machine.guard]`: what stops the axes, in the units of the file, counted in rounds of ticks.
+//!
+//! Every time is rounded up. The round is the shortest that can count all of them, because it is also the
+//! time from one look at a limit to the next.
+
+use crate::error::{InputError, Source};
+use crate::number::not_negative;
+use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
+use carrystep_core::build::Timebase;
+use carrystep_core::engine::{Guard, Limits, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS};
+use serde::Deserialize;
+use toml::Spanned;
+
+/// The table as the file has it.
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, expecting = "a [machine.guard] table")]
+pub(super) struct RawGuard {
+    watchdog_ms: Option<Spanned<f64>>,
+    enable_ms: Option<Spanned<f64>>,
+    debounce_us: Option<Spanned<f64>>,
+    #[serde(default)]
+    estop: Active,
+    #[serde(default)]
+    limits: Limits,
+    #[serde(default)]
+    limit_level: Active,
+    #[serde(default)]
+    limit_stop: LimitStop,
+}
+
+/// The level of a pin that means something.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Active {
+    #[default]
+    High,
+    Low,
+}
+
+/// How a limit stops the axes.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum LimitStop {
+    #[default]
+    Ramp,
+    Freeze,
+}
+
+/// A time of the guard: its key, the ns of its unit, its default in that unit, and how far it can be counted.
+struct Key {
+    name: &'static str,
+    unit_ns: u64,
+    default: u64,
+    most: u32,
+    /// Zero means that there is none; otherwise one is counted at least.
+    can_be_off: bool,
+}
+
+const WATCHDOG: Key = Key { name: "watchdog_ms", unit_ns: 1_000_000, default: 100, most: MAX_ROUNDS, can_be_off: true };
+const ENABLE: Key = Key { name: "enable_ms", unit_ns: 1_000_000, default: 1, most: MAX_ROUNDS, can_be_off: true };
+const DEBOUNCE: Key = Key { name: "debounce_us", unit_ns: 1000, default: 500, most: MAX_LOOKS, can_be_off: false };
+
+impl RawGuard {
+    /// The guard, with the ramps of `stop`.
+    pub(super) fn check(self, source: &Source, timebase: &Timebase, stop: Vec<u64>) -> Result<Guard, InputError> {
+        let time = |key: Key, given: &Option<Spanned<f64>>| Time::new(source, timebase, key, given.as_ref());
+        let watchdog = time(WATCHDOG, &self.watchdog_ms)?;
+        let enable = time(ENABLE, &self.enable_ms)?;
+        let debounce = time(DEBOUNCE, &self.debounce_us)?;
+        // Each can be counted in the longest.
+        let fits = |round: &u32| [&watchdog, &enable, &debounce].iter().all(|time| time.fits(*round));
+        let round =
+            (1..).map(|power| 1 << power).take_while(|&round| round < MAX_ROUND).find(fits).unwrap_or(MAX_ROUND);
+        Ok(Guard {
+            round,
+            debounce: debounce.rounds(round),
+            watchdog: watchdog.rounds(round),
+            enable: enable.rounds(round),
+            limits: self.limits,
+            limit_freezes: self.limit_stop == LimitStop::Freeze,
+            estop_low: self.estop == Active::Low,
+            limits_low: self.limit_level == Active::Low,
+            stop,
+        })
+    }
+}
+
+/// A time that can be counted, if the round is long enough.
+struct Time {
+    key: Key,
+    ns: BigDecimal,
+    tick_ns: u64,
+}
+
+impl Time {
+    fn new(source: &Source, timebase: &Timebase, key: Key, given: Option<&Spanned<f64>>) -> Result<Self, InputError> {
+        let unit = BigDecimal::from(key.unit_ns);
+        let most = BigDecimal::from(u64::from(key.most - 1) * u64::from(MAX_ROUND) * timebase.tick_ns());
+        let Some(given) = given else {
+            let ns = (unit * BigDecimal::from(key.default)).min(most);
+            return Ok(Self { key, ns, tick_ns: timebase.tick_ns() });
+        };
+        let value = not_negative(source, given, key.name)?;
+        let ns = &value * &unit;
+        if ns > most {
+            let most = (most / unit).normalized();
+            let says = format!("{} = {value}: with ticks of {} ns at most {most}", key.name, timebase.tick_ns());
+            let off = if key.can_be_off { ", or 0 for none" } else { "" };
+            return Err(InputError::at(source, given.span(), format!("{says} can be counted"))
+                .help(format!("take a shorter time or a longer tick{off}")));
+        }
+        Ok(Self { key, ns, tick_ns: timebase.tick_ns() })
+    }
+
+    /// Rounds that last this long at least. The first one may be almost over when they begin, so one more.
+    fn rounds(&self, round: u32) -> u32 {
+        if self.key.can_be_off && self.ns.is_zero() {
+            return 0;
+        }
+        let round_ns = BigDecimal::from(u64::from(round) * self.tick_ns);
+        let below = (&self.ns / &round_ns).with_scale_round(0, RoundingMode::Floor);
+        let up = u32::from(&below * &round_ns < self.ns);
+        below.to_u32().unwrap_or(u32::MAX).saturating_add(up).saturating_add(1)
+    }
+
+    fn fits(&self, round: u32) -> bool {
+        self.rounds(round) <= self.key.most
+    }
+}

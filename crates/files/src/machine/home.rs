@@ -1,0 +1,284 @@
+//! `travel`, `home` and `home_order`: how each axis finds its limit switch, as integers of the engine.
+//!
+//! Speeds and accelerations are rounded down to 2^-64 step per tick (and tick^2), distances to the nearest step.
+
+use super::{Axis, stop};
+use crate::decimal;
+use crate::error::{InputError, Source};
+use crate::number::{exact, positive};
+use bigdecimal::{BigDecimal, ToPrimitive};
+use carrystep_core::build::Timebase;
+use carrystep_core::engine::{Guard, Limits};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use toml::Spanned;
+
+mod order;
+mod overrun;
+mod travel;
+
+pub(super) use order::RawOrder;
+pub use overrun::overrun;
+use overrun::{accepted, per_tick, steps_up};
+
+/// Most steps of a distance or of a machine coordinate: what a position register counts.
+const MOST_STEPS: i64 = i32::MAX as i64;
+
+/// Most ticks that a search may plan for: a segment holds 2^32 - 1 ticks.
+const MOST_TICKS: u128 = (u32::MAX / 4) as u128;
+
+/// An end of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum End {
+    /// The low end: its switch is `limit_min`, and the way there is negative.
+    Min,
+    /// The high end.
+    Max,
+}
+
+/// How an axis homes; every distance is 1 step or more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Home {
+    /// The end whose switch is searched for.
+    pub toward: End,
+    /// Speed from which the axis starts, 2^-64 step per tick.
+    pub start: u64,
+    /// Acceleration, 2^-64 step per tick^2, 1 or more.
+    pub accel: u64,
+    /// Speed of the search, 2^-64 step per tick.
+    pub seek: u64,
+    /// Speed of the approach that sets the position, 2^-64 step per tick.
+    pub slow: u64,
+    /// How far the axis moves away from the switch before a search, steps.
+    pub move_off: u32,
+    /// How far it searches at the most, steps.
+    pub max_travel: u32,
+    /// How far from the switch it rests at the end, steps.
+    pub pull_off: u32,
+    /// The machine coordinate of the place where the switch closes, steps.
+    pub position: i64,
+}
+
+/// `home = { ... }` as the file has it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table, as in home = { toward = \"min\", seek_speed = 20 }")]
+pub(super) struct RawHome {
+    toward: End,
+    seek_speed: Spanned<f64>,
+    slow_speed: Spanned<f64>,
+    move_off: Option<Spanned<f64>>,
+    max_travel: Option<Spanned<f64>>,
+    pull_off: Spanned<f64>,
+    position: Spanned<f64>,
+}
+
+/// What an axis' table says of its place.
+pub(super) struct RawPlace {
+    pub(super) travel: Option<Spanned<Vec<Spanned<f64>>>>,
+    pub(super) home: Option<Spanned<RawHome>>,
+}
+
+/// Gives the axes their travel and their homing, and returns the order in which they home, by their numbers.
+pub(super) fn check(
+    source: &Source,
+    timebase: &Timebase,
+    guard: &Guard,
+    axes: &mut [Axis],
+    places: Vec<RawPlace>,
+    order: Option<RawOrder>,
+) -> Result<Vec<Vec<usize>>, InputError> {
+    for (axis, RawPlace { travel, home }) in axes.iter_mut().zip(places) {
+        axis.travel = travel.map(|travel| travel::of(source, axis, &travel)).transpose()?;
+        let Some(home) = home else { continue };
+        if guard.limits == Limits::None {
+            let message =
+                format!("axis '{}' has no limit switch to home with: [machine.guard] limits is \"none\"", axis.name);
+            return Err(InputError::at(source, home.span(), message)
+                .help("limits = \"pair\", \"each\" or \"one\" says how the switches are wired"));
+        }
+        let span = home.span();
+        let checked = Checked { source, timebase, guard, axis: &*axis, span };
+        axis.home = Some(checked.home(&home.into_inner())?);
+    }
+    match order {
+        Some(order) => order::of(source, axes, order),
+        None => Ok(order::usual(axes)),
+    }
+}
+
+/// One home table on its way to integers.
+struct Checked<'a> {
+    source: &'a Source,
+    timebase: &'a Timebase,
+    guard: &'a Guard,
+    axis: &'a Axis,
+    span: Range<usize>,
+}
+
+impl Checked<'_> {
+    fn home(&self, raw: &RawHome) -> Result<Home, InputError> {
+        let accel = stop::at_the_limit(&self.axis.accel_limit, self.timebase);
+        let start = per_tick(&self.axis.start_speed, self.timebase);
+        let seek = self.speed(&raw.seek_speed, "seek_speed", &self.axis.speed_limit, "speed_limit")?;
+        let limit = positive(self.source, &raw.seek_speed, "seek_speed")? * &self.axis.steps_per_unit;
+        let slow = self.speed(&raw.slow_speed, "slow_speed", &limit, "seek_speed")?;
+        self.looks_often_enough(raw, slow)?;
+        let move_off = match &raw.move_off {
+            Some(value) => self.distance(value, "move_off")?,
+            None => self.usual_move_off()?,
+        };
+        self.moves_off(raw, seek, move_off)?;
+        let pull_off = self.distance(&raw.pull_off, "pull_off")?;
+        let least = steps_up(accepted(slow, self.guard)) + 1;
+        if u64::from(pull_off) < least {
+            let far = self.axis.unit.both(f64::from(pull_off), 0);
+            let message = format!("pull_off is {far}: the axis would rest on its switch");
+            return Err(self.at(&raw.pull_off, message).help(self.at_least(least)));
+        }
+        let max_travel = match (&raw.max_travel, self.axis.travel) {
+            (Some(value), _) => self.distance(value, "max_travel")?,
+            (None, Some([low, high])) => {
+                let most = (high - low).saturating_add(2 * i64::from(move_off)).min(MOST_STEPS);
+                most.to_u32().unwrap_or(u32::MAX)
+            }
+            (None, None) => return Err(self.missing("max_travel")),
+        };
+        if max_travel <= move_off {
+            let span = raw.max_travel.as_ref().map_or_else(|| self.span.clone(), Spanned::span);
+            let [far, off] = [max_travel, move_off].map(|steps| self.axis.unit.both(f64::from(steps), 0));
+            let message = format!("max_travel is {far}: not over move_off, which is {off}");
+            return Err(InputError::at(self.source, span, message)
+                .help("the search first goes back over what the axis has moved off"));
+        }
+        for (value, speed, steps) in [(&raw.seek_speed, seek, max_travel), (&raw.slow_speed, slow, move_off * 2)] {
+            self.ends(value, u128::from(steps) << 64, speed, accel)?;
+        }
+        let position = self.position(raw, pull_off)?;
+        Ok(Home { toward: raw.toward, start, accel, seek, slow, move_off, max_travel, pull_off, position })
+    }
+
+    /// An error at a number of the table.
+    fn at(&self, value: &Spanned<f64>, message: impl Into<String>) -> InputError {
+        InputError::at(self.source, value.span(), message)
+    }
+
+    fn at_least(&self, steps: u64) -> String {
+        format!("at least {} are needed", self.axis.unit.both(steps as f64, 0))
+    }
+
+    /// A speed of the file, at most another one in steps/s.
+    fn speed(&self, value: &Spanned<f64>, key: &str, most: &BigDecimal, of: &str) -> Result<u64, InputError> {
+        let steps = positive(self.source, value, key)? * &self.axis.steps_per_unit;
+        if steps > *most {
+            let most = self.axis.unit.at_most(decimal::to_f64(most), 1);
+            return Err(self.at(value, format!("{key} is over {of}")).help(format!("at most {most}")));
+        }
+        let speed = per_tick(&steps, self.timebase);
+        if speed == 0 {
+            return Err(self.at(value, format!("{key} is under 2^-64 step per tick")));
+        }
+        Ok(speed)
+    }
+
+    /// A distance of the file, in steps.
+    fn distance(&self, value: &Spanned<f64>, key: &str) -> Result<u32, InputError> {
+        let steps = positive(self.source, value, key)? * &self.axis.steps_per_unit;
+        let steps = decimal::round_half_away(&steps).unwrap_or(i64::MAX);
+        if steps > MOST_STEPS {
+            return Err(self.at(value, format!("{key} is over {MOST_STEPS} steps")));
+        }
+        u32::try_from(steps)
+            .ok()
+            .filter(|&steps| steps > 0)
+            .ok_or_else(|| self.at(value, format!("{key} is less than half a step")))
+    }
+
+    fn missing(&self, key: &str) -> InputError {
+        InputError::at(
+            self.source,
+            self.span.clone(),
+            format!("the home table of axis '{}' has no {key}", self.axis.name),
+        )
+        .help(format!("give {key}, or travel = [LOW, HIGH] in the axis' table, from which it follows"))
+    }
+
+    /// What a limit stop at full speed runs over its switch, and a hundredth of the travel.
+    fn usual_move_off(&self) -> Result<u32, InputError> {
+        let Some([low, high]) = self.axis.travel else { return Err(self.missing("move_off")) };
+        let full = overrun(per_tick(&self.axis.speed_limit, self.timebase), self.axis.stop, self.guard);
+        let steps = full.saturating_add((high - low).unsigned_abs().div_ceil(100));
+        match u32::try_from(steps) {
+            Ok(steps) if i64::from(steps) <= (high - low) / 2 => Ok(steps),
+            _ => {
+                let far = self.axis.unit.both(steps as f64, 0);
+                let message =
+                    format!("move_off would be {far}, from speed_limit and stop_accel: over half of the travel");
+                Err(InputError::at(self.source, self.span.clone(), message).help("give move_off in the home table"))
+            }
+        }
+    }
+
+    /// A switch that closes at the speed of the search must open again when the axis moves off.
+    fn moves_off(&self, raw: &RawHome, seek: u64, move_off: u32) -> Result<(), InputError> {
+        let least = overrun(seek, self.axis.stop, self.guard) + 1;
+        if u64::from(move_off) >= least {
+            return Ok(());
+        }
+        let span = raw.move_off.as_ref().map_or_else(|| self.span.clone(), Spanned::span);
+        let message = format!(
+            "move_off is {}: from seek_speed the axis runs {} over its switch until it rests",
+            self.axis.unit.both(f64::from(move_off), 0),
+            self.axis.unit.both((least - 1) as f64, 0)
+        );
+        let help = format!("{}, and the travel of the switch; or a slower seek_speed", self.at_least(least));
+        Err(InputError::at(self.source, span, message).help(help))
+    }
+
+    /// A limit is looked at once a round: the axis must not pass over a step meanwhile, or two homes differ by more than one.
+    fn looks_often_enough(&self, raw: &RawHome, slow: u64) -> Result<(), InputError> {
+        let ticks = u128::from(self.guard.round) + 2;
+        if u128::from(slow) * ticks <= 1 << 64 {
+            return Ok(());
+        }
+        let seconds = ticks as f64 * self.timebase.tick_ns() as f64 * 1e-9;
+        let most = self.axis.unit.at_most(1.0 / seconds, 1);
+        let message =
+            "slow_speed is over a step between two looks at the switch: two homes could differ by more than a step";
+        Err(self.at(&raw.slow_speed, message).help(format!(
+            "at most {most}; or a shorter watchdog_ms, enable_ms or debounce_us: the longest of them says how often \
+             a limit is looked at"
+        )))
+    }
+
+    /// A segment counts to 2^32 - 1 ticks.
+    fn ends(&self, value: &Spanned<f64>, units: u128, speed: u64, accel: u64) -> Result<(), InputError> {
+        let ticks = units / u128::from(speed) + u128::from(speed / accel);
+        if ticks <= MOST_TICKS {
+            return Ok(());
+        }
+        let seconds = |ticks: u128| ticks as f64 * self.timebase.tick_ns() as f64 * 1e-9;
+        let message = format!("at this speed the search takes up to {:.0} s", seconds(ticks));
+        Err(self.at(value, message).help(format!("at most {:.0} s can be counted", seconds(MOST_TICKS))))
+    }
+
+    /// The coordinate of the switch, and of the place where the axis rests then, inside of the travel.
+    fn position(&self, raw: &RawHome, pull_off: u32) -> Result<i64, InputError> {
+        let steps = exact(self.source, &raw.position, "position")? * &self.axis.steps_per_unit;
+        let position = decimal::round_half_away(&steps)
+            .filter(|steps| steps.abs() <= MOST_STEPS)
+            .ok_or_else(|| self.at(&raw.position, format!("position is over {MOST_STEPS} steps from zero")))?;
+        let Some([low, high]) = self.axis.travel else { return Ok(position) };
+        if !(low..=high).contains(&position) {
+            return Err(self.at(&raw.position, "position is outside of travel"));
+        }
+        let rests = match raw.toward {
+            End::Min => position + i64::from(pull_off),
+            End::Max => position - i64::from(pull_off),
+        };
+        if (low..=high).contains(&rests) {
+            return Ok(position);
+        }
+        Err(self.at(&raw.pull_off, "pull_off ends outside of travel"))
+    }
+}

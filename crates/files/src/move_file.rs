@@ -1,0 +1,286 @@
+//! The move file: which machine, and one move after the other.
+//!
+//! Targets add up as exact decimals; a move is the difference of two targets rounded to steps, so
+//! that rounding never accumulates.
+
+use crate::decimal;
+use crate::did_you_mean;
+use crate::error::{InputError, Source, quoted};
+use crate::machine::{Machine, RawMachine};
+use crate::number::{exact, positive};
+use bigdecimal::{BigDecimal, Zero};
+use carrystep_core::build::AXES;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use toml::Spanned;
+
+/// The speed profiles of the literature that a move can ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ProfileKind {
+    /// Ranade (2009): triangle whenever possible, else trapezoid at the speed limit.
+    Ranade,
+    /// From rest to rest at the acceleration limit.
+    Trapezoid,
+    /// Seven segments: limits on speed, acceleration and jerk.
+    Scurve,
+    /// Along a logistic curve: gentle at both ends, never quite at rest.
+    Logistic,
+    /// Acceleration as 1 - cos: jerk continuous too.
+    Sine,
+    /// One speed, at most the start speed.
+    Constant,
+}
+
+impl ProfileKind {
+    /// Every kind.
+    pub const ALL: [Self; 6] =
+        [Self::Ranade, Self::Trapezoid, Self::Scurve, Self::Logistic, Self::Sine, Self::Constant];
+
+    /// Whether cubic segments can only come close to it; the others they follow exactly.
+    pub const fn is_fitted(self) -> bool {
+        matches!(self, Self::Logistic | Self::Sine)
+    }
+}
+
+impl fmt::Display for ProfileKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ranade => "ranade",
+            Self::Trapezoid => "trapezoid",
+            Self::Scurve => "scurve",
+            Self::Logistic => "logistic",
+            Self::Sine => "sine",
+            Self::Constant => "constant",
+        })
+    }
+}
+
+/// Which way a move of several axes takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PathKind {
+    /// Each axis as its own limits allow, in the common time.
+    #[default]
+    Free,
+    /// All along one straight line: one profile, scaled for each axis.
+    Straight,
+}
+
+/// A checked move file.
+#[derive(Debug, Clone)]
+pub struct MoveFile {
+    /// The machine, inline or from its own file.
+    pub machine: Machine,
+    /// The moves in order.
+    pub moves: Vec<Move>,
+    /// The move file's text, for errors that are found later.
+    pub source: Source,
+}
+
+/// One move of all axes.
+#[derive(Debug, Clone)]
+pub struct Move {
+    /// Its speed profile.
+    pub profile: ProfileKind,
+    /// The way that its axes take together.
+    pub path: PathKind,
+    /// Seconds available; `None`: as fast as the limits allow.
+    pub time: Option<BigDecimal>,
+    /// How far an edge may be from a profile that has to be fitted, ns, at least 1; one tick where the file
+    /// does not say.
+    pub fit_ns: u64,
+    /// Steps of each axis of the machine, either sign.
+    pub steps: Vec<i64>,
+    /// What rounding to steps left over so far, per axis, in steps: exact target less rounded target.
+    pub rounding: Vec<f64>,
+    /// Its place in the move file.
+    pub span: Range<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a move file")]
+struct RawMoveFile {
+    machine_file: Option<Spanned<PathBuf>>,
+    machine: Option<RawMachine>,
+    #[serde(default, rename = "move")]
+    moves: Vec<Spanned<RawMove>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "moves")]
+struct RawMoves {
+    #[serde(default, rename = "move")]
+    moves: Vec<Spanned<RawMove>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a [[move]] table")]
+struct RawMove {
+    profile: Spanned<ProfileKind>,
+    #[serde(default)]
+    path: PathKind,
+    time: Option<Spanned<f64>>,
+    fit_ns: Option<Spanned<u64>>,
+    to: BTreeMap<Spanned<String>, Spanned<f64>>,
+}
+
+impl MoveFile {
+    /// Reads a move file, and the machine file that it names (relative to it).
+    ///
+    /// # Errors
+    /// [`InputError`] with file, line and column.
+    pub fn load(path: &Path) -> Result<Self, InputError> {
+        Self::from_source(Source::read(path)?)
+    }
+
+    /// Checks a move file whose text is already there; `source.path` is where a relative
+    /// `machine_file` starts from.
+    ///
+    /// # Errors
+    /// [`InputError`] with file, line and column.
+    pub fn from_source(source: Source) -> Result<Self, InputError> {
+        let raw: RawMoveFile = source.parse()?;
+        let machine_file = raw.machine_file.as_ref().map(Spanned::span);
+        let too_many = raw.machine.as_ref().and_then(RawMachine::seventh).or(machine_file);
+        let machine = match (raw.machine_file, raw.machine) {
+            (Some(file), None) => {
+                let path = source.path.parent().unwrap_or(Path::new("")).join(file.as_ref());
+                if !path.exists() {
+                    return Err(InputError::at(
+                        &source,
+                        file.span(),
+                        format!("there is no machine file {}", path.display()),
+                    )
+                    .help("the path is relative to the move file"));
+                }
+                // What cannot be read at all is wrong where it is named.
+                let named = |error: InputError| InputError::at(&source, file.span(), error.message);
+                Machine::from_source(&Source::read(&path).map_err(named)?)?
+            }
+            (None, Some(machine)) => machine.check(&source)?,
+            (Some(file), Some(_)) => {
+                return Err(InputError::at(&source, file.span(), "both machine_file and [machine] are given")
+                    .help("keep one of them"));
+            }
+            (None, None) => {
+                return Err(InputError::at(&source, 0..0, "no machine")
+                    .help("name a machine_file, or describe the [machine] here"));
+            }
+        };
+        Self::on(machine, source, raw.moves, too_many)
+    }
+
+    /// Checks moves for a machine that is known already: a move file without its machine.
+    ///
+    /// # Errors
+    /// [`InputError`] with line and column.
+    pub fn of_moves(machine: Machine, source: Source) -> Result<Self, InputError> {
+        let raw: RawMoves = source.parse()?;
+        Self::on(machine, source, raw.moves, None)
+    }
+
+    fn on(
+        machine: Machine,
+        source: Source,
+        raw: Vec<Spanned<RawMove>>,
+        too_many: Option<Range<usize>>,
+    ) -> Result<Self, InputError> {
+        if machine.axes.len() > AXES {
+            let message = format!("{} axes: moves are planned for at most {AXES}", machine.axes.len());
+            return Err(InputError::at(&source, too_many.unwrap_or(0..0), message));
+        }
+        if raw.is_empty() {
+            return Err(InputError::at(&source, 0..0, "no moves").help("add a [[move]] table"));
+        }
+        let moves = check_moves(&source, &machine, raw)?;
+        Ok(Self { machine, moves, source })
+    }
+
+    /// An error about one of the moves, with its place in the file.
+    pub fn move_error(&self, index: usize, message: impl Into<String>) -> InputError {
+        match self.moves.get(index) {
+            Some(found) => InputError::at(&self.source, found.span.clone(), message),
+            None => InputError::new(message),
+        }
+    }
+}
+
+fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -> Result<Vec<Move>, InputError> {
+    let mut targets = vec![BigDecimal::zero(); machine.axes.len()];
+    let mut positions = vec![0_i64; machine.axes.len()];
+    let mut moves = Vec::with_capacity(raw.len());
+    for entry in raw {
+        let span = entry.span();
+        let RawMove { profile, path, time, fit_ns, to } = entry.into_inner();
+        let time = time.map(|value| check_time(source, &value)).transpose()?;
+        let fit_ns = fit_ns.map_or(Ok(machine.timebase.tick_ns()), |value| check_fit(source, &value))?;
+        let before = positions.clone();
+        for (name, distance) in &to {
+            let axis = machine.axis_index(name.as_ref()).ok_or_else(|| {
+                let meant = did_you_mean(name.as_ref(), machine.axes.iter().map(|axis| &*axis.name));
+                let message = format!("the machine has no axis {:?}{meant}", quoted(name.as_ref()));
+                InputError::at(source, name.span(), message).help(format!("its axes are {}", machine.axis_names()))
+            })?;
+            if *profile.as_ref() == ProfileKind::Scurve && machine.axes[axis].jerk_limit.is_none() {
+                let message = format!("profile = \"scurve\": axis {:?} has no jerk_limit", name.as_ref());
+                return Err(InputError::at(source, profile.span(), message)
+                    .help("give the axis a jerk_limit in units/s^3, or take another profile"));
+            }
+            targets[axis] += exact(source, distance, name.as_ref())?;
+            let target = &targets[axis] * &machine.axes[axis].steps_per_unit;
+            positions[axis] = register(&target).ok_or_else(|| {
+                let unit = &machine.axes[axis].unit;
+                let at = unit.both(decimal::to_f64(&target), 0);
+                let message = format!("axis '{}' would stand at {at}, beyond its register", name.as_ref());
+                let most = unit.at_most(i32::MAX.into(), 0);
+                InputError::at(source, distance.span(), message)
+                    .help(format!("the sum of all moves must stay within +-{most} of the start"))
+            })?;
+        }
+        let rounding = targets.iter().zip(&machine.axes).zip(&positions);
+        let rounding = rounding.map(|((target, axis), &steps)| {
+            let left = decimal::to_f64(&(target * &axis.steps_per_unit - BigDecimal::from(steps)));
+            // A quotient's 60th place is no rounding of a target.
+            if left.abs() < 2_f64.powi(-64) { 0.0 } else { left }
+        });
+        moves.push(Move {
+            profile: profile.into_inner(),
+            path,
+            time,
+            fit_ns,
+            steps: positions.iter().zip(&before).map(|(now, old)| now - old).collect(),
+            rounding: rounding.collect(),
+            span,
+        });
+    }
+    Ok(moves)
+}
+
+/// Over zero, and short enough for every count of clocks.
+fn check_time(source: &Source, value: &Spanned<f64>) -> Result<BigDecimal, InputError> {
+    let time = positive(source, value, "time")?;
+    if time <= 1_000_000 {
+        return Ok(time);
+    }
+    let message = format!("time = {} s: a move takes at most 10^6 s", decimal::to_f64(&time));
+    Err(InputError::at(source, value.span(), message).help("split it into shorter moves"))
+}
+
+fn check_fit(source: &Source, value: &Spanned<u64>) -> Result<u64, InputError> {
+    let ns = *value.as_ref();
+    if ns > 0 {
+        return Ok(ns);
+    }
+    Err(InputError::at(source, value.span(), "fit_ns = 0: no fit is without an error")
+        .help("give the greatest error of an edge in ns, from 1 up"))
+}
+
+/// The nearest whole step, where the position register can hold it and its negative.
+fn register(target: &BigDecimal) -> Option<i64> {
+    decimal::round_half_away(target).filter(|steps| steps.unsigned_abs() <= u64::from(i32::MAX.unsigned_abs()))
+}

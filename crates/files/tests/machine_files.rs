@@ -1,0 +1,84 @@
+//! What a good machine file comes to.
+
+#![allow(clippy::unwrap_used)] // a test may panic
+
+use carrystep_core::{AXES, PinTiming, StartPhase};
+use carrystep_files::{BigDecimal, Machine, Source};
+
+const AXIS: &str = "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n";
+
+fn machine(text: &str) -> Machine {
+    Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() }).unwrap()
+}
+
+fn number(text: &str) -> BigDecimal {
+    text.parse().unwrap()
+}
+
+#[test]
+fn what_is_left_out_has_its_default() {
+    let machine = machine(&format!("[machine]\n{AXIS}driver = \"a4988\"\n"));
+    let timebase = machine.timebase;
+    assert_eq!((timebase.clock_hz(), timebase.tick_ns(), timebase.phases()), (48_000_000, 1000, 16));
+    assert_eq!((timebase.clocks_per_tick(), timebase.clocks_per_phase()), (48, 3));
+    assert_eq!(machine.phase, StartPhase::Half);
+    let axis = &machine.axes[0];
+    assert_eq!(axis.start_speed, number("0"));
+    assert_eq!(axis.jerk_limit, None);
+}
+
+#[test]
+fn what_is_given_counts() {
+    let head = "[machine]\nclock_hz = 16_000_000\ntick_ns = 2000\nphases = 4\nphase = \"zero\"\n";
+    let machine = machine(&format!("{head}{AXIS}start_speed = 0.5\njerk_limit = 1e6\ndriver = \"a4988\"\n"));
+    let timebase = machine.timebase;
+    assert_eq!((timebase.clock_hz(), timebase.tick_ns(), timebase.phases()), (16_000_000, 2000, 4));
+    assert_eq!(machine.phase, StartPhase::Zero);
+    assert_eq!(machine.axes[0].start_speed, number("2.5"));
+    assert_eq!(machine.axes[0].jerk_limit, Some(number("5e6")));
+}
+
+#[test]
+fn limits_are_exact_products() {
+    let text = "[machine]\n[[machine.axis]]\nname = \"a\"\nsteps_per_unit = 8.888888888888889\nspeed_limit = 0.1\n\
+        accel_limit = 1_000.3\ndriver = \"a4988\"\n";
+    let axis = &machine(text).axes[0];
+    assert_eq!(axis.speed_limit, number("0.8888888888888889"));
+    assert_eq!(axis.accel_limit, number("8891.5555555555556667"));
+}
+
+#[test]
+fn a_driver_is_a_preset_that_single_values_override() {
+    let pins = |lines: &str| machine(&format!("[machine]\n{AXIS}{lines}")).axes[0].pins_ns;
+    assert_eq!(pins("driver = \"a4988\"\n"), [1000, 1000, 200, 200]);
+    assert_eq!(pins("driver = \"a4988\"\nhold_ns = 500\n"), [1000, 1000, 200, 500]);
+    assert_eq!(pins("step_ns = 1\ngap_ns = 2\nsetup_ns = 3\nhold_ns = 4\n"), [1, 2, 3, 4]);
+}
+
+#[test]
+fn pin_timings_are_rounded_up_to_clocks_and_never_none() {
+    let axis = machine(&format!("[machine]\n{AXIS}driver = \"drv8825\"\nhold_ns = 0\n")).axes.remove(0);
+    // 1900 ns are 91.2 clocks of 48 MHz, 650 ns are 31.2
+    assert_eq!(axis.pins, PinTiming { width: 92, gap: 92, setup: 32, hold: 1 });
+}
+
+#[test]
+fn a_build_has_six_axes_whatever_the_machine_has() {
+    let two = format!("[machine]\n{AXIS}driver = \"a4988\"\n{}driver = \"tmc2209\"\n", AXIS.replace("\"x\"", "\"y\""));
+    let machine = machine(&two);
+    assert_eq!((machine.axis_index("y"), machine.axis_index("q")), (Some(1), None));
+    assert_eq!(machine.axis_names(), "x, y");
+    let build = machine.build().unwrap();
+    assert_eq!(build.pins[0].width, 48);
+    assert_eq!(build.pins[1].width, 5);
+    assert_eq!(build.pins[2..], [PinTiming::SHORTEST; AXES - 2]);
+}
+
+#[test]
+fn the_fastest_speed_that_the_driver_allows_is_allowed() {
+    // 48 + 48 clocks and a phase of 3: 48 MHz / 99
+    let axis = |speed: &str| format!("[machine]\n{AXIS}driver = \"a4988\"\n").replace("1000", speed);
+    let refused = |text: String| Machine::from_source(&Source { path: "m".into(), text: text.into() }).is_err();
+    assert!(!refused(axis("96969.69")));
+    assert!(refused(axis("96969.70")));
+}

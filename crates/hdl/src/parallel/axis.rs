@@ -1,0 +1,269 @@
+//! One axis: the article's accumulator. Every carry is a step.
+//!
+//! ```text
+//!      J ----> + ----> A ----> + ----> V ----> + ----> P        on each tick, all from the old values
+//!              ^-------'       ^-------'       ^-------'
+//!                                              `-- carry out: a step
+//! ```
+//!
+//! P is the fraction of a step, V the speed per tick, A the acceleration, J the jerk, all in units of
+//! 2^-64 step. A position that passes a whole step carries out of the 64 bits: forward that carry is the
+//! step; backward (V is negative, so all but small P carry) the missing carry is.
+//!
+//! The [`Sequencer`] says which segment is loaded when, [`Edge`] when inside the tick the step is due.
+
+use crate::parallel::sequencer::Sequencer;
+use crate::parts::edge::Edge;
+use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::{Word, bit_cast};
+use carrystep_core::StartPhase;
+use rust_hdl::prelude::*;
+
+/// One axis, from offered segment to requested step.
+#[derive(LogicBlock, Default)]
+pub struct Axis {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// Last cycle of a tick.
+    pub strobe: Input<Bit>,
+    /// First cycle of a phase.
+    pub phase_start: Input<Bit>,
+    /// The phase.
+    pub phase: Input<Word<4>>,
+    /// A fault is latched somewhere: no axis moves.
+    pub frozen: Input<Bit>,
+    /// Back to the start value, and forget segments and faults.
+    pub clear: Input<Bit>,
+    /// The waiting segment may start this axis at the strobe of this cycle.
+    pub go: Input<Bit>,
+    /// Take the offered segment.
+    pub push: Input<Bit>,
+    /// Offered segment: ticks.
+    pub seg_ticks: Input<Word<32>>,
+    /// Offered segment: speed.
+    pub seg_v: Input<Word<64>>,
+    /// Offered segment: acceleration.
+    pub seg_a: Input<Word<64>>,
+    /// Offered segment: jerk.
+    pub seg_j: Input<Word<64>>,
+    /// Offered segment: the axis rests after it.
+    pub seg_last: Input<Bit>,
+    /// A segment waits.
+    pub waiting: Signal<Out, Bit>,
+    /// It could start at a strobe in this cycle.
+    pub startable: Signal<Out, Bit>,
+    /// A step is due, one cycle.
+    pub request: Signal<Out, Bit>,
+    /// It goes backward.
+    pub request_back: Signal<Out, Bit>,
+    /// DIR is to go forward.
+    pub want_fwd: Signal<Out, Bit>,
+    /// DIR is to go backward.
+    pub want_back: Signal<Out, Bit>,
+    /// A step is on its way to the shaper.
+    pub in_flight: Signal<Out, Bit>,
+    /// At rest, with nothing waiting and no step on its way.
+    pub drained: Signal<Out, Bit>,
+    /// Fault: V would have left (-2^63, 2^63).
+    pub overspeed: Signal<Out, Bit>,
+    /// Fault: the queue ran dry.
+    pub underrun: Signal<Out, Bit>,
+    /// To be watched: the last tick stepped.
+    pub crossed: Signal<Out, Bit>,
+    /// To be watched: it had V < 0.
+    pub back: Signal<Out, Bit>,
+    /// To be watched: its phase, when the bisection is over.
+    pub q: Signal<Out, Word<4>>,
+    /// To be watched: P.
+    pub p: Signal<Out, Word<64>>,
+    /// To be watched: V.
+    pub v: Signal<Out, Word<64>>,
+    position: Register<Word<64>>, // P
+    speed: Register<Word<64>>,    // V
+    accel: Register<Word<64>>,    // A
+    jerk: Register<Word<64>>,     // J
+    too_fast: Register<Bit>,      // `overspeed` of docs/clock-by-clock.md
+    sequencer: Sequencer,
+    step_edge: Edge,
+    tick: Signal<Local, Bit>,
+    sum: Signal<Local, Word<65>>,
+    backward: Signal<Local, Bit>,
+    faster: Signal<Local, Word<64>>,
+    overflow: Signal<Local, Bit>,
+    next_speed: Signal<Local, Word<64>>,
+    off_limits: Signal<Local, Bit>,
+    start_value: Parameter<64>,
+    zero: Literal<64, 0>,
+    least: Literal<64, 0x8000_0000_0000_0000>,
+}
+
+impl Axis {
+    /// An axis for ticks of Q phases, which are 1, 4 or 16 ([`carrystep_core::Timebase`] checks that).
+    pub(crate) fn new(phases: u32, start: StartPhase) -> Self {
+        let start = start.start_value();
+        Self {
+            position: Register::new(Word::from(start)),
+            start_value: Parameter::new(start),
+            step_edge: Edge::new(phases),
+            ..Self::default()
+        }
+    }
+}
+
+impl Logic for Axis {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, position, speed, accel, jerk, too_fast);
+        clock!(self, clock, sequencer, step_edge);
+
+        // The accumulator.
+        self.tick.next = self.strobe.val() & !self.frozen.val();
+        self.sum.next = bit_cast::<65, 64>(self.position.q.val()) + bit_cast::<65, 64>(self.speed.q.val());
+        self.backward.next = self.speed.q.val().get_bit(63);
+        self.step_edge.crosses.next = self.sum.val().get_bit(64) ^ self.backward.val();
+        if self.tick.val() {
+            self.position.d.next = self.sum.val().get_bits::<64>(0);
+        }
+
+        // The next speed, and whether it fits.
+        self.faster.next = self.speed.q.val() + self.accel.q.val();
+        self.overflow.next = (self.backward.val() == self.accel.q.val().get_bit(63))
+            & (self.backward.val() != self.faster.val().get_bit(63));
+        self.next_speed.next = self.zero.val();
+        if self.sequencer.load.val() {
+            self.next_speed.next = self.sequencer.v.val();
+        } else if self.sequencer.advance.val() {
+            self.next_speed.next = self.faster.val();
+        }
+        self.off_limits.next = self.tick.val()
+            & ((self.next_speed.val() == self.least.val()) | (self.sequencer.advance.val() & self.overflow.val()));
+
+        // V <- V + A, A <- A + J; or a new segment; or rest.
+        if self.tick.val() {
+            self.speed.d.next = self.next_speed.val();
+        }
+        if self.sequencer.load.val() {
+            self.accel.d.next = self.sequencer.a.val();
+            self.jerk.d.next = self.sequencer.j.val();
+        } else if self.sequencer.advance.val() {
+            self.accel.d.next = self.accel.q.val() + self.jerk.q.val();
+        } else if self.tick.val() {
+            self.accel.d.next = self.zero.val();
+            self.jerk.d.next = self.zero.val();
+        }
+        if self.off_limits.val() | self.frozen.val() {
+            self.speed.d.next = self.zero.val();
+            self.accel.d.next = self.zero.val();
+            self.jerk.d.next = self.zero.val();
+        }
+        self.too_fast.d.next = self.too_fast.q.val() | self.off_limits.val();
+        if self.clear.val() {
+            self.position.d.next = self.start_value.val();
+            self.too_fast.d.next = false;
+        }
+
+        // Which segment.
+        self.sequencer.strobe.next = self.tick.val();
+        self.sequencer.frozen.next = self.frozen.val();
+        self.sequencer.stop.next = self.off_limits.val();
+        self.sequencer.clear.next = self.clear.val();
+        self.sequencer.go.next = self.go.val();
+        self.sequencer.push.next = self.push.val();
+        self.sequencer.seg_ticks.next = self.seg_ticks.val();
+        self.sequencer.seg_v.next = self.seg_v.val();
+        self.sequencer.seg_a.next = self.seg_a.val();
+        self.sequencer.seg_j.next = self.seg_j.val();
+        self.sequencer.seg_last.next = self.seg_last.val();
+
+        // When in the tick.
+        self.step_edge.strobe.next = self.strobe.val();
+        self.step_edge.phase_start.next = self.phase_start.val();
+        self.step_edge.phase.next = self.phase.val();
+        self.step_edge.frozen.next = self.frozen.val();
+        self.step_edge.clear.next = self.clear.val();
+        self.step_edge.forward.next = self.speed.q.val().any() & !self.backward.val();
+        self.step_edge.backward.next = self.backward.val();
+        self.step_edge.p.next = self.position.q.val().get_bits::<32>(32);
+        self.step_edge.v.next = self.speed.q.val().get_bits::<32>(32);
+
+        self.waiting.next = self.sequencer.waiting.val();
+        self.startable.next = self.sequencer.startable.val();
+        self.request.next = self.step_edge.request.val();
+        self.request_back.next = self.step_edge.request_back.val();
+        self.want_fwd.next = self.step_edge.want_fwd.val();
+        self.want_back.next = self.step_edge.want_back.val();
+        self.in_flight.next = self.step_edge.in_flight.val();
+        self.drained.next =
+            !(self.sequencer.running.val() | self.sequencer.waiting.val() | self.step_edge.in_flight.val());
+        self.overspeed.next = self.too_fast.q.val();
+        self.underrun.next = self.sequencer.underrun.val();
+        self.crossed.next = self.step_edge.crossed.val();
+        self.back.next = self.step_edge.back.val();
+        self.q.next = self.step_edge.q.val();
+        self.p.next = self.position.q.val();
+        self.v.next = self.speed.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parallel::AxisSim;
+    use crate::sim::assert_synthesizes;
+    use carrystep_core::Segment;
+
+    fn started(start: StartPhase, segment: Segment) -> AxisSim {
+        let mut axis = AxisSim::new(16, start).unwrap();
+        assert!(axis.offer(&segment));
+        assert!(!axis.tick(true).crossed);
+        axis
+    }
+
+    const QUARTER: i64 = 1 << 62;
+
+    #[test]
+    fn every_carry_is_a_step() {
+        let segment = Segment { ticks: 9, v: QUARTER, a: 0, j: 0, last: true };
+        let mut axis = started(StartPhase::Zero, segment);
+        let steps: Vec<bool> = (0..12).map(|_| axis.tick(false).crossed).collect();
+        let [o, x] = [false, true];
+        assert_eq!(steps, [o, o, o, x, o, o, o, x, o, o, o, o]);
+    }
+
+    #[test]
+    fn backward_every_missing_carry_is_a_step() {
+        let segment = Segment { ticks: 5, v: -QUARTER, a: 0, j: 0, last: true };
+        let mut axis = started(StartPhase::Zero, segment);
+        let steps: Vec<bool> = (0..6).map(|_| axis.tick(false).crossed).collect();
+        assert_eq!(steps, [true, false, false, false, true, false]);
+    }
+
+    #[test]
+    fn all_sums_are_of_the_old_values() {
+        let segment = Segment { ticks: 4, v: 100, a: 10, j: 1, last: false };
+        let mut axis = started(StartPhase::Zero, segment);
+        let ticks: Vec<(u64, i64)> = (0..3).map(|_| axis.tick(false)).map(|tick| (tick.p, tick.v)).collect();
+        assert_eq!(ticks, [(100, 110), (210, 121), (331, 133)]);
+    }
+
+    #[test]
+    fn a_speed_that_does_not_fit_is_a_fault_and_stops() {
+        let segment = Segment { ticks: 9, v: QUARTER, a: QUARTER, j: 0, last: true };
+        let mut axis = started(StartPhase::Half, segment);
+        assert_eq!(axis.tick(false).v, 0);
+        assert_eq!(axis.faults(), (true, false));
+        let least = started(StartPhase::Half, Segment { v: i64::MIN, a: 0, ..segment });
+        assert_eq!(least.faults(), (true, false));
+    }
+
+    #[test]
+    fn phases_are_checked() {
+        assert!(AxisSim::new(8, StartPhase::Half).is_err());
+    }
+
+    #[test]
+    fn axis_synthesizes() {
+        assert_synthesizes(Axis::new(16, StartPhase::Half), "carrystep_axis");
+    }
+}

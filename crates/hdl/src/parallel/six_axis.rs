@@ -1,0 +1,230 @@
+//! The core: six of each, one tick for all, and the door for segments and starts.
+//!
+//! ```text
+//!                 .------.  strobe, phase
+//!                 | tick |----+---------------+----- ... to all six
+//!                 '------'    v               v
+//!  seg_*   ---->  push ->  .------. request .--------.  ---> step, dir
+//!  start_* ---->  go   ->  | axis |-------->| shaper |  ---> position
+//!                          '------'         '--------'
+//!  clear   ---->  frozen <-- overspeed, underrun, overrun, protocol
+//! ```
+//!
+//! A start names axes; they all start on one strobe, the first at which each of them can. Any latched fault
+//! freezes every axis in the next cycle, until `clear`.
+
+use crate::HdlError;
+use crate::parallel::axis::Axis;
+use crate::parts::shaper::Shaper;
+use crate::parts::tick::Tick;
+use crate::primitives::constant::Literal;
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
+use carrystep_core::{AXES, Build};
+use rust_hdl::prelude::*;
+
+/// The six-axis core; ports as in [`carrystep_core::ports::SIX_AXIS_PORTS`].
+#[derive(LogicBlock, Default)]
+pub struct SixAxis {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// A segment is offered.
+    pub seg_valid: Input<Bit>,
+    /// For this axis.
+    pub seg_axis: Input<Word<3>>,
+    /// Offered segment: ticks.
+    pub seg_ticks: Input<Word<32>>,
+    /// Offered segment: speed.
+    pub seg_v: Input<Word<64>>,
+    /// Offered segment: acceleration.
+    pub seg_a: Input<Word<64>>,
+    /// Offered segment: jerk.
+    pub seg_j: Input<Word<64>>,
+    /// Offered segment: the axis rests after it.
+    pub seg_last: Input<Bit>,
+    /// The offered segment is taken in this cycle.
+    pub seg_ready: Signal<Out, Bit>,
+    /// A start is offered.
+    pub start_valid: Input<Bit>,
+    /// Of these axes.
+    pub start_mask: Input<Word<6>>,
+    /// The offered start is taken in this cycle.
+    pub start_ready: Signal<Out, Bit>,
+    /// Resume after a fault.
+    pub clear: Input<Bit>,
+    /// The STEP pins.
+    pub step: [Signal<Out, Bit>; AXES],
+    /// The DIR pins, 1 is backward.
+    pub dir: [Signal<Out, Bit>; AXES],
+    /// Steps forward less steps backward.
+    pub position: [Signal<Out, Word<32>>; AXES],
+    /// Steps that a freeze discarded.
+    pub discarded: [Signal<Out, Word<32>>; AXES],
+    /// All axes are done and no start is armed.
+    pub idle: Signal<Out, Bit>,
+    /// Frozen.
+    pub fault: Signal<Out, Bit>,
+    /// Fault: a second step was owed.
+    pub overrun: [Signal<Out, Bit>; AXES],
+    /// Fault: V would have left (-2^63, 2^63).
+    pub overspeed: [Signal<Out, Bit>; AXES],
+    /// Fault: the queue ran dry.
+    pub underrun: [Signal<Out, Bit>; AXES],
+    /// Fault: the host broke the segment protocol.
+    pub protocol: Signal<Out, Bit>,
+    /// Axes start at the end of this cycle.
+    pub started: Signal<Out, Bit>,
+    tick: Tick,
+    pub(crate) axis: [Axis; AXES],
+    shaper: [Shaper; AXES],
+    armed: Register<Bit>,
+    mask: Register<Word<6>>,
+    broken: Register<Bit>,
+    frozen: Signal<Local, Bit>,
+    selected: Signal<Local, Word<6>>,
+    waiting: Signal<Local, Bit>,
+    nobody: Signal<Local, Bit>,
+    taken: Signal<Local, Bit>,
+    push: Signal<Local, Bit>,
+    start: Signal<Local, Bit>,
+    unfed: Signal<Local, Bit>,
+    all_startable: Signal<Local, Bit>,
+    go: Signal<Local, Bit>,
+    at_rest: Signal<Local, Bit>,
+    in_flight: Signal<Local, Bit>,
+    clear_now: Signal<Local, Bit>,
+    first: Literal<6, 1>,
+    six: Literal<3, 6>,
+    no_ticks: Literal<32, 0>,
+}
+
+impl SixAxis {
+    /// The core of this build.
+    ///
+    /// # Errors
+    /// [`HdlError::PinTiming`] where an axis' timing is out of range.
+    pub fn new(build: &Build) -> Result<Self, HdlError> {
+        let mut shaper: [Shaper; AXES] = Default::default();
+        for (shaper, pins) in shaper.iter_mut().zip(&build.pins) {
+            *shaper = Shaper::new(pins)?;
+        }
+        let phases = build.timebase.phases();
+        Ok(Self {
+            tick: Tick::new(&build.timebase),
+            axis: std::array::from_fn(|_| Axis::new(phases, build.phase)),
+            shaper,
+            ..Self::default()
+        })
+    }
+}
+
+impl Logic for SixAxis {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, armed, mask, broken);
+        clock!(self, clock, tick);
+
+        // Any fault freezes all.
+        self.frozen.next = self.broken.q.val();
+        self.in_flight.next = false;
+        self.at_rest.next = !self.armed.q.val();
+        for i in 0..6 {
+            self.frozen.next = self.frozen.val()
+                | self.shaper[i].overrun.val()
+                | self.axis[i].overspeed.val()
+                | self.axis[i].underrun.val();
+            self.in_flight.next = self.in_flight.val() | self.axis[i].in_flight.val() | self.shaper[i].step.val();
+            self.at_rest.next = self.at_rest.val()
+                & self.axis[i].drained.val()
+                & !(self.shaper[i].owed.val() | self.shaper[i].step.val());
+        }
+        self.clear_now.next = self.clear.val() & self.frozen.val() & !self.in_flight.val();
+
+        // Segments.
+        self.selected.next = self.first.val() << self.seg_axis.val();
+        self.nobody.next = self.seg_axis.val() >= self.six.val();
+        self.waiting.next = false;
+        for i in 0..6 {
+            self.waiting.next = self.waiting.val() | (self.selected.val().get_bit(i) & self.axis[i].waiting.val());
+        }
+        self.seg_ready.next = !(self.frozen.val() | self.waiting.val());
+        self.taken.next = self.seg_valid.val() & self.seg_ready.val();
+        self.push.next = self.taken.val() & !self.nobody.val() & (self.seg_ticks.val() != self.no_ticks.val());
+
+        // Starts: armed until every axis of the mask can start, then all go on one strobe.
+        self.start_ready.next = !(self.frozen.val() | self.armed.q.val());
+        self.start.next = self.start_valid.val() & self.start_ready.val();
+        self.unfed.next = false;
+        self.all_startable.next = true;
+        for i in 0..6 {
+            self.unfed.next = self.unfed.val() | (self.start_mask.val().get_bit(i) & !self.axis[i].waiting.val());
+            self.all_startable.next =
+                self.all_startable.val() & (!self.mask.q.val().get_bit(i) | self.axis[i].startable.val());
+        }
+        self.go.next = self.armed.q.val() & self.tick.strobe.val() & self.all_startable.val() & !self.frozen.val();
+        if self.go.val() | self.frozen.val() {
+            self.armed.d.next = false;
+        }
+        if self.start.val() & !self.unfed.val() {
+            self.armed.d.next = true;
+            self.mask.d.next = self.start_mask.val();
+        }
+
+        // A host that breaks the protocol stops everything.
+        if (self.taken.val() & !self.push.val()) | (self.start.val() & self.unfed.val()) {
+            self.broken.d.next = true;
+        }
+        if self.clear_now.val() {
+            self.broken.d.next = false;
+        }
+
+        for i in 0..6 {
+            self.axis[i].clock.next = self.clock.val();
+            self.axis[i].strobe.next = self.tick.strobe.val();
+            self.axis[i].phase_start.next = self.tick.phase_start.val();
+            self.axis[i].phase.next = self.tick.phase.val();
+            self.axis[i].frozen.next = self.frozen.val();
+            self.axis[i].clear.next = self.clear_now.val();
+            self.axis[i].go.next = self.go.val() & self.mask.q.val().get_bit(i);
+            self.axis[i].push.next = self.push.val() & self.selected.val().get_bit(i);
+            self.axis[i].seg_ticks.next = self.seg_ticks.val();
+            self.axis[i].seg_v.next = self.seg_v.val();
+            self.axis[i].seg_a.next = self.seg_a.val();
+            self.axis[i].seg_j.next = self.seg_j.val();
+            self.axis[i].seg_last.next = self.seg_last.val();
+
+            self.shaper[i].clock.next = self.clock.val();
+            self.shaper[i].frozen.next = self.frozen.val();
+            self.shaper[i].clear.next = self.clear_now.val();
+            self.shaper[i].request.next = self.axis[i].request.val();
+            self.shaper[i].request_back.next = self.axis[i].request_back.val();
+            self.shaper[i].want_fwd.next = self.axis[i].want_fwd.val();
+            self.shaper[i].want_back.next = self.axis[i].want_back.val();
+
+            self.step[i].next = self.shaper[i].step.val();
+            self.dir[i].next = self.shaper[i].dir.val();
+            self.position[i].next = self.shaper[i].position.val();
+            self.discarded[i].next = self.shaper[i].discarded.val();
+            self.overrun[i].next = self.shaper[i].overrun.val();
+            self.overspeed[i].next = self.axis[i].overspeed.val();
+            self.underrun[i].next = self.axis[i].underrun.val();
+        }
+        self.idle.next = self.at_rest.val();
+        self.fault.next = self.frozen.val();
+        self.protocol.next = self.broken.q.val();
+        self.started.next = self.go.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carrystep_core::{PinTiming, StartPhase, Timebase};
+
+    #[test]
+    fn six_axis_synthesizes() {
+        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+        crate::sim::assert_synthesizes(SixAxis::new(&build).unwrap(), "carrystep_six_axis");
+    }
+}

@@ -1,0 +1,5 @@
+//! Modules that both cores are made of.
+
+pub mod edge;
+pub mod shaper;
+pub mod tick;

@@ -1,0 +1,201 @@
+//! From requests to pins: the shaper keeps what the driver asks for.
+//!
+//! ```text
+//! DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
+//!          :<-- D -->:<--- H --->:             :
+//! STEP ______________/^^^^^^\________/^^^^^^\__________
+//!                    :<-W ->:<- S -->:
+//! ```
+//!
+//! A step that may not rise yet is owed, one at most; a second is the fault `overrun`. DIR follows the sign
+//! of V, so that set-up has normally run out long before the step. Three timers count down: `busy` the
+//! pulse and its gap, `hold` and `setup` of DIR.
+
+use crate::HdlError;
+use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
+use carrystep_core::PinTiming;
+use carrystep_core::build::MAX_CLOCKS;
+use rust_hdl::prelude::*;
+
+/// STEP, DIR and the position of one axis.
+#[derive(LogicBlock, Default)]
+pub struct Shaper {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// A fault is latched: nothing new rises, DIR stays.
+    pub frozen: Input<Bit>,
+    /// Forget the fault.
+    pub clear: Input<Bit>,
+    /// A step is due.
+    pub request: Input<Bit>,
+    /// It goes backward.
+    pub request_back: Input<Bit>,
+    /// DIR is to go forward.
+    pub want_fwd: Input<Bit>,
+    /// DIR is to go backward.
+    pub want_back: Input<Bit>,
+    /// The STEP pin.
+    pub step: Signal<Out, Bit>,
+    /// The DIR pin, 1 is backward.
+    pub dir: Signal<Out, Bit>,
+    /// A step is owed.
+    pub owed: Signal<Out, Bit>,
+    /// Steps forward less steps backward.
+    pub position: Signal<Out, Word<32>>,
+    /// Steps that a freeze discarded.
+    pub discarded: Signal<Out, Word<32>>,
+    /// Fault: a second step was owed.
+    pub overrun: Signal<Out, Bit>,
+    step_pin: Register<Bit>,
+    dir_pin: Register<Bit>,
+    want: Register<Bit>,
+    due: Register<Bit>,      // `owed` of docs/clock-by-clock.md
+    due_back: Register<Bit>, // `owed_back`
+    busy: Register<Word<17>>,
+    hold: Register<Word<16>>,
+    setup: Register<Word<16>>,
+    steps: Register<Word<32>>, // `position`
+    lost: Register<Word<32>>,  // `discarded`
+    late: Register<Bit>,       // `overrun`
+    want_now: Signal<Local, Bit>,
+    pending: Signal<Local, Bit>,
+    first_back: Signal<Local, Bit>,
+    rise: Signal<Local, Bit>,
+    aim: Signal<Local, Bit>,
+    turn: Signal<Local, Bit>,
+    second: Signal<Local, Bit>,
+    gap: Parameter<17>,
+    busy_load: Parameter<17>,
+    busy_bits: Parameter<17>,
+    hold_load: Parameter<16>,
+    hold_bits: Parameter<16>,
+    setup_load: Parameter<16>,
+    setup_bits: Parameter<16>,
+    busy_one: Literal<17, 1>,
+    timer_one: Literal<16, 1>,
+    one: Literal<32, 1>,
+    two: Literal<32, 2>,
+}
+
+impl Shaper {
+    /// The shaper of an axis with this timing.
+    ///
+    /// # Errors
+    /// [`HdlError::PinTiming`] where a figure is not from 1 to [`MAX_CLOCKS`].
+    pub fn new(pins: &PinTiming) -> Result<Self, HdlError> {
+        let &PinTiming { width, gap, setup, hold } = pins;
+        for (name, clocks) in [("width", width), ("gap", gap), ("setup", setup), ("hold", hold)] {
+            if !(1..=MAX_CLOCKS).contains(&clocks) {
+                return Err(HdlError::PinTiming { name, clocks });
+            }
+        }
+        let [width, gap, setup, hold] = [width, gap, setup, hold].map(u64::from);
+        let (busy_load, setup_load, hold_load) = (width + gap - 1, setup - 1, hold - 1);
+        Ok(Self {
+            setup: Register::new(Word::from(setup_load)),
+            gap: Parameter::new(gap),
+            busy_load: Parameter::new(busy_load),
+            busy_bits: Parameter::new(used_bits(busy_load)),
+            hold_load: Parameter::new(hold_load),
+            hold_bits: Parameter::new(used_bits(hold_load)),
+            setup_load: Parameter::new(setup_load),
+            setup_bits: Parameter::new(used_bits(setup_load)),
+            ..Self::default()
+        })
+    }
+}
+
+impl Logic for Shaper {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, step_pin, dir_pin, want, due, due_back, busy, hold, setup, steps, lost, late);
+
+        // Which way DIR should point, and which step is due.
+        self.want_now.next = self.want_back.val() | (self.want.q.val() & !self.want_fwd.val());
+        self.want.d.next = self.want_now.val();
+        self.pending.next = self.due.q.val() | self.request.val();
+        self.first_back.next = self.request_back.val();
+        if self.due.q.val() {
+            self.first_back.next = self.due_back.q.val();
+        }
+
+        // May it rise; may DIR turn.
+        self.rise.next = self.pending.val()
+            & !self.frozen.val()
+            & !self.busy.q.val().any()
+            & !self.setup.q.val().any()
+            & (self.dir_pin.q.val() == self.first_back.val());
+        self.aim.next = self.want_now.val();
+        if self.pending.val() {
+            self.aim.next = self.first_back.val();
+        }
+        self.turn.next = !self.frozen.val() & !self.hold.q.val().any() & (self.dir_pin.q.val() != self.aim.val());
+
+        // The pins.
+        self.step_pin.d.next = self.rise.val() | (self.step_pin.q.val() & (self.busy.q.val() != self.gap.val()));
+        self.dir_pin.d.next = self.dir_pin.q.val() ^ self.turn.val();
+
+        // The timers.
+        if self.rise.val() {
+            self.busy.d.next = self.busy_load.val();
+        } else if self.busy.q.val().any() {
+            self.busy.d.next = (self.busy.q.val() - self.busy_one.val()) & self.busy_bits.val();
+        }
+        if self.rise.val() {
+            self.hold.d.next = self.hold_load.val();
+        } else if self.hold.q.val().any() {
+            self.hold.d.next = (self.hold.q.val() - self.timer_one.val()) & self.hold_bits.val();
+        }
+        if self.turn.val() {
+            self.setup.d.next = self.setup_load.val();
+        } else if self.setup.q.val().any() {
+            self.setup.d.next = (self.setup.q.val() - self.timer_one.val()) & self.setup_bits.val();
+        }
+
+        // Where the axis is.
+        if self.rise.val() {
+            if self.dir_pin.q.val() {
+                self.steps.d.next = self.steps.q.val() - self.one.val();
+            } else {
+                self.steps.d.next = self.steps.q.val() + self.one.val();
+            }
+        }
+
+        // What is owed, and what is lost: in silence nothing is.
+        self.second.next = self.due.q.val() & self.request.val();
+        self.due.d.next = self.pending.val() & !self.rise.val();
+        if self.rise.val() {
+            self.due.d.next = self.second.val();
+        }
+        if !self.due.q.val() | self.rise.val() {
+            self.due_back.d.next = self.request_back.val();
+        }
+        if self.frozen.val() {
+            self.due.d.next = false;
+            self.due_back.d.next = self.due_back.q.val();
+            if self.second.val() {
+                self.lost.d.next = self.lost.q.val() + self.two.val();
+            } else if self.pending.val() {
+                self.lost.d.next = self.lost.q.val() + self.one.val();
+            }
+        } else if self.second.val() & !self.rise.val() {
+            self.late.d.next = true;
+            self.lost.d.next = self.lost.q.val() + self.one.val();
+        }
+        if self.clear.val() {
+            self.late.d.next = false;
+        }
+
+        self.step.next = self.step_pin.q.val();
+        self.dir.next = self.dir_pin.q.val();
+        self.owed.next = self.due.q.val();
+        self.position.next = self.steps.q.val();
+        self.discarded.next = self.lost.q.val();
+        self.overrun.next = self.late.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,106 @@
+//! The beat of the core: a tick of C clocks in Q phases, for all axes.
+//!
+//! ```text
+//! phase        |  0        |  1        | ... |  Q-1      |  0
+//! sub          | 0 | 1 | 2 | 0 | 1 | 2 |     | 0 | 1 | 2 | 0        (C/Q = 3)
+//! phase_start  /^^^\_______/^^^\_______       /^^^\_______/^^^
+//! strobe       ________________________       ________/^^^\___
+//! ```
+
+use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::primitives::register::{Input, Register};
+use crate::primitives::word::Word;
+use carrystep_core::Timebase;
+use rust_hdl::prelude::*;
+
+/// Counts clocks into phases, and phases into ticks.
+#[derive(LogicBlock, Default)]
+pub struct Tick {
+    /// The clock.
+    pub clock: Input<Clock>,
+    /// Last cycle of each tick.
+    pub strobe: Signal<Out, Bit>,
+    /// First cycle of each phase.
+    pub phase_start: Signal<Out, Bit>,
+    /// The phase, 0 to Q - 1.
+    pub phase: Signal<Out, Word<4>>,
+    sub: Register<Word<16>>,
+    phases: Register<Word<4>>,
+    sub_over: Signal<Local, Bit>,
+    phase_over: Signal<Local, Bit>,
+    zero: Literal<16, 0>,
+    one: Literal<16, 1>,
+    last_sub: Parameter<16>,
+    sub_bits: Parameter<16>,
+    first_phase: Literal<4, 0>,
+    one_phase: Literal<4, 1>,
+    last_phase: Parameter<4>,
+}
+
+impl Tick {
+    /// The tick of this timebase, which has checked its numbers.
+    pub fn new(timebase: &Timebase) -> Self {
+        let last_sub = u64::from(timebase.clocks_per_phase() - 1);
+        Self {
+            last_sub: Parameter::new(last_sub),
+            sub_bits: Parameter::new(used_bits(last_sub)),
+            last_phase: Parameter::new(u64::from(timebase.phases() - 1)),
+            ..Self::default()
+        }
+    }
+}
+
+impl Tick {
+    /// The same tick, but in cycle 0 already where [`Tick::new`] is in cycle 1; for phases of two clocks or more.
+    pub fn ahead(timebase: &Timebase) -> Self {
+        Self { sub: Register::new(Word::from(1_u64)), ..Self::new(timebase) }
+    }
+}
+
+impl Logic for Tick {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, sub, phases);
+        self.sub_over.next = self.sub.q.val() == self.last_sub.val();
+        self.phase_over.next = self.phases.q.val() == self.last_phase.val();
+
+        self.sub.d.next = (self.sub.q.val() + self.one.val()) & self.sub_bits.val();
+        if self.sub_over.val() {
+            self.sub.d.next = self.zero.val();
+            self.phases.d.next = self.phases.q.val() + self.one_phase.val();
+            if self.phase_over.val() {
+                self.phases.d.next = self.first_phase.val();
+            }
+        }
+        self.phase.next = self.phases.q.val();
+        self.phase_start.next = self.sub.q.val() == self.zero.val();
+        self.strobe.next = self.sub_over.val() & self.phase_over.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::{rising_edge, settle};
+
+    #[test]
+    fn strobe_ends_the_tick_and_phases_split_it() {
+        let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
+        let mut tick = Tick::new(&timebase);
+        tick.connect_all();
+        for cycle in 0..200_u32 {
+            tick.clock.next = false.into();
+            settle(&mut tick);
+            assert_eq!(tick.strobe.val(), cycle % 48 == 47, "cycle {cycle}");
+            assert_eq!(tick.phase_start.val(), cycle % 3 == 0, "cycle {cycle}");
+            assert_eq!(tick.phase.val().value(), u128::from(cycle % 48 / 3), "cycle {cycle}");
+            tick.clock.next = true.into();
+            rising_edge(&mut tick);
+        }
+    }
+
+    #[test]
+    fn tick_synthesizes() {
+        crate::sim::assert_synthesizes(Tick::new(&Timebase::new(16_000_000, 1000, 1).unwrap()), "carrystep_tick");
+    }
+}

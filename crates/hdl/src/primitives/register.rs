@@ -1,0 +1,196 @@
+//! Inputs and registers that settle in few passes.
+//!
+//! Rust-HDL simulates by passes over the tree of blocks until nothing changes. Its own inputs show a new
+//! value one pass late, so that a clock edge takes a pass for each level of hierarchy and one for the
+//! flip-flop. Here an [`Input`] shows what it was given at once, and a [`Register`] takes its value in the
+//! pass in which its clock rises:
+//!
+//! ```text
+//! one pass:  parent's kernel -> inputs -> child's kernel -> d, clock -> q
+//!            (reads old q)                (reads old q)              (new)
+//! ```
+//!
+//! All kernels above and beside a register have run, or will run, on the values of before the edge:
+//! outputs travel upwards only in the next pass. So a clock edge is one pass at any depth.
+
+use rust_hdl::core::ast::VerilogLiteral;
+use rust_hdl::core::signal::get_signal_id;
+use rust_hdl::prelude::{
+    Atom, AtomKind, Block, Clock, Logic, Out, PinConstraint, Probe, Signal, Synth, TimingInfo, TypeDescriptor,
+    VCDValue, Verilog,
+};
+
+/// An input port; in kernels and Verilog it is `Signal<In, T>`.
+#[derive(Debug)]
+pub struct Input<T: Synth> {
+    /// What the parent drives.
+    pub next: T,
+    seen: T,
+    changed: bool,
+    connected: bool,
+    id: usize,
+}
+
+impl<T: Synth> Input<T> {
+    /// What the parent drives, in the same pass.
+    #[inline]
+    pub fn val(&self) -> T {
+        self.next
+    }
+}
+
+impl<T: Synth> Default for Input<T> {
+    fn default() -> Self {
+        Self { next: T::default(), seen: T::default(), changed: false, connected: false, id: get_signal_id() }
+    }
+}
+
+impl<T: Synth> Logic for Input<T> {
+    fn update(&mut self) {}
+    fn connect(&mut self) {
+        self.connected = true;
+    }
+}
+
+impl<T: Synth> Block for Input<T> {
+    fn connect_all(&mut self) {}
+    #[inline]
+    fn update_all(&mut self) {
+        self.changed = self.seen != self.next;
+        self.seen = self.next;
+    }
+    #[inline]
+    fn has_changed(&self) -> bool {
+        self.changed
+    }
+    fn accept(&self, name: &str, probe: &mut dyn Probe) {
+        probe.visit_atom(name, self);
+    }
+}
+
+impl<T: Synth> Atom for Input<T> {
+    fn bits(&self) -> usize {
+        T::BITS
+    }
+    fn connected(&self) -> bool {
+        self.connected
+    }
+    fn changed(&self) -> bool {
+        self.changed
+    }
+    fn kind(&self) -> AtomKind {
+        AtomKind::InputParameter
+    }
+    fn descriptor(&self) -> TypeDescriptor {
+        T::descriptor()
+    }
+    fn vcd(&self) -> VCDValue {
+        self.seen.vcd()
+    }
+    fn id(&self) -> usize {
+        self.id
+    }
+    fn verilog(&self) -> VerilogLiteral {
+        self.seen.verilog()
+    }
+    fn constraints(&self) -> Vec<PinConstraint> {
+        Vec::new()
+    }
+}
+
+/// A D flip-flop with an initial value.
+#[derive(Debug)]
+pub struct Register<T: Synth> {
+    /// The value after the next rising edge.
+    pub d: Input<T>,
+    /// The value.
+    pub q: Signal<Out, T>,
+    /// The clock.
+    pub clock: Input<Clock>,
+    initial: T,
+}
+
+impl<T: Synth> Register<T> {
+    /// A register that configures to `initial`.
+    pub fn new(initial: T) -> Self {
+        let d = Input { next: initial, ..Input::default() };
+        Self { d, q: Signal::new_with_default(initial), clock: Input::default(), initial }
+    }
+}
+
+impl<T: Synth> Default for Register<T> {
+    fn default() -> Self {
+        Self::new(T::default())
+    }
+}
+
+impl<T: Synth> Logic for Register<T> {
+    #[inline]
+    fn update(&mut self) {
+        if self.clock.next.clk && !self.clock.seen.clk {
+            self.q.next = self.d.next;
+        }
+    }
+    fn connect(&mut self) {
+        self.q.connect();
+    }
+    fn hdl(&self) -> Verilog {
+        Verilog::Custom(format!("initial q = {};\nalways @(posedge clock) q <= d;", self.initial.verilog()))
+    }
+    fn timing(&self) -> Vec<TimingInfo> {
+        vec![TimingInfo {
+            name: "register".into(),
+            clock: "clock".into(),
+            inputs: vec!["d".into()],
+            outputs: vec!["q".into()],
+        }]
+    }
+}
+
+impl<T: Synth> Block for Register<T> {
+    fn connect_all(&mut self) {
+        self.connect();
+    }
+    #[inline]
+    fn update_all(&mut self) {
+        self.update();
+        self.clock.update_all();
+        self.d.update_all();
+        self.q.update_all();
+    }
+    /// The clock alone changes nothing that a kernel reads.
+    #[inline]
+    fn has_changed(&self) -> bool {
+        self.d.changed || self.q.changed
+    }
+    fn accept(&self, name: &str, probe: &mut dyn Probe) {
+        probe.visit_start_scope(name, self);
+        self.d.accept("d", probe);
+        self.q.accept("q", probe);
+        self.clock.accept("clock", probe);
+        probe.visit_end_scope(name, self);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::primitives::word::Word;
+
+    #[test]
+    fn q_follows_d_at_the_rising_edge_only() {
+        let mut register = Register::new(Word::<4>::from(5_u64));
+        register.connect_all();
+        register.d.next = Word::from(9_u64);
+        register.update_all();
+        assert_eq!(register.q.val().value(), 5);
+        register.clock.next = true.into();
+        register.update_all();
+        assert_eq!(register.q.val().value(), 9);
+        register.d.next = Word::from(3_u64);
+        register.update_all();
+        register.clock.next = false.into();
+        register.update_all();
+        assert_eq!(register.q.val().value(), 9);
+    }
+}

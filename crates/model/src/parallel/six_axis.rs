@@ -1,0 +1,271 @@
+//! The whole core, clock by clock: six axes, six shapers, one tick, a segment port, a start mask,
+//! and the freeze.
+//!
+//! ```text
+//! cycle   c-1 | c                 | c+C               | c+2C
+//! strobe   ^  |                ^  |                ^  |
+//! axis        | tick n is added   :                   |
+//! stage       |                   | phase is known    |
+//! emission    |                   |                   | request at phase q, pin one clock later
+//! ```
+
+use crate::fast::{Cubic, Moving};
+use crate::parallel::axis::{self, Step};
+use crate::parts::shaper;
+use carrystep_core::ports::{Inputs, Outputs};
+use carrystep_core::{AXES, Build, Faults};
+
+/// A step on its way from the accumulator to the pins, one stage a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Stage {
+    pub step: Option<Step>,
+    pub sign: i8,
+}
+
+impl Stage {
+    /// Nothing is on its way.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.step.is_none() && self.sign == 0
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Lane {
+    pub axis: axis::State,
+    pub computed: Stage,
+    pub emitted: Stage,
+    pub overspeed: bool,
+    pub underrun: bool,
+    pub shaper: shaper::State,
+}
+
+/// The core's state; [`SixAxis::outputs`] and [`SixAxis::clock`] are its one clock cycle.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SixAxis {
+    pub(crate) build: Build,
+    sub: u32,
+    phase: u32,
+    armed: Option<u8>,
+    protocol: bool,
+    pub(crate) lanes: [Lane; AXES],
+}
+
+impl SixAxis {
+    /// The core as it is configured.
+    pub fn new(build: &Build) -> Self {
+        let lane = |axis: usize| Lane {
+            axis: axis::State::at_rest(build.phase.start_value()),
+            computed: Stage::default(),
+            emitted: Stage::default(),
+            overspeed: false,
+            underrun: false,
+            shaper: shaper::State::at_configuration(build.pins[axis]),
+        };
+        Self { build: build.clone(), sub: 0, phase: 0, armed: None, protocol: false, lanes: std::array::from_fn(lane) }
+    }
+
+    /// The registers of one axis.
+    pub fn axis(&self, axis: usize) -> &axis::State {
+        &self.lanes[axis].axis
+    }
+
+    /// The registers of one shaper.
+    pub fn shaper(&self, axis: usize) -> &shaper::State {
+        &self.lanes[axis].shaper
+    }
+
+    /// The outputs in this cycle, given its inputs.
+    pub fn outputs(&self, inputs: &Inputs) -> Outputs {
+        let faults = self.faults();
+        let frozen = faults.any();
+        let bits = |of: fn(&Lane) -> bool| bits(&self.lanes, of);
+        Outputs {
+            seg_ready: !frozen && self.takes(inputs.segment.map_or(0, |(axis, _)| axis)),
+            start_ready: !frozen && self.armed.is_none(),
+            step: bits(|lane| lane.shaper.step),
+            dir: bits(|lane| lane.shaper.dir),
+            position: std::array::from_fn(|axis| self.lanes[axis].shaper.position),
+            discarded: std::array::from_fn(|axis| self.lanes[axis].shaper.discarded),
+            idle: self.armed.is_none() && self.lanes.iter().all(Lane::idle),
+            faults,
+            started: !frozen && self.strobe() && self.go().is_some(),
+        }
+    }
+
+    /// Goes to the next cycle.
+    pub fn clock(&mut self, inputs: &Inputs) {
+        let frozen = self.faults().any();
+        let strobe = self.strobe();
+        let clear = inputs.clear && frozen && !self.lanes.iter().any(Lane::on_its_way);
+        let go = self.go().filter(|_| strobe && !frozen);
+        let phase_start = self.sub == 0;
+        let armed_before = self.armed;
+        let seg_ready = !frozen && self.takes(inputs.segment.map_or(0, |(axis, _)| axis));
+        let waiting_before: u8 = bits(&self.lanes, |lane| lane.axis.waiting.is_some());
+
+        for (axis, lane) in self.lanes.iter_mut().enumerate() {
+            let request = lane.emitted.step.filter(|step| phase_start && step.phase == self.phase);
+            let input = shaper::Input { request: request.map(|step| step.backward), sign: lane.emitted.sign, frozen };
+            lane.shaper = shaper::clock(lane.shaper, input, self.build.pins[axis]);
+            if strobe {
+                let selected = go.is_some_and(|mask| mask >> axis & 1 == 1);
+                lane.tick(selected, frozen, self.build.timebase.phase_bits());
+            }
+            if frozen {
+                lane.axis = lane.axis.stopped();
+            }
+            if clear {
+                lane.clear(self.build.phase.start_value());
+            }
+        }
+        if go.is_some() || frozen {
+            self.armed = None;
+        }
+        if clear {
+            self.protocol = false;
+        }
+        if let Some((axis, segment)) = inputs.segment.filter(|_| seg_ready) {
+            match self.lanes.get_mut(usize::from(axis)).filter(|_| segment.ticks > 0) {
+                Some(lane) => lane.axis.waiting = Some(segment),
+                None => self.protocol = true,
+            }
+        }
+        if let Some(mask) = inputs.start.filter(|_| !frozen && armed_before.is_none()) {
+            if mask & !waiting_before == 0 {
+                self.armed = Some(mask);
+            } else {
+                self.protocol = true;
+            }
+        }
+        self.advance();
+    }
+
+    /// What is latched; anything freezes the core.
+    pub fn faults(&self) -> Faults {
+        Faults {
+            overrun: bits(&self.lanes, |lane| lane.shaper.overrun),
+            overspeed: bits(&self.lanes, |lane| lane.overspeed),
+            underrun: bits(&self.lanes, |lane| lane.underrun),
+            protocol: self.protocol,
+        }
+    }
+
+    /// Whether a segment for this axis is taken: its slot is free, or the axis does not exist (a fault).
+    fn takes(&self, axis: u8) -> bool {
+        self.lanes.get(usize::from(axis)).is_none_or(|lane| lane.axis.waiting.is_none())
+    }
+
+    /// The axes that start in the coming tick: all that are armed, or none.
+    fn go(&self) -> Option<u8> {
+        let startable = bits(&self.lanes, |lane| lane.axis.startable());
+        self.armed.filter(|mask| mask & !startable == 0)
+    }
+
+    fn strobe(&self) -> bool {
+        let time = &self.build.timebase;
+        self.sub == time.clocks_per_phase() - 1 && self.phase == time.phases() - 1
+    }
+
+    fn advance(&mut self) {
+        let time = &self.build.timebase;
+        self.sub += 1;
+        if self.sub == time.clocks_per_phase() {
+            self.sub = 0;
+            self.phase = (self.phase + 1) % time.phases();
+        }
+    }
+}
+
+/// What lets `fast` pass many cycles at once.
+impl SixAxis {
+    /// Cycles since the tick began.
+    pub(crate) fn clock_of_tick(&self) -> u64 {
+        let time = &self.build.timebase;
+        u64::from(self.phase * time.clocks_per_phase() + self.sub)
+    }
+
+    /// Time goes by for the counters of the tick.
+    pub(crate) fn pass(&mut self, clocks: u64) {
+        let time = &self.build.timebase;
+        let now = (self.clock_of_tick() + clocks) % u64::from(time.clocks_per_tick());
+        let per_phase = u64::from(time.clocks_per_phase());
+        // Both are less than the clocks of a tick.
+        (self.phase, self.sub) = ((now / per_phase) as u32, (now % per_phase) as u32);
+    }
+
+    /// The inputs change nothing in this cycle, nor the next strobe anything but by adding; and neither
+    /// `idle` nor a fault is near, so that this stays so until a segment ends.
+    pub(crate) fn only_adds(&self, inputs: &Inputs) -> bool {
+        let moving = self.armed.is_some() || self.lanes.iter().any(|l| l.axis.running || l.axis.waiting.is_some());
+        moving && !self.faults().any() && self.go().is_none() && !self.hears(inputs)
+    }
+
+    /// Nothing changes until the inputs do.
+    pub(crate) fn is_still(&self, inputs: &Inputs) -> bool {
+        let frozen = self.faults().any();
+        let deaf =
+            if frozen { !inputs.clear && self.armed.is_none() } else { self.go().is_none() && !self.hears(inputs) };
+        deaf && self.lanes.iter().all(Lane::is_still)
+    }
+
+    /// Whether a core that is not frozen takes an input in this cycle.
+    fn hears(&self, inputs: &Inputs) -> bool {
+        inputs.segment.is_some_and(|(axis, _)| self.takes(axis)) || (inputs.start.is_some() && self.armed.is_none())
+    }
+}
+
+impl Lane {
+    /// The strobe: results move one stage on, and a tick is added unless frozen.
+    pub(crate) fn tick(&mut self, go: bool, frozen: bool, phase_bits: u32) {
+        self.emitted = self.computed;
+        self.computed = Stage::default();
+        if !frozen {
+            let (next, output) = axis::tick(self.axis, go, phase_bits);
+            self.axis = next;
+            self.computed = Stage { step: output.step, sign: output.sign };
+            self.overspeed |= output.overspeed;
+            self.underrun |= output.underrun;
+        }
+    }
+
+    fn clear(&mut self, start_value: u64) {
+        self.axis = axis::State::at_rest(start_value);
+        self.computed.sign = 0;
+        self.emitted.sign = 0;
+        self.overspeed = false;
+        self.underrun = false;
+        self.shaper.overrun = false;
+    }
+
+    /// A step has left the accumulator and is not yet over on the pin.
+    fn on_its_way(&self) -> bool {
+        self.computed.step.is_some() || self.emitted.step.is_some() || self.shaper.step
+    }
+
+    /// No clock and no strobe changes anything.
+    fn is_still(&self) -> bool {
+        !self.axis.running && self.computed.is_empty() && self.emitted.is_empty() && self.shaper.is_still(false)
+    }
+
+    /// As a window sees it.
+    pub(crate) fn moving(&self) -> Moving {
+        let cubic = Cubic { v: self.axis.v, a: self.axis.a, j: self.axis.j };
+        Moving { p: self.axis.p, cubic, computed: self.computed, emitted: self.emitted, shaper: self.shaper }
+    }
+
+    /// What has become of it after so many strobes.
+    pub(crate) fn moved(&mut self, moved: &Moving, strobes: u32) {
+        let Moving { p, cubic: Cubic { v, a, .. }, computed, emitted, shaper } = *moved;
+        let left = self.axis.left - if self.axis.running { strobes } else { 0 };
+        self.axis = axis::State { p, v, a, left, ..self.axis };
+        (self.computed, self.emitted, self.shaper) = (computed, emitted, shaper);
+    }
+
+    fn idle(&self) -> bool {
+        !self.axis.running && self.axis.waiting.is_none() && self.shaper.owed.is_none() && !self.on_its_way()
+    }
+}
+
+fn bits(lanes: &[Lane; AXES], of: impl Fn(&Lane) -> bool) -> u8 {
+    lanes.iter().enumerate().fold(0, |bits, (axis, lane)| bits | u8::from(of(lane)) << axis)
+}

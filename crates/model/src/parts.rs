@@ -1,0 +1,4 @@
+//! Functions that the models of both cores share.
+
+pub mod phase;
+pub mod shaper;

@@ -1,0 +1,42 @@
+//! Profiles in the terms of their sources: units in; step times, delays, figures and pictures out.
+//!
+//! The curves are those of `carrystep-profile`. Here a [`Request`] asks for one of each [`Kind`], in
+//! millimetres, degrees or turns of a [`Drive`] as well as in steps, and gets [`Reference`]s.
+//!
+//! ```
+//! use carrystep_profile::reference::{Drive, Kind, Length, Listing, Quantity, Request, Travel};
+//!
+//! // The example of the logistic source.
+//! let drive = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
+//! let request = Request {
+//!     speed: Some(Quantity::new(1000.0, Length::Millimetre).per_minute()),
+//!     acceleration: Some(Quantity::new(80.0, Length::Millimetre)),
+//!     centre: Some(0.4),
+//!     ..Request::new(drive, Travel::Ramp)
+//! };
+//! let logistic = request.reference(Kind::Logistic)?;
+//! assert_eq!(logistic.whole_steps(), 368.0);
+//! let first = logistic.rows(&Listing::SOURCES)?.next().and_then(|row| row.delay_s);
+//! assert!(first.is_some_and(|c0| (c0 - 0.181_171_021).abs() < 1e-9));
+//! # Ok::<(), carrystep_profile::reference::ReferenceError>(())
+//! ```
+
+mod csv_out;
+mod curve;
+mod drive;
+mod error;
+mod kind;
+mod picture;
+mod quantity;
+mod request;
+mod row;
+
+pub use csv_out::{CsvError, write_csv};
+pub use curve::Reference;
+pub use drive::Drive;
+pub use error::ReferenceError;
+pub use kind::Kind;
+pub use picture::{PictureError, Scale, picture};
+pub use quantity::{Length, Quantity};
+pub use request::{Request, Travel};
+pub use row::{Listing, MOST_ROWS, Row};

@@ -1,0 +1,125 @@
+//! A distance, speed, acceleration or jerk in the unit that it was given in.
+
+use crate::reference::drive::Drive;
+use crate::reference::error::ReferenceError;
+
+/// What distances are measured in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Length {
+    /// A step of the motor: one microstep.
+    Step,
+    /// A degree of its shaft.
+    Degree,
+    /// A turn of its shaft.
+    Turn,
+    /// A millimetre of what it moves.
+    Millimetre,
+}
+
+impl Length {
+    /// As it is written after a number.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Step => "steps",
+            Self::Degree => "degrees",
+            Self::Turn => "turns",
+            Self::Millimetre => "mm",
+        }
+    }
+}
+
+/// A value in its own unit: a length, over seconds to whatever power it has where it is used, or over
+/// one minute.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantity {
+    value: f64,
+    length: Length,
+    per_minute: bool,
+}
+
+impl Quantity {
+    /// A distance, or a speed, acceleration or jerk over seconds.
+    pub const fn new(value: f64, length: Length) -> Self {
+        Self { value, length, per_minute: false }
+    }
+
+    /// The same number as a speed in minutes: mm/min, turns a minute (rpm).
+    #[must_use]
+    pub const fn per_minute(self) -> Self {
+        Self { per_minute: true, ..self }
+    }
+
+    /// The number.
+    pub const fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// The unit of length.
+    pub const fn length(&self) -> Length {
+        self.length
+    }
+
+    /// Its unit, for a distance (0), a speed (1), an acceleration (2) or a jerk (3).
+    pub fn unit(&self, power: u32) -> String {
+        match (power, self.per_minute, self.length) {
+            (_, true, Length::Turn) => "rpm".to_owned(),
+            (_, true, length) => format!("{}/min", length.name()),
+            (0, false, length) => length.name().to_owned(),
+            (1, false, length) => format!("{}/s", length.name()),
+            (power, false, length) => format!("{}/s^{power}", length.name()),
+        }
+    }
+
+    /// So many steps in the same unit.
+    ///
+    /// # Errors
+    /// Millimetres without a travel per turn.
+    pub fn back(&self, steps: f64, drive: &Drive) -> Result<f64, ReferenceError> {
+        Ok(steps / Self { value: 1.0, ..*self }.in_steps(drive)?)
+    }
+
+    /// In steps and seconds.
+    ///
+    /// # Errors
+    /// Millimetres without a travel per turn.
+    pub fn in_steps(&self, drive: &Drive) -> Result<f64, ReferenceError> {
+        let steps = self.value * drive.steps_in(self.length)?;
+        Ok(if self.per_minute { steps / 60.0 } else { steps })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SORN: Drive = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
+
+    /// 1000 mm/min is 16.7 mm/s, 200 rpm, 1200 degrees/s: all 1333.3 steps/s.
+    #[test]
+    fn one_speed_in_five_units() {
+        let speeds = [
+            Quantity::new(1000.0, Length::Millimetre).per_minute(),
+            Quantity::new(1000.0 / 60.0, Length::Millimetre),
+            Quantity::new(200.0, Length::Turn).per_minute(),
+            Quantity::new(1200.0, Length::Degree),
+            Quantity::new(4000.0 / 3.0, Length::Step),
+        ];
+        for speed in speeds {
+            let steps = speed.in_steps(&SORN).expect("a speed");
+            let back = speed.back(steps, &SORN).expect("the same speed");
+            assert!((back / speed.value() - 1.0).abs() < 1e-15, "{speed:?}: {back}");
+            assert!((steps / (4000.0 / 3.0) - 1.0).abs() < 1e-15, "{speed:?}: {steps}");
+        }
+        let units = speeds.map(|speed| speed.unit(1));
+        assert_eq!(units, ["mm/min", "mm/s", "rpm", "degrees/s", "steps/s"]);
+        assert_eq!(Quantity::new(80.0, Length::Millimetre).unit(2), "mm/s^2");
+        assert_eq!(Quantity::new(80.0, Length::Millimetre).in_steps(&SORN), Ok(6400.0));
+    }
+
+    #[test]
+    fn millimetres_need_a_travel() {
+        let motor = Drive { travel_per_rev_mm: None, ..SORN };
+        assert_eq!(Quantity::new(1.0, Length::Millimetre).in_steps(&motor), Err(ReferenceError::NoTravel));
+        assert_eq!(Quantity::new(1.0, Length::Turn).in_steps(&motor), Ok(400.0));
+    }
+}

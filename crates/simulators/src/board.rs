@@ -1,0 +1,154 @@
+//! Line, link and engine of a board in Verilator: a process that goes as far as it is told, and tells what its pins do.
+
+use crate::LevelError;
+use crate::tool::{self, VERILATOR};
+use crate::verilator::Simulation;
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{CAUSES, Cause};
+use carrystep_core::link::Line;
+use carrystep_verilog::{engine_verilog, line_verilog, link_verilog};
+use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+const TOP: &str = include_str!("../bench/board_bench.v");
+const BENCH: &str = include_str!("../bench/board_bench.cpp");
+
+/// Levels of a board's input pins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Levels {
+    /// The line from the host: RX, or MOSI.
+    pub rx: bool,
+    /// SCK, and select (low).
+    pub spi: [bool; 2],
+    /// The e-stop's pin.
+    pub estop: bool,
+    /// The pins of the limits at the low ends, a bit each axis.
+    pub limit_min: u8,
+    /// And at the high ends.
+    pub limit_max: u8,
+}
+
+/// What a board has done, with the first cycle that has it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Did {
+    /// The line to the host: TX, or MISO.
+    Tx(u64, bool),
+    /// STEP and DIR of all axes.
+    Pins(u64, [u8; 2]),
+    /// A start has loaded its first segments.
+    Load(u64),
+    /// A stop is called.
+    Stop(u64, Cause),
+}
+
+/// Where it is when it stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Standing {
+    /// The cycle.
+    pub cycle: u64,
+    /// No axis moves.
+    pub idle: bool,
+    /// All axes rest after a stop.
+    pub halted: bool,
+    /// The stop, and the axes that called it.
+    pub fault: Option<(Cause, u8)>,
+}
+
+/// The process; it ends with this.
+#[derive(Debug)]
+pub struct BoardProcess {
+    child: Child,
+    to: BufWriter<ChildStdin>,
+    from: BufReader<ChildStdout>,
+}
+
+impl BoardProcess {
+    /// The exported Verilog of this build on this line, in cycle 0.
+    ///
+    /// # Errors
+    /// [`LevelError`]: Verilator is missing or fails, or there is no such gateware.
+    pub fn new(build: &EngineBuild, line: Line) -> Result<Self, LevelError> {
+        let what = "a simulation";
+        let parts = [line_verilog(line, what), link_verilog(build, line, what), engine_verilog(build, what)];
+        // They are Verilog-2005, the top is more.
+        let mut verilog = format!("{TOP}`begin_keywords \"1364-2005\"\n");
+        for part in parts {
+            verilog += &part.map_err(|error| LevelError::Gateware(error.to_string()))?;
+        }
+        verilog += "`end_keywords\n";
+        let axes = format!("-GAXES={}", build.axes());
+        let define = if line == Line::Spi { "-DSPI" } else { "-DUART" };
+        let options: &[&str] = &[&axes, define];
+        let board = Simulation { name: "board", top: "board_bench", bench: BENCH, options };
+        let mut command = Command::new(board.compiled(&verilog)?);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = command.spawn().map_err(tool::io("cannot start the simulation"))?;
+        let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) else { return Err(gone("no pipes")) };
+        Ok(Self { child, to: BufWriter::new(to), from: BufReader::new(from) })
+    }
+
+    /// Goes on for so many clocks with each of these levels, and stands.
+    ///
+    /// All of `stimuli` must fit a pipe, as some thousands do.
+    ///
+    /// # Errors
+    /// [`LevelError`]: the process is gone.
+    pub fn run(&mut self, stimuli: &[(u64, Levels)], to: &mut dyn FnMut(Did)) -> Result<Standing, LevelError> {
+        let last = stimuli.last().map(|&(_, levels)| (0, levels));
+        for (count, Levels { rx, spi: [sck, select_n], estop, limit_min, limit_max }) in
+            stimuli.iter().copied().chain(last)
+        {
+            let bits = [estop, select_n, sck, rx].into_iter().fold(0, |bits, pin| bits << 1 | u8::from(pin));
+            writeln!(self.to, "{count} {bits:x} {limit_min:x} {limit_max:x}")
+                .map_err(tool::io("the simulation is gone"))?;
+        }
+        self.to.flush().map_err(tool::io("the simulation is gone"))?;
+        let mut line = String::new();
+        loop {
+            line.clear();
+            self.from.read_line(&mut line).map_err(tool::io("the simulation is gone"))?;
+            match parsed(&line).ok_or_else(|| gone(&line))? {
+                Heard::Did(did) => to(did),
+                Heard::Standing(standing) => return Ok(standing),
+            }
+        }
+    }
+}
+
+impl Drop for BoardProcess {
+    fn drop(&mut self) {
+        // It may be over by now.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A line of the bench.
+enum Heard {
+    Did(Did),
+    Standing(Standing),
+}
+
+fn parsed(line: &str) -> Option<Heard> {
+    let mut words = line.split_whitespace();
+    let kind = words.next()?;
+    let cycle = words.next()?.parse().ok()?;
+    let mut hex = || u8::from_str_radix(words.next()?, 16).ok();
+    let cause = |number: u8| CAUSES.get(usize::from(number)).copied();
+    Some(Heard::Did(match kind {
+        "t" => Did::Tx(cycle, hex()? == 1),
+        "p" => Did::Pins(cycle, [hex()?, hex()?]),
+        "l" => Did::Load(cycle),
+        "f" => Did::Stop(cycle, cause(hex()?)?),
+        "." => {
+            let (idle, halted, stopped) = (hex()? == 1, hex()? == 1, hex()? == 1);
+            let fault = (cause(hex()?)?, hex()?);
+            return Some(Heard::Standing(Standing { cycle, idle, halted, fault: stopped.then_some(fault) }));
+        }
+        _ => return None,
+    }))
+}
+
+fn gone(line: &str) -> LevelError {
+    LevelError::Tool { tool: VERILATOR.name, message: format!("the simulation of the board said {line:?}") }
+}

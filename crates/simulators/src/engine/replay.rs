@@ -1,0 +1,214 @@
+//! What a host did to the engine, replayed on the exported Verilog in Icarus or Verilator.
+//!
+//! The host runs once, against the model. Its every cycle is then played to the Verilog as it was: the
+//! outputs must be those of the model in each clock, and what the engine keeps at the end too.
+
+use crate::engine::{EngineHost, Events};
+use crate::tool::{self, ICARUS};
+use crate::verilator::Simulation;
+use crate::{Halt, HowFar, Level, LevelError, halted, how_far};
+use carrystep_core::engine::{EngineInputs, EngineOutputs};
+use carrystep_core::{EngineBuild, Program};
+use carrystep_model::Engine;
+use std::fmt::Write as _;
+use std::io::{BufRead as _, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+const ICARUS_BENCH: &str = include_str!("../../bench/engine_bench.v");
+const VERILATOR_BENCH: &str = include_str!("../../bench/engine_bench.cpp");
+
+/// P low, P high, position and discarded steps of each axis.
+pub type Kept = Vec<[u32; 4]>;
+
+/// A run of the model: what went in, what came out.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// Inputs, each with its number of cycles.
+    pub stimuli: Vec<(u64, EngineInputs)>,
+    /// Outputs of each cycle in which any changed.
+    pub outputs: Vec<(u64, EngineOutputs)>,
+    /// Cycles in all.
+    pub clocks: u64,
+    /// What is kept at the end.
+    pub kept: Kept,
+}
+
+impl Recording {
+    /// Runs a program, and what happens around it, on the model until it is over and all is quiet, or for `max_clocks`; whichever comes first,
+    /// then so many ticks of rest that all is counted.
+    pub fn new(build: &EngineBuild, program: &Program, events: &Events, max_clocks: u64) -> Self {
+        Self::of(build, EngineHost::new(&build.guard, program, events), max_clocks, &[], None)
+    }
+
+    /// The same of any host; as far as it goes until it is halted.
+    pub(super) fn of(
+        build: &EngineBuild,
+        mut host: EngineHost,
+        max_clocks: u64,
+        halt: Halt<'_>,
+        how_far: Option<&HowFar>,
+    ) -> Self {
+        let mut model = Engine::new(build);
+        let mut recording = Self { stimuli: Vec::new(), outputs: Vec::new(), clocks: 0, kept: Kept::default() };
+        let settle = settle(build);
+        let mut quiet = 0;
+        while quiet < settle && recording.clocks < max_clocks && !halted(halt) {
+            how_far::tell(how_far, recording.clocks);
+            let (inputs, outputs) = host.step(&mut model);
+            recording.add(inputs, outputs);
+            quiet = if host.is_done() && (outputs.idle || outputs.halted) { quiet + 1 } else { 0 };
+        }
+        let kept = |axis| {
+            let (p, shaper) = (model.fraction(axis), model.shaper(axis));
+            [p as u32, (p >> 32) as u32, shaper.position.cast_unsigned(), shaper.discarded]
+        };
+        recording.kept = (0..build.axes()).map(kept).collect();
+        recording
+    }
+
+    /// How many axes the engine has.
+    fn axes(&self) -> usize {
+        self.kept.len()
+    }
+
+    fn add(&mut self, inputs: EngineInputs, outputs: EngineOutputs) {
+        match self.stimuli.last_mut() {
+            Some((count, same)) if *same == inputs => *count += 1,
+            _ => self.stimuli.push((1, inputs)),
+        }
+        if self.outputs.last().is_none_or(|(_, before)| *before != outputs) {
+            self.outputs.push((self.clocks, outputs));
+        }
+        self.clocks += 1;
+    }
+
+    /// `count put_valid put_axis put_word put_data start_valid start_mask clear stop broken home_valid home_mask kick enable
+    /// estop limit_min limit_max`,
+    /// a line each.
+    fn text(&self) -> String {
+        let mut text = String::new();
+        for (count, inputs) in &self.stimuli {
+            let (axis, word, data) = inputs.put.map_or((inputs.room_of, 0, 0), |put| (put.axis, put.word, put.data));
+            let (put, start) = (u8::from(inputs.put.is_some()), u8::from(inputs.start.is_some()));
+            let EngineInputs { clear, stop, broken, kick, enable, estop, limit_min, limit_max, .. } = *inputs;
+            let [clear, stop, broken, kick, enable, estop] = [clear, stop, broken, kick, enable, estop].map(u8::from);
+            let homes = u8::from(inputs.home.is_some());
+            let [mask, home, min, max] = [inputs.start.unwrap_or(0), inputs.home.unwrap_or(0), limit_min, limit_max]
+                .map(|mask| u32::from(mask) & ((1 << self.axes()) - 1));
+            let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear}");
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{count} {host} {stop} {broken} {homes} {home:x} {kick} {enable} {estop} {min:x} {max:x}"
+            );
+        }
+        text
+    }
+}
+
+/// Cycles of rest after which all is counted.
+pub(super) fn settle(build: &EngineBuild) -> u64 {
+    12 * u64::from(build.timebase.clocks_per_tick())
+}
+
+/// The first difference between a recording and its replay on the Verilog of an engine.
+///
+/// `kept` is compared where the run came to rest without a fault or a block.
+///
+/// # Errors
+/// [`LevelError`]: a tool is missing or fails, or the level has no Verilog.
+pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<Option<String>, LevelError> {
+    match level {
+        Level::Icarus => {
+            let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+            tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
+            first_difference(&mut icarus(folder.path(), verilog, recording.axes())?, recording)
+        }
+        Level::Verilator => difference_of_mutant(verilog, 0, recording),
+        Level::Fast | Level::Model | Level::RustHdl => {
+            Err(LevelError::Gateware(format!("the level {level} does not run Verilog")))
+        }
+    }
+}
+
+/// The same in Verilator; of Verilog that holds many mutants, for the one of this number, 0 being none.
+///
+/// # Errors
+/// [`LevelError`]: a tool is missing or fails.
+pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording) -> Result<Option<String>, LevelError> {
+    let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
+    tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
+    let mut simulation = Command::new(verilated(verilog, recording.axes())?);
+    simulation.arg(folder.path().join("stimuli.txt")).arg(format!("+mutant={mutant}"));
+    first_difference(&mut simulation, recording)
+}
+
+/// Runs a simulation as far as it agrees with a recording.
+fn first_difference(simulation: &mut Command, recording: &Recording) -> Result<Option<String>, LevelError> {
+    let mut running = simulation.stdout(Stdio::piped()).spawn().map_err(tool::io("cannot start the simulation"))?;
+    let lines = running.stdout.take().map(|output| BufReader::new(output).lines());
+    let mut found = lines.into_iter().flatten().map_while(Result::ok);
+    let difference = compare(&mut found, recording);
+    // It may have more to say than anyone reads, or be over by now.
+    let _ = running.kill();
+    running.wait().map_err(tool::io("cannot end the simulation"))?;
+    Ok(difference)
+}
+
+fn compare(found: &mut impl Iterator<Item = String>, recording: &Recording) -> Option<String> {
+    let mut next = || found.next().unwrap_or_else(|| "nothing".to_owned());
+    for (cycle, outputs) in &recording.outputs {
+        let line = next();
+        let bits = packed(outputs, recording.axes());
+        if parsed(&line) != Some((*cycle, bits)) {
+            return Some(format!("expected in cycle {cycle} {outputs:?}: {bits:x}, found {line}"));
+        }
+    }
+    let rests = recording.outputs.last().is_some_and(|(_, outputs)| outputs.idle || outputs.halted);
+    for expected in recording.kept.iter().flatten() {
+        let line = next();
+        let kept = line.strip_prefix("K ").and_then(|hex| u32::from_str_radix(hex, 16).ok());
+        if rests && kept != Some(*expected) {
+            return Some(format!("expected to be kept: {:x?}, found {line}", recording.kept));
+        }
+    }
+    found.next().map(|line| format!("expected nothing more, found {line}"))
+}
+
+/// A line of a bench: cycle and outputs.
+fn parsed(line: &str) -> Option<(u64, u64)> {
+    let (cycle, bits) = line.split_once(' ')?;
+    Some((cycle.parse().ok()?, u64::from_str_radix(bits, 16).ok()?))
+}
+
+/// The outputs as the benches write them.
+fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
+    let EngineOutputs { put_ready, start_ready, step, dir, enabled, idle, fault, halted, started, .. } = *outputs;
+    let EngineOutputs { armed, ready, homing, latch, room, .. } = *outputs;
+    let (cause, culprits) = fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
+    let flags = [put_ready, start_ready, idle, fault.is_some(), halted, started, enabled];
+    let number = |place: Option<u8>| u64::from(place.is_some()) << 3 | u64::from(place.unwrap_or(0));
+    let host = number(latch) << 6 | number(room) << 2 | u64::from(armed) << 1 | u64::from(ready);
+    let host = host << axes | u64::from(homing);
+    let flags = flags.into_iter().fold(host, |all, flag| all << 1 | u64::from(flag));
+    [step, dir, culprits].into_iter().fold(flags << 3 | cause, |all, mask| all << axes | u64::from(mask))
+}
+
+fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelError> {
+    tool::find(&ICARUS)?;
+    tool::put(folder, &[("core.v", verilog), ("bench.v", ICARUS_BENCH)])?;
+    let parameter = format!("-Pengine_bench.AXES={axes}");
+    let arguments = ["-g2005", &parameter, "-o", "bench.vvp", "bench.v", "core.v"];
+    tool::complete(&ICARUS, Command::new(ICARUS.name).args(arguments).current_dir(folder))?;
+    let mut simulation = Command::new("vvp");
+    simulation.args(["-n", "bench.vvp", "+stimuli=stimuli.txt"]).current_dir(folder);
+    Ok(simulation)
+}
+
+/// The compiled simulation of this Verilog, from the cache or made now.
+fn verilated(verilog: &str, axes: usize) -> Result<PathBuf, LevelError> {
+    let flags = format!("-DAXES={axes}");
+    let options: &[&str] = &["-CFLAGS", &flags];
+    Simulation { name: "engine", top: "carrystep_engine", bench: VERILATOR_BENCH, options }.compiled(verilog)
+}

@@ -1,0 +1,132 @@
+//! Planned moves on the engine, at any level that has one.
+
+use super::replay::{self, Recording};
+use super::{EngineCore, EngineHost};
+use crate::{Halt, HowFar, Level, LevelError, Stage, halted, how_far};
+use carrystep_core::engine::{Cause, EngineOutputs};
+use carrystep_core::{Command, EngineBuild, Program};
+use carrystep_hdl::EngineSim;
+use carrystep_model::Engine;
+
+/// What `get` calls the position.
+const POSITION: usize = 2;
+
+/// Planned moves for an engine, fed by a host that keeps its queues full.
+#[derive(Debug, Clone, Copy)]
+pub struct EngineJob<'a> {
+    /// Build parameters of the engine.
+    pub build: &'a EngineBuild,
+    /// The moves.
+    pub program: &'a Program,
+    /// The run fails after this many cycles.
+    pub max_clocks: u64,
+    /// Ends it before its end.
+    pub halt: Halt<'a>,
+    /// Hears how far it is.
+    pub how_far: Option<&'a HowFar>,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EngineOutcome {
+    /// Clock cycles run.
+    pub clocks: u64,
+    /// Position registers, steps.
+    pub positions: Vec<i32>,
+    /// Why the axes were stopped, where they were, and the axes that it came from.
+    pub fault: Option<(Cause, u8)>,
+}
+
+/// Hears of each cycle in which any output changed; from the fast level not of the two `ready`s, which it
+/// tells to be 0.
+pub type EngineObserver<'a> = dyn FnMut(u64, &EngineOutputs) + 'a;
+
+impl<'a> EngineJob<'a> {
+    /// A job that may take `ticks` ticks of motion, with time for the drivers' power and for the words of all segments.
+    pub fn new(build: &'a EngineBuild, program: &'a Program, ticks: u64) -> Self {
+        let segments = program.iter().filter(|command| matches!(command, Command::Segment { .. })).count() as u64;
+        let warm = u64::from(build.guard.enable + 1) * u64::from(build.guard.round);
+        let pins = build.pins.iter().map(|pins| u64::from(pins.width + pins.gap)).max().unwrap_or(0);
+        let clocks = u64::from(build.timebase.clocks_per_tick());
+        let max_clocks = (ticks + warm + 10 * segments + 100) * clocks + 4 * pins;
+        Self { build, program, max_clocks, halt: &[], how_far: None }
+    }
+
+    pub(super) fn host(&self) -> EngineHost {
+        EngineHost::feeding(&self.build.guard, self.program)
+    }
+
+    /// Runs it at a level.
+    ///
+    /// The Verilog of an engine is compared with the model in every output of every clock, so that what is told is both.
+    ///
+    /// # Errors
+    /// [`LevelError`]: a tool is missing or fails, the run does not end or is halted, or the Verilog differs.
+    pub fn run(&self, level: Level, observer: &mut EngineObserver<'_>) -> Result<EngineOutcome, LevelError> {
+        let axes = 0..self.build.axes();
+        let gateware = |error: &dyn std::fmt::Display| LevelError::Gateware(error.to_string());
+        match level {
+            Level::Fast => self.observe_fast(observer),
+            Level::Model => {
+                let mut model = Engine::new(self.build);
+                let (clocks, fault) = self.drive(&mut model, observer)?;
+                let positions = axes.map(|axis| model.shaper(axis).position).collect();
+                Ok(EngineOutcome { clocks, positions, fault })
+            }
+            Level::RustHdl => {
+                let mut sim = EngineSim::new(self.build).map_err(|error| gateware(&error))?;
+                let (clocks, fault) = self.drive(&mut sim, observer)?;
+                let positions = axes.map(|axis| sim.kept(axis, POSITION).cast_signed()).collect();
+                Ok(EngineOutcome { clocks, positions, fault })
+            }
+            Level::Icarus | Level::Verilator => {
+                let verilog =
+                    carrystep_verilog::engine_verilog(self.build, "a simulation").map_err(|error| gateware(&error))?;
+                let begin = |stage| self.how_far.into_iter().for_each(|how_far| how_far.begin(stage));
+                begin(Stage::ModelRuns);
+                let recording = Recording::of(self.build, self.host(), self.max_clocks, self.halt, self.how_far);
+                begin(Stage::VerilogRuns);
+                if halted(self.halt) {
+                    return Err(LevelError::Halted);
+                }
+                if recording.clocks == self.max_clocks {
+                    return Err(LevelError::Endless(self.max_clocks));
+                }
+                if let Some(found) = replay::difference(level, &verilog, &recording)? {
+                    return Err(LevelError::Gateware(format!("{level} differs from the model: {found}")));
+                }
+                recording.outputs.iter().for_each(|(cycle, outputs)| observer(*cycle, outputs));
+                let positions = axes.map(|axis| recording.kept[axis][POSITION].cast_signed()).collect();
+                let fault = recording.outputs.last().and_then(|(_, outputs)| outputs.fault);
+                Ok(EngineOutcome { clocks: recording.clocks, positions, fault })
+            }
+        }
+    }
+
+    /// To the end, and so many ticks of rest that all is counted.
+    fn drive(
+        &self,
+        core: &mut impl EngineCore,
+        observer: &mut EngineObserver<'_>,
+    ) -> Result<(u64, Option<(Cause, u8)>), LevelError> {
+        let mut host = self.host();
+        let settle = replay::settle(self.build);
+        let (mut quiet, mut before) = (0, None);
+        for cycle in 0..self.max_clocks {
+            if halted(self.halt) {
+                return Err(LevelError::Halted);
+            }
+            how_far::tell(self.how_far, cycle);
+            let (_, outputs) = host.step(core);
+            if before != Some(outputs) {
+                observer(cycle, &outputs);
+                before = Some(outputs);
+            }
+            quiet = if host.is_done() && (outputs.idle || outputs.halted) { quiet + 1 } else { 0 };
+            if quiet == settle {
+                return Ok((cycle + 1, outputs.fault));
+            }
+        }
+        Err(LevelError::Endless(self.max_clocks))
+    }
+}

@@ -1,0 +1,78 @@
+//! The fast model fed by the host, which waits for many cycles at once.
+
+use crate::host::Host;
+use crate::replay::Replay;
+use crate::{Job, LevelError, Observer, Outcome, halted, how_far};
+use carrystep_core::ports::Outputs;
+use carrystep_model::Fast;
+use carrystep_model::fast::{Edge, Edges};
+
+/// Who wants to hear of edges, and of the outputs wherever more than the pins may have changed.
+pub trait Listener<O>: Edges {
+    /// The outputs in this cycle. Edges up to it have been told.
+    fn outputs(&mut self, cycle: u64, outputs: &O);
+}
+
+/// Edges alone: nothing else is told.
+pub struct EdgesOnly<E>(pub E);
+
+impl<E: Edges> Edges for EdgesOnly<E> {
+    fn edge(&mut self, edge: Edge) {
+        self.0.edge(edge);
+    }
+}
+
+impl<E: Edges, O> Listener<O> for EdgesOnly<E> {
+    fn outputs(&mut self, _: u64, _: &O) {}
+}
+
+/// Runs a job on the fast model and tells every cycle in which any output changed, as any level does.
+pub(crate) fn replay(job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
+    let mut replay = Replay::new(&job.build.pins, observer);
+    let end = run(job, &mut replay);
+    replay.reach(end.as_ref().map_or(job.max_clocks, |outcome| outcome.clocks));
+    end
+}
+
+/// Runs a job on the fast model; the edges stream by.
+///
+/// # Errors
+/// [`LevelError::Endless`]: the run does not end; [`LevelError::Halted`]: it is to.
+pub fn run(job: &Job<'_>, listener: &mut impl Listener<Outputs>) -> Result<Outcome, LevelError> {
+    let mut core = Fast::new(job.build);
+    let mut host = Host::new(job.program);
+    let mut quiet = 0;
+    let mut origin = None;
+    while core.cycle() < job.max_clocks {
+        if halted(job.halt) {
+            return Err(LevelError::Halted);
+        }
+        let cycle = core.cycle();
+        how_far::tell(job.how_far, cycle);
+        let fault = core.core().faults().any();
+        let inputs = host.inputs(fault);
+        let outputs = core.outputs(&inputs);
+        listener.outputs(cycle, &outputs);
+        if outputs.started && origin.is_none() {
+            origin = Some(cycle + 1);
+        }
+        quiet = if host.is_done() && (outputs.idle || fault) { quiet + 1 } else { 0 };
+        if quiet == job.tail {
+            return Ok(Outcome { clocks: cycle + 1, origin, last: outputs });
+        }
+        let to_the_end = if quiet > 0 { job.tail - quiet } else { u64::MAX };
+        let most = host.patience(&outputs).min(to_the_end).min(job.max_clocks - cycle);
+        match if most > 0 { core.leap(&inputs, most, listener) } else { 0 } {
+            0 => {
+                host.advance(&outputs);
+                core.clock(&inputs, listener);
+            }
+            cycles => {
+                host.wait(cycles);
+                // This cycle has been counted.
+                quiet += if quiet > 0 { cycles - 1 } else { 0 };
+            }
+        }
+    }
+    Err(LevelError::Endless(job.max_clocks))
+}

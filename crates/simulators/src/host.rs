@@ -1,0 +1,152 @@
+//! The host that feeds a core, clock by clock: the Rust side of docs/clock-by-clock.md, "host".
+
+use crate::{Job, LevelError, Observer, Outcome, halted, how_far};
+use carrystep_core::ports::{Inputs, Outputs};
+use carrystep_core::{Command, Program};
+
+/// A six-axis core that can be stepped in Rust.
+pub trait Core {
+    /// The outputs of this cycle with these inputs.
+    fn outputs(&mut self, inputs: &Inputs) -> Outputs;
+    /// Goes to the next cycle.
+    fn clock(&mut self, inputs: &Inputs);
+}
+
+impl Core for carrystep_model::SixAxis {
+    fn outputs(&mut self, inputs: &Inputs) -> Outputs {
+        Self::outputs(self, inputs)
+    }
+    fn clock(&mut self, inputs: &Inputs) {
+        Self::clock(self, inputs);
+    }
+}
+
+impl Core for carrystep_hdl::SixAxisSim {
+    fn outputs(&mut self, inputs: &Inputs) -> Outputs {
+        self.settle(inputs)
+    }
+    fn clock(&mut self, _: &Inputs) {
+        Self::clock(self);
+    }
+}
+
+/// The commands that are left.
+pub(crate) struct Host<'a> {
+    commands: std::iter::Copied<std::slice::Iter<'a, Command>>,
+    current: Option<Command>,
+}
+
+impl<'a> Host<'a> {
+    pub(crate) fn new(program: &'a Program) -> Self {
+        let mut commands = program.iter().copied();
+        let current = commands.next();
+        Self { commands, current }
+    }
+
+    /// What is driven in this cycle; nothing but `clear` and waiting while the core is frozen.
+    pub(crate) fn inputs(&self, fault: bool) -> Inputs {
+        match self.current {
+            Some(Command::Segment { axis, segment }) if !fault => {
+                Inputs { segment: Some((axis, segment)), ..Inputs::default() }
+            }
+            Some(Command::Start { mask }) if !fault => Inputs { start: Some(mask), ..Inputs::default() },
+            Some(Command::Clear) => Inputs { clear: true, ..Inputs::default() },
+            _ => Inputs::default(),
+        }
+    }
+
+    /// Goes on where the command is done in this cycle.
+    pub(crate) fn advance(&mut self, outputs: &Outputs) {
+        let fault = outputs.faults.any();
+        let done = match &mut self.current {
+            None => false,
+            Some(Command::Segment { .. }) => fault || outputs.seg_ready,
+            Some(Command::Start { .. }) => fault || outputs.start_ready,
+            Some(Command::Wait { clocks }) => {
+                *clocks = clocks.saturating_sub(1);
+                *clocks == 0
+            }
+            Some(Command::Clear) => !fault,
+        };
+        if done {
+            self.current = self.commands.next();
+        }
+    }
+
+    /// Nothing is left to be done.
+    pub(crate) fn is_done(&self) -> bool {
+        self.current.is_none()
+    }
+
+    /// How many cycles the host drives the same, as long as the outputs let it wait.
+    pub(crate) fn patience(&self, outputs: &Outputs) -> u64 {
+        let blocked = match self.current {
+            Some(Command::Wait { clocks }) => return u64::from(clocks.saturating_sub(1)),
+            Some(Command::Segment { .. }) => !outputs.faults.any() && !outputs.seg_ready,
+            Some(Command::Start { .. }) => !outputs.faults.any() && !outputs.start_ready,
+            Some(Command::Clear) => outputs.faults.any(),
+            None => true,
+        };
+        if blocked { u64::MAX } else { 0 }
+    }
+
+    /// So many cycles of [`Host::patience`] have passed.
+    pub(crate) fn wait(&mut self, cycles: u64) {
+        if let Some(Command::Wait { clocks }) = &mut self.current {
+            // Never more than its patience, which fits.
+            *clocks = clocks.saturating_sub(u32::try_from(cycles).unwrap_or(u32::MAX));
+        }
+    }
+}
+
+/// The first cycle after a start, if there is one.
+pub(crate) fn first_start(core: &mut impl Core, job: &Job<'_>) -> Option<u64> {
+    let mut host = Host::new(job.program);
+    for cycle in 0..job.max_clocks {
+        let inputs = host.inputs(false);
+        let outputs = core.outputs(&inputs);
+        if outputs.started {
+            return Some(cycle + 1);
+        }
+        host.advance(&outputs);
+        core.clock(&inputs);
+    }
+    None
+}
+
+/// Feeds a core until the program is over and the core is quiet.
+pub(crate) fn run(core: &mut impl Core, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
+    let mut host = Host::new(job.program);
+    let mut before = None;
+    let mut fault = false;
+    let mut quiet = 0;
+    let mut origin = None;
+    for cycle in 0..job.max_clocks {
+        if halted(job.halt) {
+            return Err(LevelError::Halted);
+        }
+        how_far::tell(job.how_far, cycle);
+        // The host sees this cycle's fault: ask again where it has just changed.
+        let mut inputs = host.inputs(fault);
+        let mut outputs = core.outputs(&inputs);
+        if outputs.faults.any() != fault {
+            fault = outputs.faults.any();
+            inputs = host.inputs(fault);
+            outputs = core.outputs(&inputs);
+        }
+        if before != Some(outputs) {
+            observer(cycle, &outputs);
+            before = Some(outputs);
+        }
+        if outputs.started && origin.is_none() {
+            origin = Some(cycle + 1);
+        }
+        quiet = if host.is_done() && (outputs.idle || fault) { quiet + 1 } else { 0 };
+        if quiet == job.tail {
+            return Ok(Outcome { clocks: cycle + 1, origin, last: outputs });
+        }
+        host.advance(&outputs);
+        core.clock(&inputs);
+    }
+    Err(LevelError::Endless(job.max_clocks))
+}

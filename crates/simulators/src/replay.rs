@@ -1,0 +1,106 @@
+//! From edges back to the outputs of every cycle in which any of them changed.
+
+use crate::fast::Listener;
+use carrystep_core::PinTiming;
+use carrystep_core::engine::{EngineOutputs, MAX_AXES};
+use carrystep_core::ports::Outputs;
+use carrystep_model::fast::{Change, Edge, Edges};
+
+/// No fall is due.
+const NEVER: u64 = u64::MAX;
+
+/// Outputs that edges change.
+pub trait Shown: Copy + PartialEq + Default {
+    /// STEP and DIR pins.
+    fn pins(&mut self) -> (&mut u8, &mut u8);
+    /// A step more of an axis, or one less.
+    fn count(&mut self, axis: usize, backward: bool);
+}
+
+impl Shown for Outputs {
+    fn pins(&mut self) -> (&mut u8, &mut u8) {
+        (&mut self.step, &mut self.dir)
+    }
+
+    fn count(&mut self, axis: usize, backward: bool) {
+        let position = &mut self.position[axis];
+        *position = position.wrapping_add(if backward { -1 } else { 1 });
+    }
+}
+
+impl Shown for EngineOutputs {
+    fn pins(&mut self) -> (&mut u8, &mut u8) {
+        (&mut self.step, &mut self.dir)
+    }
+
+    fn count(&mut self, _: usize, _: bool) {}
+}
+
+/// Tells an observer what it would hear from the clock-by-clock model.
+pub struct Replay<'a, O> {
+    observer: &'a mut (dyn FnMut(u64, &O) + 'a),
+    width: [u64; MAX_AXES],
+    /// When STEP falls.
+    falls: [u64; MAX_AXES],
+    first_fall: u64,
+    /// The outputs in cycle `at`, as far as they are known.
+    at: u64,
+    now: O,
+    /// What was told last.
+    told: Option<O>,
+}
+
+impl<'a, O: Shown> Replay<'a, O> {
+    /// Pins that are all low, with these widths.
+    pub fn new(pins: &[PinTiming], observer: &'a mut (dyn FnMut(u64, &O) + '_)) -> Self {
+        let mut width = [0; MAX_AXES];
+        width.iter_mut().zip(pins).for_each(|(width, pins)| *width = pins.width.into());
+        Self { observer, width, falls: [NEVER; MAX_AXES], first_fall: NEVER, at: 0, now: O::default(), told: None }
+    }
+
+    /// All that happens before this cycle is known: tell it.
+    pub fn reach(&mut self, cycle: u64) {
+        while self.first_fall <= cycle {
+            self.settle(self.first_fall);
+            for (axis, fall) in self.falls.iter_mut().enumerate().filter(|(_, fall)| **fall == self.at) {
+                *self.now.pins().0 &= !(1 << axis);
+                *fall = NEVER;
+            }
+            self.first_fall = self.falls.into_iter().min().unwrap_or(NEVER);
+        }
+        self.settle(cycle);
+    }
+
+    fn settle(&mut self, cycle: u64) {
+        if cycle > self.at {
+            if self.told != Some(self.now) {
+                (self.observer)(self.at, &self.now);
+                self.told = Some(self.now);
+            }
+            self.at = cycle;
+        }
+    }
+}
+
+impl<O: Shown> Edges for Replay<'_, O> {
+    fn edge(&mut self, edge: Edge) {
+        self.reach(edge.clock);
+        let axis = usize::from(edge.axis);
+        match edge.change {
+            Change::Turn => *self.now.pins().1 ^= 1 << axis,
+            Change::Rise => {
+                *self.now.pins().0 |= 1 << axis;
+                self.now.count(axis, edge.backward);
+                self.falls[axis] = edge.clock + self.width[axis];
+                self.first_fall = self.first_fall.min(self.falls[axis]);
+            }
+        }
+    }
+}
+
+impl<O: Shown> Listener<O> for Replay<'_, O> {
+    fn outputs(&mut self, cycle: u64, outputs: &O) {
+        self.reach(cycle);
+        self.now = *outputs;
+    }
+}

@@ -1,0 +1,36 @@
+//! The external simulators: are they there, and what they say when they fail.
+
+use crate::LevelError;
+use carrystep_tools::programs::Tool;
+pub(crate) use carrystep_tools::programs::{ICARUS, VERILATOR};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// Checks that a tool can be started.
+pub(crate) fn find(tool: &Tool) -> Result<(), LevelError> {
+    let started = Command::new(tool.name).args(tool.version).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    started.map(|_| ()).map_err(|_| LevelError::Missing(*tool))
+}
+
+/// Runs a command to its end; what it prints becomes the error if it fails.
+pub(crate) fn complete(tool: &Tool, command: &mut Command) -> Result<(), LevelError> {
+    let output = command.output().map_err(|_| LevelError::Missing(*tool))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let text = [output.stdout, output.stderr].concat();
+    Err(LevelError::Tool { tool: tool.name, message: String::from_utf8_lossy(&text).trim().to_owned() })
+}
+
+/// An input or output error, with what was tried.
+pub(crate) fn io(context: impl Into<String>) -> impl FnOnce(std::io::Error) -> LevelError {
+    move |source| LevelError::Io { context: context.into(), source }
+}
+
+/// Writes files into a folder.
+pub(crate) fn put(folder: &Path, files: &[(&str, &str)]) -> Result<(), LevelError> {
+    for (name, text) in files {
+        std::fs::write(folder.join(name), text).map_err(io(format!("cannot write {name}")))?;
+    }
+    Ok(())
+}

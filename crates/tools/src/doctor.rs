@@ -1,0 +1,46 @@
+//! What stands between this machine and a running board: tools that are missing, ports that may not be opened, and why.
+//!
+//! Nothing is opened and nothing is changed: to open a serial port would move its control lines, and with them some boards.
+
+mod access;
+mod host;
+mod ports;
+mod tools;
+
+pub use access::{Access, Refusal, obstacle};
+pub use host::{Host, User};
+pub use ports::{SerialPort, UsbDevice, serial_ports, usb_devices};
+pub use tools::{Found, tools};
+
+use carrystep_boards::Board;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Report {
+    /// Tools that are wanted, whether they are there or not.
+    pub tools: Vec<Found>,
+    /// Serial ports of USB devices.
+    pub serial_ports: Vec<SerialPort>,
+    /// USB devices that are one of the boards, by vendor and product.
+    pub usb_devices: Vec<UsbDevice>,
+}
+
+impl Report {
+    /// Looks at this machine; with a board, for what that one needs.
+    pub fn of(host: &Host, board: Option<&Board>) -> Self {
+        Self { tools: tools(host, board), serial_ports: serial_ports(host), usb_devices: usb_devices(host) }
+    }
+
+    /// No tool is missing.
+    pub fn has_all_tools(&self) -> bool {
+        self.tools.iter().all(|tool| tool.path.is_some())
+    }
+
+    /// Every port and device may be used.
+    pub fn has_all_access(&self) -> bool {
+        let serial = self.serial_ports.iter().map(|port| &port.access);
+        serial.chain(self.usb_devices.iter().map(|device| &device.access)).all(|access| *access == Access::Granted)
+    }
+}

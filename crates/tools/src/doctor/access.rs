@@ -1,0 +1,110 @@
+//! Whether a device may be used, and if not, the real cause.
+
+use crate::doctor::Host;
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+/// Whether a device may be used.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Access {
+    /// It may.
+    Granted,
+    /// A program has it open.
+    InUse {
+        /// Its process.
+        pid: u32,
+        /// Its name.
+        program: String,
+    },
+    /// The system forbids it.
+    Refused(Refusal),
+}
+
+/// Why the system forbids it.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+#[serde(rename_all = "snake_case", tag = "reason")]
+pub enum Refusal {
+    /// Its group may use it, and the user is not in that.
+    NotInGroup {
+        /// The group.
+        group: String,
+    },
+    /// The user is in its group, but was not when this session began.
+    LogInAgain {
+        /// The group.
+        group: String,
+    },
+    /// Not even its group may use it: a rule of udev is missing.
+    NoRule,
+}
+
+/// Whether this device may be used.
+pub(crate) fn access(host: &Host, device: &Path) -> Access {
+    if !(host.may)(device) {
+        return Access::Refused(refusal(host, device));
+    }
+    user_of(host, device).unwrap_or(Access::Granted)
+}
+
+/// Why this device of this machine may not be used, where that can be told; links are followed.
+pub fn obstacle(device: &Path) -> Option<Access> {
+    let device = fs::canonicalize(device).ok()?;
+    Some(access(&Host::this(), &device)).filter(|access| *access != Access::Granted)
+}
+
+#[cfg(unix)]
+fn refusal(host: &Host, device: &Path) -> Refusal {
+    use std::os::unix::fs::MetadataExt;
+    let Ok(there) = fs::metadata(device) else { return Refusal::NoRule };
+    // Read and write for the group; root's own group is for nobody.
+    let for_group = there.mode() & 0o060 == 0o060;
+    match host.group(there.gid()).filter(|(name, _)| for_group && name != "root") {
+        None => Refusal::NoRule,
+        // Neither is it the group.
+        Some(_) if host.user.groups.contains(&there.gid()) => Refusal::NoRule,
+        Some((group, true)) => Refusal::LogInAgain { group },
+        Some((group, false)) => Refusal::NotInGroup { group },
+    }
+}
+
+#[cfg(not(unix))]
+fn refusal(_: &Host, _: &Path) -> Refusal {
+    Refusal::NoRule
+}
+
+/// Who has it open, of the processes that this user may look into.
+fn user_of(host: &Host, device: &Path) -> Option<Access> {
+    let numbered = |path: &Path| path.file_name()?.to_str()?.parse::<u32>().ok();
+    host.list("proc").into_iter().find_map(|process| {
+        let pid = numbered(&process)?;
+        let mut files = fs::read_dir(process.join("fd")).ok()?.flatten();
+        files.find(|file| fs::read_link(file.path()).is_ok_and(|target| target == device))?;
+        let program = fs::read_to_string(process.join("comm")).unwrap_or_default().trim().to_owned();
+        Some(Access::InUse { pid, program })
+    })
+}
+
+impl fmt::Display for Access {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Granted => f.write_str("may be used"),
+            Self::InUse { pid, program } => write!(f, "in use by {program} (process {pid}): close that first"),
+            Self::Refused(Refusal::NotInGroup { group }) => write!(
+                f,
+                "may not be opened: you are not in its group {group}. `sudo usermod -aG {group} $USER`, then log out and in"
+            ),
+            Self::Refused(Refusal::LogInAgain { group }) => write!(
+                f,
+                "may not be opened yet: you are in its group {group} since this session began. Log out and in, or run \
+                 `newgrp {group}`"
+            ),
+            Self::Refused(Refusal::NoRule) => {
+                f.write_str("may not be opened: no rule of udev gives it to a group. docs/flashing.md has one")
+            }
+        }
+    }
+}

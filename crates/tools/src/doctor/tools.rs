@@ -1,0 +1,72 @@
+//! The tools that are wanted: where they are, which version, and the line that installs what is missing.
+
+use crate::doctor::Host;
+use crate::programs::{
+    ICARUS, ICEBOX_VLOG, ICEPACK, ICETIME, NEXTPNR, PROGRAMMERS, Tool, VERILATOR, VIVADO, XST, YOSYS, Z3,
+};
+use carrystep_boards::{Board, Toolchain};
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A tool, there or not.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
+pub struct Found {
+    /// What one types.
+    pub name: &'static str,
+    /// Where it is.
+    pub path: Option<PathBuf>,
+    /// The first line that it says of its version.
+    pub version: Option<String>,
+    /// What it is wanted for.
+    pub purpose: &'static str,
+    /// How to get it.
+    pub install: String,
+}
+
+/// What a board needs; without one, simulators and the open tools.
+pub fn tools(host: &Host, board: Option<&Board>) -> Vec<Found> {
+    let wanted: Vec<Tool> = match board {
+        None => vec![ICARUS, VERILATOR, Z3, YOSYS, NEXTPNR, ICEPACK, ICETIME, ICEBOX_VLOG],
+        Some(board) => {
+            let flow: &[Tool] = match board.family.toolchain() {
+                Toolchain::Open => &[YOSYS, NEXTPNR, ICEPACK, ICETIME],
+                Toolchain::Ise => &[XST],
+                Toolchain::Vivado => &[VIVADO],
+            };
+            let loads = PROGRAMMERS.into_iter().filter(|tool| board.flash.split(' ').next() == Some(tool.name));
+            flow.iter().copied().chain(loads).collect()
+        }
+    };
+    wanted.into_iter().map(|program| tool(host, program)).collect()
+}
+
+fn tool(host: &Host, Tool { name, version: option, purpose, install }: Tool) -> Found {
+    // The same tools from pip have a name of their own.
+    let path = host.program(name).or_else(|| host.program(&format!("yowasp-{name}")));
+    let version = path.as_deref().zip(option).and_then(|(path, option)| version(path, option));
+    Found { name, path, version, purpose, install: install.join(", or ") }
+}
+
+/// The first line that a tool says, wherever it says it.
+fn version(path: &Path, option: &str) -> Option<String> {
+    let output = Command::new(path).arg(option).output().ok()?;
+    let text = [output.stdout, output.stderr].concat();
+    let text = String::from_utf8_lossy(&text);
+    text.lines().map(str::trim).find(|line| !line.is_empty()).map(str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carrystep_boards::boards;
+
+    #[test]
+    fn every_board_s_programmer_is_known() {
+        for board in boards() {
+            let first = board.flash.split(' ').next().unwrap_or_default();
+            assert!(PROGRAMMERS.iter().any(|tool| tool.name == first), "{}: {first}", board.name);
+        }
+    }
+}

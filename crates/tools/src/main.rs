@@ -1,0 +1,78 @@
+//! `cargo xtask resources`: measures every row and writes `hdl-out/resources.md`; with the argument `boards`, which `cargo xtask
+//! long boards` gives, builds all boards and writes `hdl-out/boards.md` and the figures that `carrystep boards` shows.
+
+use carrystep_boards::MEASURED_AT;
+use carrystep_tools::board::page;
+use carrystep_tools::resources::{self, FAMILIES, Measured, PAGE, ROWS};
+use carrystep_tools::xilinx;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::ExitCode;
+
+fn say(line: &str) {
+    // Nobody is left to tell if this fails.
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+fn main() -> ExitCode {
+    let written = match std::env::args().nth(1).as_deref() {
+        Some("boards") => boards(),
+        _ => resources(),
+    };
+    match written {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            say(&message);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// What is written above the figures of the boards.
+const HEAD: &str = "# What the shipped gateware takes of each board, on its first part with its first clock. Written by `cargo xtask long boards`.\n\n";
+
+/// All boards; one that does not reach its clock stands in the table, and is a failure.
+fn boards() -> Result<(), String> {
+    let all = page::measure(&mut say).map_err(|error| error.to_string())?;
+    let text = page::page(&all);
+    let data = toml::to_string(&all).map_err(|error| error.to_string())?;
+    write(MEASURED_AT, &(HEAD.to_owned() + &data))?;
+    write(page::PAGE, &text)?;
+    if text.contains("**no**") {
+        return Err(format!("{}: a clock is not reached", page::PAGE));
+    }
+    say(&format!("FIGURES {} boards, each iCE40 on its pins and in time", text.matches("\n| `").count()));
+    Ok(())
+}
+
+/// Whole or not at all.
+fn write(page: &str, text: &str) -> Result<(), String> {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(page);
+    let next = path.with_extension("new");
+    std::fs::write(&next, text).and_then(|()| std::fs::rename(&next, &path)).map_err(|error| error.to_string())
+}
+
+/// The page is written as it was measured, then held against its budgets.
+fn resources() -> Result<(), String> {
+    let (mut rows, mut families) = (Vec::new(), Vec::new());
+    for row in &ROWS {
+        let found = Measured::of(row).map_err(|error| error.to_string())?;
+        say(&format!("{} at {} ns: {found:?}", row.part.device, row.tick_ns));
+        rows.push(found);
+    }
+    for family in &FAMILIES {
+        let verilog = resources::verilog(&family.of).map_err(|error| error.to_string())?;
+        let found = xilinx::cells(&verilog, carrystep_verilog::ENGINE_NAME, family.name);
+        let found = found.map_err(|error| error.to_string())?;
+        say(&format!("{}: {found:?}", family.name));
+        families.push(found);
+    }
+    let links = resources::links().map_err(|error| error.to_string())?;
+    say(&format!("the link: {links:?}"));
+    let text = resources::page(&rows, &links, &families);
+    write(PAGE, &text)?;
+    resources::check(&text)?;
+    // For the row of `cargo xtask long`.
+    say(&format!("FIGURES {} rows of iCE40, {} of Xilinx, each within its budget", rows.len(), families.len()));
+    Ok(())
+}

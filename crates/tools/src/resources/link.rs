@@ -1,0 +1,35 @@
+//! What the host link costs, line included.
+
+use super::measure::{failed, machine};
+use super::rows::ROWS;
+use crate::SynthesisError;
+use crate::ice40::{self, Size};
+use carrystep_core::link::{Line, Uart};
+use carrystep_verilog::{LINK_NAME, line_name, line_verilog, link_verilog};
+
+/// Cells and memories that it may take.
+pub const LINK_BUDGET: Size = Size { logic_cells: 300, block_rams: 7 };
+
+/// The line of each row, and how the page calls it.
+pub const LINES: [&str; 2] = ["UART, 3 Mbaud", "SPI"];
+
+/// The size of each line with its link, for the engine of the first row.
+///
+/// # Errors
+/// [`SynthesisError`]: a tool is missing or fails.
+pub fn links() -> Result<[Size; LINES.len()], SynthesisError> {
+    let row = &ROWS[0];
+    let build = machine(row)?;
+    let uart = Uart::new(row.clock_hz, 3_000_000).map_err(failed)?;
+    let size = |line| {
+        let parts = [(link_verilog(&build, line, ""), LINK_NAME), (line_verilog(line, ""), line_name(line))];
+        let mut all = Size { logic_cells: 0, block_rams: 0 };
+        for (verilog, name) in parts {
+            let found = ice40::synthesise(&verilog.map_err(failed)?, name)?.size(row.part)?;
+            all.logic_cells += found.logic_cells;
+            all.block_rams += found.block_rams;
+        }
+        Ok(all)
+    };
+    Ok([size(Line::Uart(uart))?, size(Line::Spi)?])
+}

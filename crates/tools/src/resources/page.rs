@@ -1,0 +1,176 @@
+//! `hdl-out/resources.md`: written from measurements, and read again by the test that guards it.
+
+use super::link::{LINES, LINK_BUDGET};
+use super::measure::Measured;
+use super::peers::PEERS;
+use super::rows::{FAMILIES, Family, ROWS, Row, SEEDS};
+use crate::ice40::Size;
+use carrystep_boards::Mapped;
+
+/// Where it is, from the root of the workspace.
+pub const PAGE: &str = "hdl-out/resources.md";
+
+/// The page, from what was found for each of the [`ROWS`], the [`LINES`] and the [`FAMILIES`].
+pub fn page(rows: &[Measured], links: &[Size], families: &[Mapped]) -> String {
+    let mut text = format!(
+        "# What the engine costs\n\n\
+         Written by `cargo xtask resources` with yosys 0.23 and nextpnr 0.4; `tests/system/engine_fits_its_budget.rs` fails where a change goes \
+         over budget.\n\
+         The engine is that of `sim/engine.toml`: third order, 64-bit registers, queues of seven segments, 16 phases, guard, position \
+         registers, real drivers' timings.\n\
+         Logic cells are those of the core alone; Fmax is that between registers of core and harness, the best of seeds {SEEDS:?}.\n\n\
+         ## iCE40\n\n\
+         {ICE40}\n\
+         |---|---|---|---|---|---|---|---|---|\n"
+    );
+    for (row, found) in ROWS.iter().zip(rows) {
+        text += &line(row, found);
+    }
+    text += "\nThe schedule needs the clocks of its turns, and the least clock whose tick holds them and divides into phases.\n\n\
+         ## The host link\n\n\
+         Beside the engine of the first row: the link and its line, each by itself.\n\n\
+         | line | logic cells (budget) | block RAM |\n|---|---|---|\n";
+    for (name, found) in LINES.iter().zip(links) {
+        text += &link_line(name, found);
+    }
+    text += "\n## Xilinx\n\n\
+         Cells by yosys (`synth_xilinx -nowidelut -flatten`), which calls these families experimental; not placed. The engine of the \
+         first row. A carry cell\nis one bit in xc3s, four in the others. 12 of the 16 block RAMs in xc3s are the wheel's, which is written bit by \
+         bit: the boards of that family have it in LUTs\n(decision 38).\n\n\
+         | family | LUTs (budget) | flip-flops | carry cells | block RAMs |\n|---|---|---|---|---|\n";
+    for (family, found) in FAMILIES.iter().zip(families) {
+        text += &cells_line(family, found);
+    }
+    text += "\n## Beside others\n\n\
+         Six axes on one flow: yosys 0.23, nextpnr 0.4, HX8K, three seeds, median, the core alone; none of the others has limits or a guard \
+         in it.\nOurs are placed for the clock of their row; names given before LUTs (decision 17) move sizes by a few cells.\n\n\
+         | core | ramp in hardware | pin timing enforced | queue | logic cells | Fmax, MHz |\n|---|---|---|---|---|---|\n";
+    text += &beside(rows);
+    text
+}
+
+const ICE40: &str = "| part | axes | tick | clock, MHz: has, needs | clocks per tick: has, needs | logic cells (budget) | block RAM | Fmax, MHz (each seed) | clock reached |";
+
+/// What a row's line begins with.
+fn key(row: &Row) -> String {
+    let (part, axes, us) = (row.part, row.axes, row.tick_ns / 1000);
+    let [mhz, least] = [row.clock_hz, row.clock_needed_hz()].map(|hz| hz / 1_000_000);
+    let (has, needs) = (row.clocks_per_tick(), row.clocks_needed());
+    format!("| {} {} | {axes} | {us} us | {mhz}, {least} | {has}, {needs} |", part.device, part.package)
+}
+
+fn line(row: &Row, found: &Measured) -> String {
+    let each: Vec<String> = found.mhz.iter().map(|mhz| format!("{mhz:.0}")).collect();
+    let reached = if is_met(row, found) { "yes" } else { "**no**" };
+    let (cells, rams, budget) = (found.size.logic_cells, found.size.block_rams, row.budget.logic_cells);
+    format!("{} {cells} ({budget}) | {rams} | {:.1} ({}) | {reached} |\n", key(row), found.best(), each.join(", "))
+}
+
+/// Whether the best seed reaches the row's clock.
+fn is_met(row: &Row, found: &Measured) -> bool {
+    found.best() * 1e6 >= row.clock_hz as f64
+}
+
+fn link_line(name: &str, found: &Size) -> String {
+    format!("| {name} | {} ({}) | {} |\n", found.logic_cells, LINK_BUDGET.logic_cells, found.block_rams)
+}
+
+fn cells_line(family: &Family, found: &Mapped) -> String {
+    let (luts, budget) = (found.luts, family.budget.luts);
+    format!(
+        "| {} | {luts} ({budget}) | {} | {} | {} |\n",
+        family.name, found.flip_flops, found.carries, found.block_rams
+    )
+}
+
+/// Ours among the others, by size.
+fn beside(rows: &[Measured]) -> String {
+    let mut lines: Vec<(u32, String)> = PEERS
+        .iter()
+        .map(|peer| {
+            let (queue, cells, mhz) = (peer.queue, peer.logic_cells, peer.mhz);
+            (cells, format!("| {} | {} | {} | {queue} | {cells} | {mhz} |\n", peer.core, peer.ramp, peer.pins))
+        })
+        .collect();
+    let ours = ROWS.iter().zip(rows).filter(|(row, _)| row.part == ROWS[0].part && row.always);
+    lines.extend(ours.map(|(row, found)| {
+        let (size, us) = (found.size, row.tick_ns / 1000);
+        let name = format!("**carrystep**, {} axes, {us} us, guard included", row.axes);
+        let queue = format!("7 deep, in {} block RAMs", size.block_rams);
+        let cells = size.logic_cells;
+        (
+            cells,
+            format!("| {name} | 3rd order | all four, owes one step | {queue} | {cells} | {:.0} |\n", found.median()),
+        )
+    }));
+    lines.sort_by_key(|(cells, _)| *cells);
+    lines.into_iter().map(|(_, line)| line).collect()
+}
+
+/// Whether a page is of these rows, and within their budgets; what is wrong if not.
+///
+/// # Errors
+/// A sentence that says which row is missing, over budget, or not as its `met` says.
+pub fn check(page: &str) -> Result<(), String> {
+    for row in &ROWS {
+        let key = key(row);
+        let rest = page.lines().find_map(|line| line.strip_prefix(&key));
+        let rest = rest.ok_or_else(|| format!("{PAGE} has no row {key}: run `cargo xtask resources`"))?;
+        let cells: u32 = number(rest).ok_or_else(|| format!("no logic cells in {key}{rest}"))?;
+        let mut wrong = String::new();
+        if cells > row.budget.logic_cells || !rest.contains(&format!("({})", row.budget.logic_cells)) {
+            wrong += " logic cells";
+        }
+        if rest.contains("| yes |") != row.met {
+            wrong += " clock";
+        }
+        if !wrong.is_empty() {
+            return Err(format!("{PAGE}:{wrong} of {key}{rest} are not those of {row:?}"));
+        }
+    }
+    for name in LINES {
+        let rest = page.lines().find_map(|line| line.strip_prefix(&format!("| {name} |")));
+        let cells = rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {name}"))?;
+        if cells > LINK_BUDGET.logic_cells {
+            return Err(format!("{PAGE}: {cells} logic cells of the link over {name} are over budget"));
+        }
+    }
+    for family in &FAMILIES {
+        let rest = page.lines().find_map(|line| line.strip_prefix(&format!("| {} |", family.name)));
+        let luts = rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {}", family.name))?;
+        if luts > family.budget.luts {
+            return Err(format!("{PAGE}: {} LUTs in {} are over budget", luts, family.name));
+        }
+    }
+    Ok(())
+}
+
+/// The first number of a line.
+fn number(text: &str) -> Option<u32> {
+    let digits = text.trim_start().split(|c: char| !c.is_ascii_digit()).next()?;
+    digits.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Measurements with nothing to spare.
+    fn found(row: &Row) -> Measured {
+        let mhz = row.clock_hz as f64 / 1e6 + if row.met { 0.0 } else { -1.0 };
+        Measured { size: row.budget, mhz: [mhz - 2.0, mhz, mhz - 1.0] }
+    }
+
+    #[test]
+    fn a_page_is_of_its_rows() {
+        let mut rows = ROWS.map(|row| found(&row));
+        let families = FAMILIES.map(|family| family.budget);
+        let links = [LINK_BUDGET; LINES.len()];
+        assert_eq!(check(&page(&rows, &links, &families)), Ok(()));
+        rows[0].size = Size { logic_cells: rows[0].size.logic_cells + 1, ..rows[0].size };
+        assert!(check(&page(&rows, &links, &families)).is_err(), "over budget");
+        rows[0] = found(&ROWS[0]);
+        rows[0].mhz = [1.0; 3];
+        assert!(check(&page(&rows, &links, &families)).is_err(), "too slow");
+    }
+}

@@ -1,0 +1,47 @@
+//! Running a tool in a folder, and files in that folder.
+
+use crate::SynthesisError;
+use crate::programs::Tool;
+pub(crate) use crate::programs::{ICEBOX_VLOG, ICEPACK, ICETIME, ICEUNPACK, NEXTPNR, PYTHON, YOSYS};
+use std::path::Path;
+use std::process::Command;
+
+/// How much of a failed tool's words is kept.
+const LAST_LINES: usize = 12;
+
+/// Runs a tool to its end; what it writes to its standard output.
+pub(crate) fn run(tool: &Tool, folder: &Path, arguments: &[&str]) -> Result<String, SynthesisError> {
+    let start = |name: &str| Command::new(name).args(arguments).current_dir(folder).output();
+    // The same tools from pip have a name of their own.
+    let output = start(tool.name).or_else(|_| start(&format!("yowasp-{}", tool.name)));
+    let output = output.map_err(|_| SynthesisError::Missing(*tool))?;
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    if output.status.success() {
+        return Ok(text(&output.stdout));
+    }
+    let text = text(&[output.stdout, output.stderr].concat());
+    let lines: Vec<&str> = text.trim().lines().collect();
+    let message = lines[lines.len().saturating_sub(LAST_LINES)..].join("\n");
+    Err(SynthesisError::Tool { tool: tool.name, message })
+}
+
+/// Runs a script of yosys.
+pub(crate) fn yosys(folder: &Path, script: &str) -> Result<String, SynthesisError> {
+    run(&YOSYS, folder, &["-q", "-p", script])
+}
+
+pub(crate) fn read(folder: &Path, name: &str) -> Result<String, SynthesisError> {
+    let context = || format!("cannot read {name}");
+    std::fs::read_to_string(folder.join(name)).map_err(|source| SynthesisError::Io { context: context(), source })
+}
+
+pub(crate) fn write(folder: &Path, name: &str, text: &str) -> Result<(), SynthesisError> {
+    let context = || format!("cannot write {name}");
+    std::fs::write(folder.join(name), text).map_err(|source| SynthesisError::Io { context: context(), source })
+}
+
+/// A folder that is gone when it is no longer needed.
+pub(crate) fn folder() -> Result<tempfile::TempDir, SynthesisError> {
+    let context = || "cannot make a temporary folder".to_owned();
+    tempfile::tempdir().map_err(|source| SynthesisError::Io { context: context(), source })
+}

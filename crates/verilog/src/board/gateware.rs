@@ -1,0 +1,252 @@
+//! All gateware of a machine for a board: a top level that connects clock, link and engine to the pins, and what goes with it.
+
+use super::{CLOCK_NAME, Design, rendered};
+use crate::ExportError;
+use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, line_name, line_verilog, link_ports, link_verilog};
+use crate::write::TextFile;
+use carrystep_boards::{Board, Clocking, Part};
+use carrystep_core::engine::Limits;
+use carrystep_core::link::{BuildId, Line, Uart};
+use carrystep_core::{ChosenTick, EngineBuild};
+use carrystep_files::{Machine, Source};
+use carrystep_hdl::primitives::memory::{BIT_BY_BIT, IN_BLOCK_RAM};
+use minijinja::{Value, context};
+
+const TOP: &str = include_str!("../../templates/board/top.v");
+
+/// The machine that boards are built for where no other is asked for; clock, tick and limits are put before its axes.
+const SHIPPED: &str = include_str!("../../../../sim/engine.toml");
+
+/// The gateware of a machine for a board, checked.
+#[derive(Debug, Clone)]
+pub struct Gateware<'a> {
+    board: &'a Board,
+    part: &'a Part,
+    build: EngineBuild,
+    line: Line,
+    chosen_tick: Option<ChosenTick>,
+    /// The machine file: it goes with the gateware, for moves are planned from it.
+    machine: Source,
+}
+
+impl<'a> Gateware<'a> {
+    /// The gateware of this machine file.
+    ///
+    /// # Errors
+    /// [`ExportError`]: the board lacks pins, makes no such clock or baud rate; the engine cannot be; or the file is no machine's.
+    pub fn new(board: &'a Board, part: &'a Part, machine: Source) -> Result<Self, ExportError> {
+        let read = Machine::from_source(&machine)?;
+        let (build, line) = (read.engine(), read.line()?);
+        board.clock(build.timebase.clock_hz())?;
+        board.carries(build.axes(), build.guard.limits)?;
+        if let Line::Uart(uart) = line {
+            board.takes(uart.baud())?;
+        }
+        build.check().map_err(carrystep_hdl::HdlError::from)?;
+        let gateware = Self { board, part, build, line, chosen_tick: read.chosen_tick, machine };
+        // A pin for each port, or the name of the one that has none.
+        gateware.design(&gateware.ports(), &[]).constraints()?;
+        Ok(gateware)
+    }
+
+    /// The gateware of the shipped machine, at the board's first clock.
+    ///
+    /// # Errors
+    /// As [`Gateware::new`].
+    pub fn shipped(board: &'a Board, part: &'a Part) -> Result<Self, ExportError> {
+        let text = shipped_machine(board, &board.clocks[0])?;
+        Self::new(board, part, Source { path: "machine.toml".into(), text: text.into() })
+    }
+
+    /// Its top module, `carrystep_BOARD_top`.
+    pub fn top(&self) -> String {
+        format!("carrystep_{}_top", self.board.name.replace('-', "_"))
+    }
+
+    /// What the host asks for before it talks to it.
+    pub fn build_id(&self) -> BuildId {
+        self.line.build_id(&self.build)
+    }
+
+    /// The engine's parameters.
+    pub fn build(&self) -> &EngineBuild {
+        &self.build
+    }
+
+    /// How the tick was chosen, where the machine file gives none.
+    pub fn chosen_tick(&self) -> Option<ChosenTick> {
+        self.chosen_tick
+    }
+
+    /// The link's UART, if it is one.
+    pub fn uart(&self) -> Option<Uart> {
+        match self.line {
+            Line::Uart(uart) => Some(uart),
+            Line::Spi => None,
+        }
+    }
+
+    /// The part that it is for.
+    pub fn part(&self) -> &Part {
+        self.part
+    }
+
+    /// The Verilog of all modules, the top level first, in files of these names.
+    ///
+    /// # Errors
+    /// [`ExportError`] where a module cannot be made.
+    pub fn verilog(&self) -> Result<Vec<TextFile>, ExportError> {
+        let description = format!("{} for {}", self.machine.path.display(), self.board.title);
+        let file = |name: &str, text| TextFile::new(format!("{name}.v"), text);
+        Ok(vec![
+            file(&self.top(), self.top_level()?),
+            self.design(&[], &[]).clock()?,
+            file(line_name(self.line), line_verilog(self.line, &description)?),
+            file(LINK_NAME, link_verilog(&self.build, self.line, &description)?),
+            file(ENGINE_NAME, self.placed(engine_verilog(&self.build, &description)?)),
+        ])
+    }
+
+    /// Its memories where the family can have them.
+    fn placed(&self, verilog: String) -> String {
+        if self.board.family.writes_parts_of_words() {
+            return verilog;
+        }
+        let in_luts = |module: &str| module.replace(IN_BLOCK_RAM, "ram_style = \"distributed\"");
+        let modules = verilog.split_inclusive("endmodule");
+        modules.map(|module| if module.contains(BIT_BY_BIT) { in_luts(module) } else { module.to_owned() }).collect()
+    }
+
+    /// Everything in the board's folder.
+    ///
+    /// # Errors
+    /// [`ExportError`] where a module cannot be made.
+    pub fn files(&self) -> Result<Vec<TextFile>, ExportError> {
+        let mut files = self.verilog()?;
+        let sources: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
+        let sources: Vec<&str> = sources.iter().map(String::as_str).collect();
+        let ports = self.ports();
+        let design = self.design(&ports, &sources);
+        files.push(design.constraints()?);
+        files.extend(design.scripts()?);
+        files.push(design.readme()?);
+        files.push(TextFile::new("machine.toml".to_owned(), self.machine.text.to_string()));
+        Ok(files)
+    }
+
+    /// The ports of the top level, bit by bit.
+    fn ports(&self) -> Vec<String> {
+        let axes = self.build.axes();
+        let bits = |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
+        let (low, high) = limit_bits(&self.build);
+        let fixed = ["enable_n", "estop"].map(str::to_owned);
+        let line = self.line_pins().map(|(_, pin)| pin.to_owned());
+        let led = self.has_led().then(|| "led".to_owned());
+        [
+            bits("step", axes),
+            bits("dir", axes),
+            fixed.to_vec(),
+            line.collect(),
+            bits("limit_min", low),
+            bits("limit_max", high),
+        ]
+        .concat()
+        .into_iter()
+        .chain(led)
+        .collect()
+    }
+
+    /// The line's ports, and the pins that they are connected to.
+    fn line_pins(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        let pins: &[_] = match self.line {
+            Line::Uart(_) => &[("rx", "uart_rx"), ("tx", "uart_tx")],
+            Line::Spi => &[("sck", "spi_sck"), ("select_n", "spi_cs_n"), ("mosi", "spi_mosi"), ("miso", "spi_miso")],
+        };
+        pins.iter().copied()
+    }
+
+    fn has_led(&self) -> bool {
+        self.board.bits("led") > 0
+    }
+
+    fn design<'b>(&'b self, ports: &'b [String], sources: &'b [&'b str]) -> Design<'b> {
+        Design {
+            board: self.board,
+            part: self.part,
+            clock_hz: self.build.timebase.clock_hz(),
+            uart: self.uart(),
+            top: self.top(),
+            sources,
+            ports,
+        }
+    }
+
+    fn top_level(&self) -> Result<String, ExportError> {
+        let axes = self.build.axes();
+        let (low, high) = limit_bits(&self.build);
+        // An output of the link is an input of the engine of the same name, or the other way round.
+        let (bytes, between) = link_ports(&self.build, self.line)?;
+        let row = |(name, width): &(String, usize)| context! { name, range => range(*width) };
+        let values = context! {
+            title => &self.board.title,
+            top => self.top(),
+            clock => CLOCK_NAME,
+            line => line_name(self.line),
+            link => LINK_NAME,
+            engine => ENGINE_NAME,
+            axes => range(axes),
+            low => (low > 0).then(|| range(low)),
+            high => (high > 0).then(|| range(high)),
+            one_for_all => low == 1 && axes > 1,
+            others => axes - 1,
+            count => axes,
+            led => self.has_led(),
+            led_low => self.board.led_low,
+            line_pins => self.line_pins().map(|(port, pin)| {
+                let out = port == "tx" || port == "miso";
+                let held = self.board.gate.as_ref().is_some_and(|gate| gate.holds.iter().any(|held| held == pin));
+                context! { port, pin, out, held }
+            }).collect::<Vec<Value>>(),
+            bytes => bytes.iter().map(row).collect::<Vec<Value>>(),
+            between => between.iter().map(row).collect::<Vec<Value>>(),
+            ties => super::ties(self.board),
+            gate => super::gate(self.board, self.build.timebase.clock_hz()),
+        };
+        rendered(TOP, values)
+    }
+}
+
+/// The shipped machine at a clock of the board, and at its fastest baud rate.
+///
+/// # Errors
+/// [`ExportError::Baud`]: the clock makes no usual baud rate.
+pub fn shipped_machine(board: &Board, clock: &Clocking) -> Result<String, ExportError> {
+    let axes = SHIPPED.find("[[machine.axis]]").map_or("", |begin| &SHIPPED[begin..]);
+    let Clocking { clock_hz, tick_ns, phases, .. } = clock;
+    let baud = board.uart(*clock_hz)?.baud();
+    Ok(format!(
+        "# The shipped machine (sim/engine.toml) for {}.\n[machine]\nclock_hz = {clock_hz}\ntick_ns = {tick_ns}\n\
+         phases = {phases}\nphase = \"half\"\n\n[machine.guard]\nlimits = \"each\"\n\n[machine.link]\nbaud = {baud}\n\n{axes}",
+        board.title
+    ))
+}
+
+/// Limit switches at the low ends and at the high ends.
+fn limit_bits(build: &EngineBuild) -> (usize, usize) {
+    match build.guard.limits {
+        Limits::None => (0, 0),
+        Limits::One => (1, 0),
+        Limits::Each => (build.axes(), 0),
+        Limits::Pair => (build.axes(), build.axes()),
+    }
+}
+
+/// The only bit of a port goes without a number.
+fn bit_of(name: &str, bit: usize, count: usize) -> String {
+    if count == 1 { name.to_owned() } else { format!("{name}[{bit}]") }
+}
+
+/// `[5:0] `, or nothing for a single bit.
+fn range(width: usize) -> String {
+    if width == 1 { String::new() } else { format!("[{}:0] ", width - 1) }
+}

@@ -1,0 +1,121 @@
+//! `docs/boards/`: a page for each board and one for all; `docs/drivers.md`. All from `spec`'s data.
+
+use super::{kind, place, rendered};
+use crate::ExportError;
+use crate::write::TextFile;
+use carrystep_boards::clock::ClockManager;
+use carrystep_boards::{Board, Clocking, Gate, Mode, Shared, Wire, boards};
+use carrystep_core::tick::mhz;
+use carrystep_files::driver::{Driver, drivers};
+use minijinja::{Value, context};
+
+const PAGE: &str = include_str!("../../templates/board/page.md");
+const DRIVERS: &str = include_str!("../../templates/drivers.md");
+const INDEX: &str = include_str!("../../templates/board/index.md");
+
+/// The pages, by their paths in the workspace.
+///
+/// # Errors
+/// [`ExportError::Template`] where a template asks for what there is not.
+pub(crate) fn pages() -> Result<Vec<TextFile>, ExportError> {
+    let all: Vec<Value> = boards().iter().map(values).collect();
+    let mut pages = vec![
+        TextFile::new("docs/boards/index.md", rendered(INDEX, context! { boards => all.clone() })?),
+        TextFile::new("docs/drivers.md", rendered(DRIVERS, context! { drivers => all_drivers() })?),
+    ];
+    for (board, values) in boards().iter().zip(all) {
+        pages.push(TextFile::new(format!("docs/boards/{}.md", board.name), rendered(PAGE, values)?));
+    }
+    Ok(pages)
+}
+
+fn all_drivers() -> Vec<Value> {
+    let row = |(name, driver): (&String, &Driver)| {
+        let Driver { step_ns, gap_ns, setup_ns, hold_ns, evidence } = driver;
+        let (step_ns, gap_ns, setup_ns, hold_ns) = (*step_ns, *gap_ns, *setup_ns, *hold_ns);
+        context! { name, step_ns, gap_ns, setup_ns, hold_ns, evidence }
+    };
+    drivers().iter().map(row).collect()
+}
+
+/// What the pages say of a board.
+fn values(board: &Board) -> Value {
+    context! {
+        name => &board.name,
+        title => &board.title,
+        family => board.family.to_string(),
+        toolchain => board.family.toolchain().to_string(),
+        parts => board.parts.iter().map(|part| context! {
+            name => &part.name,
+            ordered => part.ordered(),
+            logic_cells => part.logic_cells,
+            block_rams => part.block_rams,
+        }).collect::<Vec<_>>(),
+        oscillator => context! { mhz => mhz(board.oscillator.hz), pin => &board.oscillator.pin, io => board.oscillator.io.name() },
+        io => board.io.name(),
+        clocks => board.clocks.iter().map(clocking).collect::<Vec<_>>(),
+        wires => board.wires.iter().map(wire).collect::<Vec<_>>(),
+        limits => context! { low => board.bits("limit_min"), high => board.bits("limit_max") },
+        ties => super::ties(board),
+        gate => board.gate.as_ref().map(gate),
+        configured => listed(&board.configured),
+        shared => board.shared.iter().map(shared).collect::<Vec<_>>(),
+        configuration_sources => board.configuration_sources.join("; "),
+        flash => board.flash.replace("FILE", &format!("carrystep.{}", board.bitstream)),
+        usb => &board.usb,
+        vccaux => &board.vccaux,
+        notes => &board.notes,
+        conflicts => &board.conflicts,
+        sources => &board.sources,
+    }
+}
+
+fn gate(gate: &Gate) -> Value {
+    let holds: Vec<String> = gate.holds.iter().map(|port| format!("`{port}`")).collect();
+    let wait_us = thousandths(gate.wait_ns);
+    context! { port => &gate.port, pin => &gate.pin, why => &gate.why, count => holds.len(), holds => holds.join(" and "), wait_us }
+}
+
+fn shared(shared: &Shared) -> Value {
+    let Shared { port, pin, function, modes, why } = shared;
+    context! { port, pin, function, modes => listed(modes), why }
+}
+
+/// Modes of configuration, one after the other.
+fn listed(modes: &[Mode]) -> String {
+    modes.iter().map(Mode::to_string).collect::<Vec<_>>().join("; ")
+}
+
+fn clocking(clock: &Clocking) -> Value {
+    let Clocking { clock_hz, tick_ns, phases, made_by, why } = clock;
+    let made_by = match made_by {
+        ClockManager::Oscillator => "the oscillator".to_owned(),
+        ClockManager::Ice40Pll(pll) => {
+            format!("PLL: DIVR {}, DIVF {}, DIVQ {}, FILTER_RANGE {}", pll.divr, pll.divf, pll.divq, pll.filter_range)
+        }
+        ClockManager::Dcm(dcm) => format!("DCM: x {} / {}", dcm.multiply, dcm.divide),
+        ClockManager::Mmcm(mmcm) => format!("MMCM: x {} / {} / {}", mmcm.multiply, mmcm.divide, mmcm.out_divide),
+    };
+    context! {
+        mhz => mhz(*clock_hz),
+        tick_ns => *tick_ns,
+        phases => *phases,
+        // Whole, as the board's check has made sure.
+        clocks => clock_hz * tick_ns / 1_000_000_000,
+        phase_ns => thousandths(tick_ns * 1000 / u64::from(*phases)),
+        khz => 500_000 / tick_ns,
+        made_by,
+        why => why,
+    }
+}
+
+fn wire(wire: &Wire) -> Value {
+    let (connector, label) = place(wire);
+    context! { port => &wire.port, pin => &wire.pin, connector, label, what => kind(wire).map_or("", |port| port.what) }
+}
+
+/// A number of thousandths, without zeros at its end.
+fn thousandths(number: u64) -> String {
+    let text = format!("{}.{:03}", number / 1000, number % 1000);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

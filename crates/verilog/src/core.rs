@@ -1,0 +1,255 @@
+//! A core as one file: header, then every module once, children first.
+
+use crate::ExportError;
+use crate::guard;
+use crate::module::module_text;
+use crate::names::{Names, split_index};
+use crate::netlist::{self, Module};
+use crate::write::{TextFile, write};
+use carrystep_core::link::Line;
+use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
+use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
+use rust_hdl::prelude::{Block, check_all};
+use std::path::{Path, PathBuf};
+
+/// Name of the parallel core's top module and of its files.
+pub const CORE_NAME: &str = "carrystep_six_axis";
+
+/// Name of the engine's top module and of its files.
+pub const ENGINE_NAME: &str = "carrystep_engine";
+
+/// Name of the host link's top module and of its file.
+pub const LINK_NAME: &str = "carrystep_link";
+
+/// Verilator's waivers for the parallel core, each with its reason.
+pub const CORE_WAIVERS: &str = include_str!("carrystep_six_axis.vlt");
+
+/// Verilator's waivers for the engine, each with its reason.
+pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
+
+/// The workspace pins it.
+const RUST_HDL: &str = "0.46.0";
+
+/// What each module is for, in a line.
+const PURPOSES: [(&str, &str); 33] = [
+    ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
+    ("carrystep_sequencer", "The running and the waiting segment of an axis."),
+    ("carrystep_step_edge", "When in its tick a step is due: bisection, then the request to the shaper."),
+    ("carrystep_axis", "One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched."),
+    ("carrystep_shaper", "STEP and DIR with the width, gap, set-up and hold that the driver asks for."),
+    (CORE_NAME, "Six axes on one tick, the door for segments and starts, and the freeze."),
+    ("carrystep_turn", "Whose turn it is: one axis after the other, thirteen beats each."),
+    ("carrystep_adder", "The one adder: P + V, V + A, A + J, ticks - 1, positions, and the bisection."),
+    ("carrystep_control", "The control words of the axes."),
+    ("carrystep_lasts", "Which segments are the last of their move."),
+    ("carrystep_queue", "Which segment an axis runs, and which ones wait."),
+    ("carrystep_segments", "Segments, which are also registers, and what an axis keeps between moves."),
+    ("carrystep_store", "Where everything is in the memory of the axes."),
+    ("carrystep_rim", "What the pins do in each phase of four ticks."),
+    ("carrystep_wheel", "Events on their way to the pins."),
+    ("carrystep_pulser", "STEP and DIR with the width, gap, set-up and hold that the driver asks for."),
+    ("carrystep_switches", "What is believed of each limit switch."),
+    ("carrystep_limits", "The limit switches, one look in a turn."),
+    ("carrystep_stops", "Who stops the axes, and how far the stop has come."),
+    ("carrystep_watch", "The e-stop, the host's signs of life, the drivers' power."),
+    ("carrystep_uart_in", "Bytes from the line."),
+    ("carrystep_uart_out", "Bytes to the line."),
+    ("carrystep_uart", "A UART, both directions."),
+    ("carrystep_spi", "SPI mode 0, the host's clock up to a fifth of this one."),
+    ("carrystep_check", "The CRC of frames."),
+    ("carrystep_machine", "The little machine that reads requests and writes answers."),
+    ("carrystep_instructions", "What it does."),
+    ("carrystep_facts", "What can be read."),
+    ("carrystep_known", "Facts of the build, and what the engine has last said of its axes."),
+    ("carrystep_data", "A request and the answer to it, constants, and what is remembered."),
+    ("carrystep_ring", "Received bytes that wait."),
+    (LINK_NAME, "The host link: bytes in, words of segments out."),
+    (ENGINE_NAME, "Axes on one adder, their queues, starts, and the guard."),
+];
+
+/// The parallel core of this build as Verilog-2005, top module [`CORE_NAME`]; `description` names what the build
+/// was made from, one line. The same build gives the same text.
+///
+/// # Errors
+/// [`ExportError`] where the build cannot be made.
+pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
+    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, "");
+    file_text(&mut SixAxis::new(build)?, CORE_NAME, &facts, description)
+}
+
+/// The engine of this build as Verilog-2005, top module [`ENGINE_NAME`]; otherwise as [`six_axis_verilog`].
+///
+/// # Errors
+/// [`ExportError`] where the build cannot be made.
+pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, ExportError> {
+    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, &guard::lines(build));
+    file_text(engine(build)?.as_mut(), ENGINE_NAME, &facts, description)
+}
+
+/// The host link of this build as Verilog-2005, top module [`LINK_NAME`]; otherwise as [`six_axis_verilog`].
+///
+/// # Errors
+/// [`ExportError`] where the build cannot be made.
+pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Result<String, ExportError> {
+    let id = line.build_id(build);
+    let lines =
+        format!("// Clock        {} Hz\n// Line         {line}\n// Build id     {id}\n", build.timebase.clock_hz());
+    let facts = Facts { title: "the host link of an engine".to_owned(), lines, pins: &[] };
+    file_text(link(build, id)?.as_mut(), LINK_NAME, &facts, description)
+}
+
+/// The line to the host as Verilog-2005, top module [`line_name`]; otherwise as [`six_axis_verilog`].
+///
+/// # Errors
+/// [`ExportError`] where it cannot be made.
+pub fn line_verilog(line: Line, description: &str) -> Result<String, ExportError> {
+    let facts =
+        Facts { title: "the line to the host".to_owned(), lines: format!("// Line         {line}\n"), pins: &[] };
+    let mut module: Box<dyn Block> = match line {
+        Line::Uart(uart) => Box::new(UartLine::new(uart)),
+        Line::Spi => Box::new(Spi::new()),
+    };
+    file_text(module.as_mut(), line_name(line), &facts, description)
+}
+
+/// Name of a line's top module and of its file.
+pub const fn line_name(line: Line) -> &'static str {
+    match line {
+        Line::Uart(_) => "carrystep_uart",
+        Line::Spi => "carrystep_spi",
+    }
+}
+
+/// Names and widths of some ports.
+pub(crate) type Ports = Vec<(String, usize)>;
+
+/// The ports that the link shares with the line, and those that it shares with the engine.
+pub(crate) fn link_ports(build: &EngineBuild, line: Line) -> Result<(Ports, Ports), ExportError> {
+    let mut link = link(build, line.build_id(build))?;
+    link.connect_all();
+    let ports = Names::new(&netlist::read(link.as_ref())?)?.ports.into_iter();
+    let ports = ports.filter(|port| port.name != "clock").map(|port| (port.name, port.width));
+    Ok(ports.partition(|(name, _)| name.starts_with("received") || name.starts_with("answer")))
+}
+
+/// What the header tells of a build.
+struct Facts<'a> {
+    title: String,
+    lines: String,
+    pins: &'a [PinTiming],
+}
+
+fn file_text(core: &mut dyn Block, name: &str, build: &Facts<'_>, description: &str) -> Result<String, ExportError> {
+    core.connect_all();
+    check_all(core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
+    let mut top = netlist::read(core)?;
+    top.instance = name.trim_start_matches("carrystep_").into();
+    let mut library = Library { build, modules: Vec::new() };
+    library.add(&top)?;
+    let mut text = header(name, build, description);
+    for (name, module) in &library.modules {
+        let purpose = PURPOSES.iter().find(|(kind, _)| name.starts_with(kind)).map_or("", |(_, purpose)| purpose);
+        text.push_str(&format!("\n// {purpose}\n{module}"));
+    }
+    text.push_str("\n`default_nettype wire\n");
+    Ok(text)
+}
+
+/// Writes the parallel core's Verilog and its waivers into `dir`; each file appears whole or not at all.
+///
+/// # Errors
+/// [`ExportError`] where the build cannot be made or a file cannot be written.
+pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<PathBuf>, ExportError> {
+    write(dir, &files(CORE_NAME, six_axis_verilog(build, description)?, CORE_WAIVERS))
+}
+
+/// Writes the engine's Verilog and its waivers into `dir`; otherwise as [`write_core`].
+///
+/// # Errors
+/// [`ExportError`] where the build cannot be made or a file cannot be written.
+pub fn write_engine(dir: &Path, build: &EngineBuild, description: &str) -> Result<Vec<PathBuf>, ExportError> {
+    write(dir, &files(ENGINE_NAME, engine_verilog(build, description)?, ENGINE_WAIVERS))
+}
+
+fn files(name: &str, verilog: String, waivers: &str) -> [TextFile; 2] {
+    [TextFile::new(format!("{name}.v"), verilog), TextFile::new(format!("{name}.vlt"), waivers)]
+}
+
+/// The modules so far, children first.
+struct Library<'a> {
+    build: &'a Facts<'a>,
+    modules: Vec<(String, String)>,
+}
+
+impl Library<'_> {
+    /// Adds a module and its children; the module's name.
+    fn add(&mut self, module: &Module) -> Result<String, ExportError> {
+        let kinds = module.children.iter().map(|child| self.add(child)).collect::<Result<Vec<_>, _>>()?;
+        let name = self.name(&module.instance);
+        let text = module_text(module, &name, &kinds)?;
+        match self.modules.iter().find(|(known, _)| *known == name) {
+            None => self.modules.push((name.clone(), text)),
+            Some((_, known)) if *known == text => {}
+            Some(_) => return Err(ExportError::SameName(name)),
+        }
+        Ok(name)
+    }
+
+    /// Instances of an array are one module, but for shapers and pulsers, which are named by their timing.
+    fn name(&self, instance: &str) -> String {
+        let (base, index) = split_index(instance);
+        match index.and_then(|index| self.build.pins.get(index)) {
+            Some(pins) if base == "shaper" || base == "pulser" => {
+                format!("carrystep_{base}_w{}_s{}_d{}_h{}", pins.width, pins.gap, pins.setup, pins.hold)
+            }
+            _ => format!("carrystep_{base}"),
+        }
+    }
+}
+
+impl<'a> Facts<'a> {
+    fn of_axes(time: &Timebase, phase: StartPhase, pins: &'a [PinTiming], guard: &str) -> Self {
+        let start = match phase {
+            StartPhase::Half => "half a step",
+            StartPhase::Zero => "0",
+        };
+        let mut lines = format!(
+            "\
+// Clock        {clock} Hz
+// Tick         {tick} ns, {clocks} clocks in {phases} phases
+// Latency      {latency} clocks from the load of a move to the edge of its tick 1, phase 0
+// P starts at  {start}
+// Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
+",
+            clock = time.clock_hz(),
+            tick = time.tick_ns(),
+            clocks = time.clocks_per_tick(),
+            phases = time.phases(),
+            latency = time.latency_clocks(),
+        );
+        for (axis, PinTiming { width, gap, setup, hold }) in pins.iter().enumerate() {
+            lines.push_str(&format!("//   axis {axis}     W {width}, S {gap}, D {setup}, H {hold}\n"));
+        }
+        let count = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"].get(pins.len());
+        let title = format!("step and direction for {} axes", count.unwrap_or(&"many"));
+        Self { title, lines: lines + guard, pins }
+    }
+}
+
+fn header(name: &str, facts: &Facts<'_>, description: &str) -> String {
+    let description = description.replace(['\n', '\r'], " ");
+    let Facts { title, lines, .. } = facts;
+    format!(
+        "\
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// {name}: {title}. Generated: change the generator, not this file.
+//
+// Made from    {description}
+// Made by      carrystep {version}, with Rust-HDL {RUST_HDL}
+{lines}
+`default_nettype none
+",
+        version = env!("CARGO_PKG_VERSION"),
+    )
+}

@@ -1,0 +1,46 @@
+//! What a header says of an engine's guard: the figures as they are counted, in the units of the machine file.
+
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{Between, Limits};
+
+/// The lines of the header.
+pub(crate) fn lines(build: &EngineBuild) -> String {
+    let figures = build.guard_figures();
+    let between = |time: Between, unit| format!("{} to {} {unit}", time.least, time.most);
+    let watchdog = figures
+        .watchdog_ms
+        .map_or("none".into(), |time| format!("{} without a sign of the host: ramp", between(time, "ms")));
+    let enable = figures.enable_ms.map_or("no time from ENABLE to the first start".into(), |time| {
+        format!("{} from ENABLE to the first start", between(time, "ms"))
+    });
+    let wiring = match figures.limits {
+        Limits::None => None,
+        Limits::Pair => Some("two an axis"),
+        Limits::Each => Some("one an axis"),
+        Limits::One => Some("one for all axes, bit 0 of limit_min"),
+    };
+    let limits = wiring.zip(figures.debounce_us).map_or("none".into(), |(wiring, time)| {
+        let (level, stop) = (figures.limit_level, figures.limit_stop);
+        format!("{wiring}, active {level}, believed after {}: {stop}", between(time, "us"))
+    });
+    let mut text = format!(
+        "\
+// Guard        counts in rounds of {} ticks, {} us
+//   watchdog   {watchdog}
+//   enable     {enable}
+//   e-stop     active {}: freeze
+//   limits     {limits}
+",
+        build.guard.round, figures.round_us, figures.estop
+    );
+    for (axis, ramp) in figures.stop_accel_steps_per_s2.iter().enumerate() {
+        text.push_str(&format!("//   axis {axis}     ramps by {} steps/s^2\n", six_digits(*ramp)));
+    }
+    text
+}
+
+/// As a person writes it: what rounding to 2^-64 step took off is not shown.
+fn six_digits(number: f64) -> String {
+    let rounded = format!("{number:.5e}");
+    rounded.parse::<f64>().map_or(rounded, |number| number.to_string())
+}

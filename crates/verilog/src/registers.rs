@@ -1,0 +1,79 @@
+//! The register map for the clients: Rust constants, a C header, a page of documentation, all from the table in `spec`.
+
+use crate::ExportError;
+use carrystep_core::link::registers::{self, Access, PER_AXIS, REGISTERS};
+use carrystep_core::link::{self, ANSWER, ANSWER_DATA, CAUSE_NAMES, Constant, Field, WRITE};
+use minijinja::{Environment, Value, context};
+
+/// A file that is written from the table: where it lies in the workspace, and its template.
+const FILES: [(&str, &str); 3] = [
+    ("crates/link/src/registers.rs", include_str!("../templates/registers.rs")),
+    ("crates/link/c/carrystep_registers.h", include_str!("../templates/registers.h")),
+    ("docs/registers.md", include_str!("../templates/registers.md")),
+];
+
+/// Every file that is made from the register map: its path in the workspace, and its text.
+///
+/// # Errors
+/// [`ExportError::Template`] where a template asks for what there is not.
+pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
+    let environment = Environment::new();
+    let values = context! {
+        constants => link::CONSTANTS.iter().chain(registers::CONSTANTS).map(constant).collect::<Vec<_>>(),
+        registers => REGISTERS.iter().map(|row| context! {
+            name => row.name,
+            address => format!("{:#04x}", row.address),
+            access => access(row.access),
+            per_axis => row.per_axis,
+            what => row.what,
+        }).collect::<Vec<_>>(),
+        fields => ANSWER.iter().map(field).collect::<Vec<_>>(),
+        causes => CAUSE_NAMES,
+        data => ANSWER_DATA,
+        write => format!("`{WRITE:#04x}`"),
+        per_axis => PER_AXIS,
+    };
+    let render = |(path, template)| Ok((path, environment.render_str(template, &values)? + "\n"));
+    FILES.into_iter().map(render).collect()
+}
+
+const fn access(access: Access) -> &'static str {
+    match access {
+        Access::Read => "read",
+        Access::Write => "write",
+        Access::WriteSegment => "write, 8 words",
+    }
+}
+
+/// Lengths are told in decimal, all else in hexadecimal.
+fn constant(row: &Constant) -> Value {
+    let (rust, c) = match row.kind {
+        "u8" => (format!("{:#04x}", row.value), format!("{:#04x}u", row.value)),
+        "u32" => {
+            let (high, low) = (row.value >> 16, row.value & 0xffff);
+            (format!("{high:#06x}_{low:04x}"), format!("UINT32_C({:#010x})", row.value))
+        }
+        _ => (row.value.to_string(), format!("{}u", row.value)),
+    };
+    context! { name => row.name, kind => row.kind, what => row.what, rust, c }
+}
+
+fn field(row: &Field) -> Value {
+    let Field { name, byte, bit, bits, what } = *row;
+    let mask = (1_u32 << bits) - 1;
+    let rust = match (bit, bits) {
+        (_, 8) => format!("answer[{byte}]"),
+        (0, 1) => format!("answer[{byte}] & 1 == 1"),
+        (_, 1) => format!("answer[{byte}] >> {bit} & 1 == 1"),
+        (0, _) => format!("answer[{byte}] & {mask}"),
+        _ if bit + bits == 8 => format!("answer[{byte}] >> {bit}"),
+        _ => format!("answer[{byte}] >> {bit} & {mask}"),
+    };
+    let c = format!("((uint8_t)((answer)[{byte}] >> {bit} & {mask}u))");
+    let range = match bits {
+        8 => String::new(),
+        1 => bit.to_string(),
+        _ => format!("{}..{bit}", bit + bits - 1),
+    };
+    context! { name, byte, bits, what, rust, c, range }
+}

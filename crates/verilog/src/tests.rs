@@ -1,0 +1,148 @@
+//! The translation on small kernels: what Rust means is what the Verilog says, or it is refused.
+
+use crate::module::module_text;
+use crate::netlist;
+use carrystep_hdl::primitives::constant::Literal;
+use carrystep_hdl::primitives::register::{Input, Register};
+use carrystep_hdl::primitives::word::{Word, bit_cast};
+use rust_hdl::prelude::*;
+
+fn verilog(mut block: impl Block) -> String {
+    translate(&mut block).unwrap()
+}
+
+fn refusal(mut block: impl Block) -> String {
+    translate(&mut block).unwrap_err()
+}
+
+fn translate(block: &mut impl Block) -> Result<String, String> {
+    block.connect_all();
+    let module = netlist::read(block).map_err(|error| error.to_string())?;
+    module_text(&module, "toy", &[]).map_err(|error| error.to_string())
+}
+
+#[derive(LogicBlock, Default)]
+struct Operators {
+    a: Input<Word<8>>,
+    b: Input<Word<8>>,
+    c: Input<Word<8>>,
+    masked: Signal<Out, Bit>,
+    wrapped: Signal<Out, Word<9>>,
+    carried: Signal<Out, Word<9>>,
+    apart: Signal<Out, Word<8>>,
+    none: Signal<Out, Bit>,
+}
+
+impl Logic for Operators {
+    #[hdl_gen]
+    fn update(&mut self) {
+        self.masked.next = self.a.val() & self.b.val() == self.c.val();
+        self.wrapped.next = bit_cast::<9, 8>(self.a.val() + self.b.val());
+        self.carried.next = bit_cast::<9, 8>(self.a.val()) + bit_cast::<9, 8>(self.b.val());
+        self.apart.next = self.a.val() - (self.b.val() - self.c.val());
+        self.none.next = !self.a.val().any();
+    }
+}
+
+#[test]
+fn operators_mean_what_they_mean_in_rust() {
+    let text = verilog(Operators::default());
+    for line in [
+        "assign masked = (a & b) == c;",
+        "assign wrapped = {1'b0, a + b};",
+        "assign carried = {1'b0, a} + {1'b0, b};",
+        "assign apart = a - (b - c);",
+        "assign none = a == 8'd0;",
+    ] {
+        assert!(text.contains(line), "{line}\n{text}");
+    }
+}
+
+#[derive(LogicBlock, Default)]
+struct Counter {
+    clock: Input<Clock>,
+    up: Input<Bit>,
+    count: Signal<Out, Word<4>>,
+    seen: Register<Bit>,
+    value: Register<Word<4>>,
+    one: Literal<4, 1>,
+}
+
+impl Logic for Counter {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, seen, value);
+        self.seen.d.next = self.up.val();
+        if self.up.val() {
+            self.value.d.next = self.value.q.val() + self.one.val();
+        }
+        self.count.next = self.value.q.val();
+    }
+}
+
+#[test]
+fn registers_go_under_the_clock() {
+    let expected = "\
+module toy (
+    input  wire         clock,
+    input  wire         up,
+    output wire   [3:0] count
+);
+    localparam [3:0] ONE = 4'd1;
+
+    reg seen = 1'b0;
+    reg [3:0] value = 4'd0;
+
+    assign count = value;
+
+    always @(posedge clock) begin
+        seen <= up;
+        if (up) begin
+            value <= value + ONE;
+        end
+    end
+endmodule
+";
+    assert_eq!(verilog(Counter::default()), expected);
+}
+
+#[derive(LogicBlock, Default)]
+struct Between {
+    a: Input<Bit>,
+    early: Signal<Out, Bit>,
+    late: Signal<Out, Bit>,
+    value: Signal<Local, Bit>,
+}
+
+impl Logic for Between {
+    #[hdl_gen]
+    fn update(&mut self) {
+        self.value.next = self.a.val();
+        self.early.next = self.value.val();
+        self.value.next = !self.a.val();
+        self.late.next = self.value.val();
+    }
+}
+
+#[test]
+fn a_read_between_two_writes_is_refused() {
+    assert!(refusal(Between::default()).contains("a read of value between two writes"));
+}
+
+#[derive(LogicBlock, Default)]
+struct Literals {
+    a: Input<Bits<8>>,
+    sum: Signal<Out, Bits<8>>,
+}
+
+impl Logic for Literals {
+    #[hdl_gen]
+    fn update(&mut self) {
+        self.sum.next = self.a.val() + 1;
+    }
+}
+
+#[test]
+fn a_literal_without_a_width_is_refused() {
+    assert!(refusal(Literals::default()).contains("a (8 bits) + 32'd1 (32 bits)"));
+}

@@ -1,0 +1,189 @@
+//! The boards' folders: pins, clocks and scripts in the open tools, and what is refused.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+use carrystep_boards::{Board, OSCILLATOR, PORTS, Toolchain, Way, board, boards};
+use carrystep_files::Source;
+use carrystep_verilog::{Design, ExportError, Gateware, TextFile, shipped_machine};
+use std::path::Path;
+use std::process::Command;
+
+/// All ports of a board, bit by bit.
+fn ports(board: &Board) -> Vec<String> {
+    board.wires.iter().map(|wire| wire.port.clone()).collect()
+}
+
+/// The files of a top level with these ports.
+fn files(board: &Board, ports: &[String]) -> Result<Vec<TextFile>, ExportError> {
+    let (part, clock_hz, top) = (&board.parts[0], board.clocks[0].clock_hz, "top".to_owned());
+    Design { board, part, clock_hz, uart: None, top, sources: &["carrystep_clock.v", "top.v"], ports }.files()
+}
+
+/// A top level that uses every pin: inputs meet in a register, outputs are that register.
+fn top(board: &Board) -> String {
+    let bits = |way: fn(Way) -> bool| {
+        let names = PORTS.iter().filter(move |port| way(port.way));
+        let counted = names.map(|port| (port.name, port.per_axis, board.bits(port.name)));
+        counted.filter(|(_, _, bits)| *bits > 0).collect::<Vec<_>>()
+    };
+    let (inputs, outputs) = (bits(|way| way != Way::Out), bits(|way| way == Way::Out));
+    let range = |per_axis, bits: usize| if per_axis { format!("[{}:0] ", bits - 1) } else { String::new() };
+    let mut list = vec![format!("input wire {OSCILLATOR}")];
+    list.extend(inputs.iter().map(|(name, per_axis, bits)| format!("input wire {}{name}", range(*per_axis, *bits))));
+    list.extend(outputs.iter().map(|(name, per_axis, bits)| format!("output wire {}{name}", range(*per_axis, *bits))));
+    list.extend(board.ties.iter().map(|tie| format!("output wire {}", tie.port)));
+    list.extend(board.gate.iter().map(|gate| format!("input wire {}", gate.port)));
+    let all: Vec<String> = inputs.iter().map(|(name, ..)| format!("^{name}")).collect();
+    let mut body = format!(
+        "wire clock; carrystep_clock made (.oscillator({OSCILLATOR}), .clock(clock));\n\
+         reg r = 1'b0; always @(posedge clock) r <= {};\n",
+        all.join(" ^ ")
+    );
+    for (name, _, bits) in &outputs {
+        body += &format!("assign {name} = {{{bits}{{r}}}};\n");
+    }
+    for tie in &board.ties {
+        body += &format!("assign {} = 1'b{};\n", tie.port, tie.level);
+    }
+    format!("module top ({});\n{body}endmodule\n", list.join(", "))
+}
+
+/// A folder with everything that the script needs; its name has a blank.
+fn folder(board: &Board) -> tempfile::TempDir {
+    let folder = tempfile::Builder::new().prefix("a board ").tempdir().unwrap();
+    for file in files(board, &ports(board)).unwrap() {
+        std::fs::write(folder.path().join(file.name), file.text).unwrap();
+    }
+    std::fs::write(folder.path().join("top.v"), top(board)).unwrap();
+    folder
+}
+
+fn run(tool: &str, arguments: &[&str], folder: &Path) {
+    let output = Command::new(tool).args(arguments).current_dir(folder).output();
+    let output = output.unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
+    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{tool} {arguments:?}: {said}");
+}
+
+/// nextpnr knows every pin and finds a place for the PLL; icepack makes a bitstream. By the script that a user runs, from
+/// another folder.
+#[test]
+fn every_ice40_board_is_placed_on_all_its_pins_by_its_own_script() {
+    for board in boards().iter().filter(|board| board.family.toolchain() == Toolchain::Open) {
+        let folder = folder(board);
+        run("sh", &[folder.path().join("build.sh").to_str().unwrap()], Path::new("/"));
+        assert!(std::fs::metadata(folder.path().join("top.bin")).unwrap().len() > 30_000, "{}", board.name);
+    }
+}
+
+/// yosys knows the cells of every Spartan's clock, and their ports.
+#[test]
+fn every_spartan_s_clock_is_of_cells_that_yosys_knows() {
+    for name in ["s3board", "nexys2", "papilio-pro", "arty-s7"] {
+        let board = board(name).unwrap();
+        let folder = folder(board);
+        let family = board.family.yosys().unwrap();
+        let script = format!(
+            "read_verilog carrystep_clock.v top.v; synth_xilinx -family {family} -nowidelut -flatten -top top; \
+             check -assert; select -assert-count 1 t:DCM* t:MMCM*"
+        );
+        run("yosys", &["-q", "-p", &script], folder.path());
+    }
+}
+
+#[test]
+fn a_top_level_gets_the_pins_of_its_ports_and_no_others() {
+    let board = board("icestick").unwrap();
+    let text = files(board, &["uart_rx", "step[0]", "dir"].map(str::to_owned)).unwrap().remove(1).text;
+    let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("set_io")).collect();
+    assert_eq!(lines, ["set_io oscillator 21", "set_io -pullup yes uart_rx 9", "set_io step[0] 112", "set_io dir 62"]);
+    let refused = files(board, &["limit_max[0]".to_owned()]).unwrap_err().to_string();
+    assert_eq!(refused, "icestick has no pin for limit_max[0]");
+}
+
+/// What is asked of a board, as its machine file with one thing changed.
+fn asked(name: &str, was: &str, becomes: &str) -> Result<(), String> {
+    let board = board(name).unwrap();
+    let text = shipped_machine(board, &board.clocks[0]).unwrap();
+    assert!(text.contains(was), "the text is gone: {was}");
+    let source = Source { path: "machine.toml".into(), text: text.replacen(was, becomes, 1).into() };
+    Gateware::new(board, &board.parts[0], source).map(|_| ()).map_err(|error| error.to_string())
+}
+
+#[test]
+fn what_a_board_cannot_do_is_refused_with_what_it_can() {
+    asked("icestick", "limits", "limits").unwrap();
+    let refused = [
+        (
+            "alchitry-cu",
+            "80000000\ntick_ns = 1000",
+            "48000000\ntick_ns = 2000",
+            "alchitry-cu: the PLL makes no clock of 48 MHz from 100 MHz; the nearest",
+        ),
+        (
+            "icestick",
+            "\"each\"",
+            "\"pair\"",
+            "too few for two for each of 6 axes: limits = \"each\" or \"one\" would do",
+        ),
+        ("icestick", "tick_ns = 2000", "tick_ns = 1000", "6 axes need 13 clocks each and one to close the tick"),
+        ("s3board", "115200", "921600", "s3board's serial chip takes at most 115200 baud, not 921600"),
+        ("icestick", "3000000", "5600000", "a clock of 48000000 Hz does not make 5600000 baud within 2 %"),
+        ("icestick", "driver = \"a4988\"", "driver = \"a4988\"\nstep_ns = 9000000", "step_ns"),
+        (
+            "icestick",
+            "[[machine.axis]]",
+            "[[machine.axis]]\nname = \"u\"\nsteps_per_unit = 1\nspeed_limit = 1\naccel_limit = 1\ndriver = \"a4988\"\n\n[[machine.axis]]",
+            "icestick has pins for 6 axes, not for",
+        ),
+    ];
+    for (name, was, becomes, says) in refused {
+        let said = asked(name, was, becomes).unwrap_err();
+        assert!(said.contains(says), "{said}, not: {says}");
+    }
+}
+
+/// A board of one's own, without a way to a host that the link speaks.
+#[test]
+fn a_board_without_a_uart_is_refused() {
+    let mut board = board("icestick").unwrap().clone();
+    board.wires.retain(|wire| !wire.port.starts_with("uart"));
+    let refused = Gateware::shipped(&board, &board.parts[0]).unwrap_err().to_string();
+    assert_eq!(refused, "icestick has no pin for uart_rx");
+}
+
+/// The folder's script says it is one, and nothing else does.
+#[test]
+fn only_scripts_are_executable() {
+    for board in boards() {
+        for file in Gateware::shipped(board, &board.parts[0]).unwrap().files().unwrap() {
+            assert_eq!(file.executable, file.name == "build.sh", "{}", file.name);
+        }
+    }
+}
+
+/// Over SPI instead of the UART, where the board has the pins for it.
+#[test]
+fn a_machine_may_be_on_an_spi() {
+    let mut on_spi = 0;
+    for board in boards() {
+        let text = shipped_machine(board, &board.clocks[0]).unwrap();
+        let (head, tail) = text.split_once("[machine.link]\n").unwrap();
+        let (_, tail) = tail.split_once('\n').unwrap();
+        let text = format!("{head}[machine.link]\nspi = true\n{tail}");
+        let gateware = Gateware::new(board, &board.parts[0], Source { path: "spi.toml".into(), text: text.into() });
+        if board.bits("spi_sck") == 0 {
+            let refused = gateware.unwrap_err().to_string();
+            assert!(refused.contains("spi_"), "{}: {refused}", board.name);
+            continue;
+        }
+        on_spi += 1;
+        let files = gateware.unwrap().files().unwrap();
+        let all: String = files.iter().map(|file| file.text.as_str()).collect();
+        for port in ["spi_sck", "spi_cs_n", "spi_mosi", "spi_miso"] {
+            assert!(all.contains(port), "{}: {port}", board.name);
+        }
+        assert!(!all.contains("uart_rx"), "{}", board.name);
+        assert!(files.iter().any(|file| file.name == "carrystep_spi.v"), "{}", board.name);
+    }
+    assert!(on_spi >= 10, "{on_spi} boards have an SPI");
+}

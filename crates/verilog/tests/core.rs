@@ -1,0 +1,257 @@
+//! The cores as files: ports, names, lint, synthesis, and that the committed ones are fresh.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+use carrystep_core::engine::{Guard, Limits};
+use carrystep_core::ports::{Direction, SIX_AXIS_PORTS};
+use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
+use carrystep_files::Machine;
+use carrystep_verilog::{
+    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, engine_verilog, generated_files,
+    six_axis_verilog, write_core, write_engine,
+};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+
+/// A core that is generated, and the machine file that the committed one is made from.
+struct Core {
+    name: &'static str,
+    of_machine: fn(&Machine, &str) -> Result<String, ExportError>,
+    write: fn(&Path, &Build, &str) -> Result<Vec<PathBuf>, ExportError>,
+    waivers: &'static str,
+    machine: &'static str,
+    /// Clock, tick and phases of some builds.
+    timebases: [(u64, u64, u32); 3],
+}
+
+const CORES: [Core; 2] = [
+    Core {
+        name: CORE_NAME,
+        of_machine: |machine, description| six_axis_verilog(&machine.build().unwrap(), description),
+        write: write_core,
+        waivers: CORE_WAIVERS,
+        machine: "sim/six-axis.toml",
+        timebases: [(48_000_000, 1000, 16), (20_000_000, 1000, 4), (16_000_000, 1000, 1)],
+    },
+    Core {
+        name: ENGINE_NAME,
+        of_machine: |machine, description| engine_verilog(&machine.engine(), description),
+        write: |folder, build, description| write_engine(folder, &guarded(build), description),
+        waivers: ENGINE_WAIVERS,
+        machine: "sim/engine.toml",
+        timebases: [(48_000_000, 2000, 16), (12_000_000, 10_000, 4), (90_000_000, 1000, 1)],
+    },
+];
+
+fn pins() -> [PinTiming; AXES] {
+    [PinTiming { width: 96, gap: 5, setup: 2, hold: 7 }; AXES]
+}
+
+/// With something of everything that the guard can watch.
+fn guarded(build: &Build) -> EngineBuild {
+    let engine = EngineBuild::minimal(build, 1 << 40);
+    let guard = Guard { watchdog: 100, enable: 5, debounce: 3, limits: Limits::Pair, ..engine.guard };
+    EngineBuild { guard, ..engine }
+}
+
+/// The same with so many axes.
+fn engine_of(axes: usize) -> EngineBuild {
+    let timebase = Timebase::new(56_000_000, 2000, 16).unwrap();
+    let mut engine = guarded(&Build { timebase, phase: StartPhase::Half, pins: pins() });
+    engine.pins = vec![pins()[0]; axes];
+    engine.guard.stop = vec![1 << 40; axes];
+    engine
+}
+
+fn build(clock_hz: u64, phases: u32) -> Build {
+    let timebase = Timebase::new(clock_hz, 1000, phases).unwrap();
+    Build { timebase, phase: StartPhase::Half, pins: pins() }
+}
+
+/// Runs a tool on the core in a folder: whether it succeeded, and what it printed.
+fn run(tool: &str, arguments: &[String], folder: &Path) -> (bool, String) {
+    let output = Command::new(tool).args(arguments).current_dir(folder).output();
+    let output = output.unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
+    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+    (output.status.success(), said.into_owned())
+}
+
+/// Runs a tool on each core in some builds, and on engines of each number of axes, each in a fresh folder.
+fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &str) -> bool) {
+    for core in &CORES {
+        for (clock_hz, tick_ns, phases) in core.timebases {
+            let timebase = Timebase::new(clock_hz, tick_ns, phases).unwrap();
+            let folder = tempfile::tempdir().unwrap();
+            let build = Build { timebase, phase: StartPhase::Half, pins: pins() };
+            (core.write)(folder.path(), &build, "a test").unwrap();
+            let (ok, said) = run(tool, &arguments(core.name), folder.path());
+            assert!(fine(ok, &said), "{}, {phases} phases: {said}", core.name);
+        }
+    }
+    for axes in 1..=8 {
+        let folder = tempfile::tempdir().unwrap();
+        write_engine(folder.path(), &engine_of(axes), "a test").unwrap();
+        let (ok, said) = run(tool, &arguments(ENGINE_NAME), folder.path());
+        assert!(fine(ok, &said), "{ENGINE_NAME} of {axes} axes: {said}");
+    }
+}
+
+#[test]
+fn ports_are_those_of_the_table() {
+    let text = six_axis_verilog(&build(48_000_000, 16), "a test").unwrap();
+    let (_, top) = text.split_once(&format!("module {CORE_NAME} (\n")).unwrap();
+    let (list, _) = top.split_once("\n);").unwrap();
+    let found: Vec<String> = list.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+    let expected = SIX_AXIS_PORTS.map(|port| {
+        let way = if port.direction == Direction::Input { "input" } else { "output" };
+        let range = if port.width == 1 { String::new() } else { format!("[{}:0] ", port.width - 1) };
+        format!("{way} wire {range}{},", port.name)
+    });
+    let mut expected = expected.to_vec();
+    expected[SIX_AXIS_PORTS.len() - 1].pop();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn an_engine_has_the_axes_of_its_build() {
+    for axes in 1..=8 {
+        let text = engine_verilog(&engine_of(axes), "a test").unwrap();
+        let (_, top) = text.split_once(&format!("module {ENGINE_NAME} (\n")).unwrap();
+        let range = if axes == 1 { String::new() } else { format!("[{}:0] ", axes - 1) };
+        let ports =
+            ["input wire {}start_mask", "input wire {}limit_max", "output wire {}step", "output wire {}culprits"];
+        let top = top.split_whitespace().collect::<Vec<_>>().join(" ");
+        for port in ports.map(|port| port.replace("{}", &range)) {
+            assert!(top.contains(&port), "{axes} axes: {port}");
+        }
+        assert_eq!(text.matches("    carrystep_pulser_").count(), axes);
+    }
+}
+
+#[test]
+fn equal_modules_are_one_and_nothing_is_called_after_its_place() {
+    let text = six_axis_verilog(&build(48_000_000, 16), "a test").unwrap();
+    let modules: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("module ")).collect();
+    let names = ["tick", "sequencer", "step_edge", "axis", "shaper_w96_s5_d2_h7", "six_axis"];
+    assert_eq!(modules, names.map(|name| format!("carrystep_{name} (")));
+    assert!(!text.contains('$'));
+}
+
+#[test]
+fn the_same_build_gives_the_same_text() {
+    let build = build(20_000_000, 4);
+    assert_eq!(six_axis_verilog(&build, "a").unwrap(), six_axis_verilog(&build, "a").unwrap());
+}
+
+#[test]
+fn a_timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
+    let mut build = build(48_000_000, 16);
+    build.pins[3].gap = 0;
+    let folder = tempfile::tempdir().unwrap();
+    let error = write_core(folder.path(), &build, "a test").unwrap_err();
+    assert!(error.to_string().contains("gap is 0 clocks"), "{error}");
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+}
+
+#[test]
+fn an_engine_whose_turns_do_not_fit_is_refused_with_the_arithmetic_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let error = write_engine(folder.path(), &guarded(&build(48_000_000, 16)), "a test").unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz has 48: \
+         a tick of 2000 ns, a clock of 80000000 Hz or fewer axes would do"
+    );
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+}
+
+#[test]
+fn an_engine_that_cannot_work_is_refused_by_name_and_nothing_is_written() {
+    let phase_of_one_clock = |build: &mut EngineBuild| {
+        (build.pins, build.guard.stop) = (vec![PinTiming::SHORTEST], vec![1]);
+        build.timebase = Timebase::new(16_000_000, 1000, 16).unwrap();
+    };
+    let nine_axes = |build: &mut EngineBuild| {
+        build.pins = vec![PinTiming::SHORTEST; 9];
+        build.guard.stop = vec![1; 9];
+    };
+    type Spoil = fn(&mut EngineBuild);
+    let refusals: [(Spoil, &str); 6] = [
+        (nine_axes, "9 axes: an engine has 1 to 8"),
+        (|build| build.pins.clear(), "0 axes: an engine has 1 to 8"),
+        (|build| build.guard.stop.truncate(4), "4 stop accelerations for 6 axes"),
+        (phase_of_one_clock, "16 phases in the 16 clocks of a tick"),
+        (|build| build.pins[5].width = 0, "axis 5: width is 0 clocks"),
+        (|build| build.pins[1].setup = 65_537, "axis 1: setup is 65537 clocks: from 1 to 65536 can be counted"),
+    ];
+    for (spoil, says) in refusals {
+        let mut build = engine_of(6);
+        spoil(&mut build);
+        let folder = tempfile::tempdir().unwrap();
+        let error = write_engine(folder.path(), &build, "a test").unwrap_err().to_string();
+        assert!(error.contains(says), "{error}, not: {says}");
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+    }
+}
+
+/// What a machine file asks is refused before there is a build: the driver's width and gap at the greatest speed, and
+/// phases that do not divide the tick.
+#[test]
+fn a_machine_that_no_engine_can_drive_is_refused_by_name() {
+    let text = std::fs::read_to_string(Path::new(ROOT).join("sim/engine.toml")).unwrap();
+    let refusals = [
+        ("driver = \"tmc2209\"", "step_ns = 15000\ngap_ns = 15000\nsetup_ns = 20\nhold_ns = 20", "width and gap"),
+        ("tick_ns = 2000", "tick_ns = 1750", "84 clocks per tick do not divide into 16 equal phases"),
+    ];
+    for (was, becomes, says) in refusals {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("machine.toml");
+        assert!(text.contains(was), "the text is gone: {was}");
+        std::fs::write(&file, text.replace(was, becomes)).unwrap();
+        let error = Machine::load(&file).unwrap_err().to_string();
+        assert!(error.contains(says), "{error}, not: {says}");
+    }
+}
+
+#[test]
+fn verilator_has_nothing_to_say() {
+    let arguments = |name: &str| {
+        let words = ["--lint-only", "-Wall", "--top-module", name, &format!("{name}.vlt"), &format!("{name}.v")];
+        words.map(String::from).to_vec()
+    };
+    on_each_core("verilator", arguments, |ok, said| ok && said.is_empty());
+}
+
+#[test]
+fn yosys_finds_no_latch_and_no_undriven_wire() {
+    let arguments = |name: &str| {
+        let script = format!(
+            "read_verilog {name}.v; hierarchy -check -top {name}; proc; check -assert; select -assert-none t:$dlatch"
+        );
+        ["-q", "-p", &script].map(String::from).to_vec()
+    };
+    on_each_core("yosys", arguments, |ok, said| ok && !said.contains("Warning"));
+}
+
+#[test]
+fn the_committed_cores_are_fresh() {
+    for core in &CORES {
+        let machine = Machine::load(&Path::new(ROOT).join(core.machine)).unwrap();
+        let read = |extension| {
+            let path = Path::new(ROOT).join("hdl-out/core").join(core.name).with_extension(extension);
+            std::fs::read_to_string(path).unwrap()
+        };
+        let how = "run `cargo xtask generate`";
+        assert!(read("v") == (core.of_machine)(&machine, core.machine).unwrap(), "{}: {how}", core.name);
+        assert!(read("vlt") == core.waivers, "{}: {how}", core.name);
+    }
+}
+
+#[test]
+fn what_is_made_from_tables_is_fresh() {
+    for file in generated_files().unwrap() {
+        let committed = std::fs::read_to_string(Path::new(ROOT).join(&file.name)).unwrap_or_default();
+        assert!(committed == file.text, "{}: run `cargo xtask generate`", file.name);
+    }
+}

@@ -1,0 +1,216 @@
+//! Engine and link on one clock, and the line to the host.
+
+use crate::wire::{Driven, SPI_RESTS, Wire};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{Cause, EngineInputs, EngineOutputs, Guard, MAX_AXES};
+use carrystep_core::link::{Line, LinkInputs, LinkOutputs, Uart};
+use carrystep_model::fast::Edges;
+use carrystep_model::{FastEngine, Link};
+
+/// Switches at the board's inputs; `true` and a bit that is set are active, whatever the level of the pin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Switches {
+    /// The e-stop is pressed.
+    pub estop: bool,
+    /// Limits at the low ends, a bit each axis.
+    pub limit_min: u8,
+    /// Limits at the high ends, a bit each axis.
+    pub limit_max: u8,
+}
+
+impl Switches {
+    /// What they drive, with the polarity of their pins.
+    pub(crate) fn pins(self, guard: &Guard) -> EngineInputs {
+        let low = if guard.limits_low { 0xff } else { 0 };
+        EngineInputs {
+            estop: self.estop != guard.estop_low,
+            limit_min: self.limit_min ^ low,
+            limit_max: self.limit_max ^ low,
+            ..EngineInputs::default()
+        }
+    }
+}
+
+/// The board.
+#[derive(Debug, Clone)]
+pub struct Board {
+    engine: FastEngine,
+    link: Link,
+    wire: Wire,
+    /// What the switches drive, with the polarity of their pins.
+    pins: EngineInputs,
+    loads: Vec<u64>,
+    stops: Vec<(u64, Cause)>,
+}
+
+impl Board {
+    /// A board as it is configured, in cycle 0, with no switch pressed.
+    pub fn new(build: &EngineBuild, uart: Uart) -> Self {
+        Self::with(build, uart.into(), Wire::uart(build.timebase.clock_hz(), uart))
+    }
+
+    /// The same on an SPI of this rate, Hz.
+    pub fn on_spi(build: &EngineBuild, sck_hz: u64) -> Self {
+        Self::with(build, Line::Spi, Wire::spi(build.timebase.clock_hz(), sck_hz))
+    }
+
+    fn with(build: &EngineBuild, line: Line, wire: Wire) -> Self {
+        let mut board = Self {
+            engine: FastEngine::new(build),
+            link: Link::new(build, line),
+            wire,
+            pins: EngineInputs::default(),
+            loads: Vec::new(),
+            stops: Vec::new(),
+        };
+        board.press(Switches::default());
+        board
+    }
+
+    /// The cycle it is in.
+    pub fn cycle(&self) -> u64 {
+        self.engine.cycle()
+    }
+
+    /// Its engine.
+    pub fn engine(&self) -> &FastEngine {
+        &self.engine
+    }
+
+    /// What the engine says in this cycle.
+    pub fn outputs(&self) -> EngineOutputs {
+        self.engine.outputs(&self.inputs(&self.link.outputs()))
+    }
+
+    /// The cycles in which starts have loaded their first segments.
+    pub fn loads(&self) -> &[u64] {
+        &self.loads
+    }
+
+    /// The stops that were called: the first cycle with the fault, and why.
+    pub fn stops(&self) -> &[(u64, Cause)] {
+        &self.stops
+    }
+
+    /// Says a byte to it, at the line's pace.
+    pub fn say(&mut self, byte: u8) {
+        self.wire.say(byte);
+    }
+
+    /// Bytes that have not yet gone to it.
+    pub fn unsaid(&self) -> usize {
+        self.wire.unsaid()
+    }
+
+    /// Bytes are on the line, either way, or an answer is being made.
+    pub fn talks(&self) -> bool {
+        self.wire.unsaid() > 0 || self.wire.is_hearing() || self.link.quiet(true) != u64::MAX
+    }
+
+    /// The next byte from it.
+    pub fn next_byte(&mut self) -> Option<u8> {
+        self.wire.next_byte()
+    }
+
+    /// Sets the switches from this cycle on.
+    pub fn press(&mut self, switches: Switches) {
+        self.pins = switches.pins(&self.engine.core().build().guard);
+    }
+
+    /// Goes on to this cycle; `to` hears of the pins. It stops once on its way, where the first start has loaded: until
+    /// then nothing was to be heard, nor for a tick after that.
+    pub fn run(&mut self, end: u64, to: &mut impl Edges) {
+        let waits = self.loads.is_empty();
+        while self.cycle() < end && self.loads.is_empty() == waits {
+            let inputs = self.inputs(&self.link.outputs());
+            let per_tick = u64::from(self.engine.core().build().timebase.clocks_per_tick());
+            let starts = waits && self.engine.outputs(&inputs).armed;
+            let target = if starts { end.min(self.cycle() + per_tick) } else { end };
+            let alone = self.run_link(target);
+            if alone == self.cycle() {
+                self.clock(&inputs, to);
+            } else {
+                self.follow(&inputs, alone, to);
+            }
+        }
+    }
+
+    /// The link alone, for as long as the engine means nothing to it, to this cycle at the most; where it is then.
+    fn run_link(&mut self, end: u64) -> u64 {
+        let mut cycle = self.cycle();
+        while cycle < end && self.link.is_alone() {
+            let Driven { rx, spi, stays } = self.wire.drive(cycle);
+            let quiet = if spi == SPI_RESTS { self.link.quiet(rx).min(stays).min(end - cycle) } else { 0 };
+            if quiet == 0 {
+                self.link.clock_alone(rx, spi);
+            } else {
+                self.link.pass(quiet, rx);
+            }
+            cycle += quiet.max(1);
+            self.wire.hear(cycle, self.link.tx());
+        }
+        cycle
+    }
+
+    /// The engine to where the link is.
+    fn follow(&mut self, inputs: &EngineInputs, end: u64, to: &mut impl Edges) {
+        let clocks = end - self.cycle();
+        let begun = self.engine.core().has_turns();
+        while self.cycle() < end {
+            let says = self.engine.outputs(inputs);
+            let latched = says.latch.map_or(0, |axis| 1 << axis);
+            let leapt = self.engine.leap(inputs, end - self.cycle(), to);
+            let latched = if leapt > 0 { says.homing } else { latched };
+            for axis in (0..MAX_AXES as u8).filter(|axis| latched >> axis & 1 == 1) {
+                self.link.latch(axis, self.engine.core().item(axis, POSITION));
+            }
+            if leapt == 0 {
+                self.clock_engine(inputs, &says, to);
+            }
+        }
+        let core = self.engine.core();
+        let turns = if begun { core.answers_before(clocks) } else { 0 };
+        self.link.catch_up(turns, |axis, item| core.item(axis, item));
+    }
+
+    /// One clock of everything.
+    fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
+        let asks = self.link.outputs();
+        let says = self.engine.outputs(inputs);
+        let Driven { rx, spi, .. } = self.wire.drive(self.cycle());
+        self.link.clock(&LinkInputs { rx, spi, ..self.told(&asks, &says) });
+        self.clock_engine(inputs, &says, to);
+        self.wire.hear(self.cycle(), self.link.tx());
+    }
+
+    fn clock_engine(&mut self, inputs: &EngineInputs, says: &EngineOutputs, to: &mut impl Edges) {
+        self.engine.clock(inputs, to);
+        if says.started {
+            self.loads.push(self.cycle());
+        }
+        if says.fault.is_none()
+            && let Some((cause, _)) = self.engine.core().fault()
+        {
+            self.stops.push((self.cycle(), cause));
+        }
+    }
+
+    fn inputs(&self, asks: &LinkOutputs) -> EngineInputs {
+        let EngineInputs { estop, limit_min, limit_max, .. } = self.pins;
+        EngineInputs { estop, limit_min, limit_max, ..asks.engine }
+    }
+
+    fn told(&self, asks: &LinkOutputs, says: &EngineOutputs) -> LinkInputs {
+        let core = self.engine.core();
+        let (axis, item) = says.latch.map_or((asks.get_axis, asks.get_item), |axis| (axis, POSITION));
+        LinkInputs {
+            engine: *says,
+            get_data: core.item(axis, item),
+            get_valid: core.answers(),
+            ..LinkInputs::default()
+        }
+    }
+}
+
+/// The item of an axis that is its position.
+const POSITION: u8 = 2;

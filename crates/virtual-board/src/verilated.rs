@@ -1,0 +1,182 @@
+//! The board whose engine, link and line are the exported Verilog, in Verilator.
+
+use crate::board::Switches;
+use crate::gateware::Gateware;
+use crate::wire::{Driven, Wire};
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{Cause, MAX_AXES};
+use carrystep_core::link::{Line, Uart};
+use carrystep_model::fast::{Change, Edge, Edges};
+use carrystep_simulators::LevelError;
+use carrystep_simulators::board::{BoardProcess, Did, Levels, Standing};
+
+/// Clocks that the process is told of at once.
+const CLOCKS: u64 = 5000;
+
+/// The board; its time is that of its process, far slower than a real one's.
+#[derive(Debug)]
+pub struct VerilatedBoard {
+    build: EngineBuild,
+    process: BoardProcess,
+    standing: Standing,
+    wire: Wire,
+    switches: Switches,
+    loads: Vec<u64>,
+    stops: Vec<(u64, Cause)>,
+    pins: [u8; 2],
+    travelled: [i32; MAX_AXES],
+    /// Edges between the first load and where it stopped because of it: the next run tells them.
+    late: Vec<Edge>,
+}
+
+impl VerilatedBoard {
+    /// A board as it is configured, in cycle 0, with no switch pressed.
+    ///
+    /// # Errors
+    /// [`LevelError`]: Verilator is missing or fails, or there is no such gateware.
+    pub fn new(build: &EngineBuild, uart: Uart) -> Result<Self, LevelError> {
+        Self::with(build, uart.into(), Wire::uart(build.timebase.clock_hz(), uart))
+    }
+
+    /// The same on an SPI of this rate, Hz.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn on_spi(build: &EngineBuild, sck_hz: u64) -> Result<Self, LevelError> {
+        Self::with(build, Line::Spi, Wire::spi(build.timebase.clock_hz(), sck_hz))
+    }
+
+    fn with(build: &EngineBuild, line: Line, wire: Wire) -> Result<Self, LevelError> {
+        Ok(Self {
+            build: build.clone(),
+            process: BoardProcess::new(build, line)?,
+            standing: Standing { idle: true, ..Standing::default() },
+            wire,
+            switches: Switches::default(),
+            loads: Vec::new(),
+            stops: Vec::new(),
+            pins: [0; 2],
+            travelled: [0; MAX_AXES],
+            late: Vec::new(),
+        })
+    }
+
+    fn go(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError> {
+        let pins = self.switches.pins(&self.build.guard);
+        let axes = u8::MAX >> (MAX_AXES - self.build.axes());
+        let (limit_min, limit_max) = (pins.limit_min & axes, pins.limit_max & axes);
+        let mut stimuli = Vec::new();
+        let mut cycle = self.cycle();
+        while cycle < end {
+            let Driven { rx, spi, stays } = self.wire.drive(cycle);
+            let count = stays.min(end - cycle);
+            stimuli.push((count, Levels { rx, spi, estop: pins.estop, limit_min, limit_max }));
+            cycle += count;
+        }
+        let Self { process, wire, loads, stops, pins, travelled, .. } = self;
+        let standing = process.run(&stimuli, &mut |did| match did {
+            Did::Tx(cycle, level) => wire.hear(cycle, level),
+            Did::Pins(cycle, now) => {
+                edges(cycle, *pins, now, &mut |edge| {
+                    if edge.change == Change::Rise {
+                        let travelled = &mut travelled[usize::from(edge.axis)];
+                        *travelled = travelled.wrapping_add(if edge.backward { -1 } else { 1 });
+                    }
+                    to.edge(edge);
+                });
+                *pins = now;
+            }
+            Did::Load(cycle) => loads.push(cycle),
+            Did::Stop(cycle, cause) => stops.push((cycle, cause)),
+        })?;
+        self.standing = standing;
+        self.wire.reach(end);
+        Ok(())
+    }
+}
+
+impl Gateware for VerilatedBoard {
+    fn cycle(&self) -> u64 {
+        self.standing.cycle
+    }
+
+    fn rests(&self) -> bool {
+        self.standing.idle || self.standing.halted
+    }
+
+    fn fault(&self) -> Option<(Cause, u8)> {
+        self.standing.fault
+    }
+
+    fn position(&self, axis: usize) -> i32 {
+        self.travelled[axis]
+    }
+
+    fn step(&self) -> u8 {
+        self.pins[0]
+    }
+
+    /// Its pins do not tell.
+    fn discarded(&self, _: usize) -> Option<u32> {
+        None
+    }
+
+    /// Nor this.
+    fn alone(&self) -> Option<u64> {
+        None
+    }
+
+    fn loads(&self) -> &[u64] {
+        &self.loads
+    }
+
+    fn stops(&self) -> &[(u64, Cause)] {
+        &self.stops
+    }
+
+    fn say(&mut self, byte: u8) {
+        self.wire.say(byte);
+    }
+
+    fn unsaid(&self) -> usize {
+        self.wire.unsaid()
+    }
+
+    fn next_byte(&mut self) -> Option<u8> {
+        self.wire.next_byte()
+    }
+
+    fn press(&mut self, switches: Switches) {
+        self.switches = switches;
+    }
+
+    fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError> {
+        self.late.drain(..).for_each(|edge| to.edge(edge));
+        let waits = self.loads.is_empty();
+        while self.cycle() < end && self.loads.is_empty() == waits {
+            let stop = end.min(self.cycle() + CLOCKS);
+            if waits {
+                let mut late = Vec::new();
+                self.go(stop, &mut late)?;
+                self.late = late;
+            } else {
+                self.go(stop, to)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What has changed of STEP and DIR, axis by axis.
+fn edges(clock: u64, [step, dir]: [u8; 2], [step_now, dir_now]: [u8; 2], to: &mut dyn FnMut(Edge)) {
+    for axis in 0..MAX_AXES as u8 {
+        let backward = dir_now >> axis & 1 == 1;
+        let mut tell = |change| to(Edge { clock, axis, change, backward });
+        if step_now & !step & 1 << axis != 0 {
+            tell(Change::Rise);
+        }
+        if (dir_now ^ dir) & 1 << axis != 0 {
+            tell(Change::Turn);
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! A board at the end of a line that flips, drops, doubles, cuts and delays bytes: its pulses are those of a clean line, or
+//! it has stopped and says why. `CARRYSTEP_FRAMES` asks for so many frames in all.
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use carrystep_core::AXES;
+use carrystep_core::engine::Cause;
+use carrystep_core::link::Uart;
+use carrystep_link::{Command, Ended, HostError, Program, Wish};
+use carrystep_model::fast::Edge;
+use carrystep_virtual_board::{Board, VerilatedBoard};
+use support::random::Random;
+use support::wire::Faults;
+use support::{BoardHost, CLOCK_HZ, End, Kind, asked, waves};
+
+/// Segments of an axis in a move, and ticks of each: the queues hold a seventh of a second.
+const SEGMENTS: u32 = 60;
+const TICKS: u32 = 10_000;
+
+fn uart() -> Uart {
+    Uart::new(CLOCK_HZ, 3_000_000).unwrap()
+}
+
+/// How a move went: its edges from its load on, and the stop that it ended with.
+struct Went {
+    edges: Vec<Edge>,
+    /// Cycles from its load on.
+    stop: Option<(u64, Cause)>,
+}
+
+/// Makes a move, and clears what has stopped it.
+fn make<B: Kind>(end: &End<B>, host: &mut BoardHost<B>, commands: &[Command]) -> Went {
+    let (loads, stops) = (end.0.borrow().board.loads().len(), end.0.borrow().board.stops().len());
+    let ended = host.stream(Program::new(commands, AXES as u8).unwrap(), |_| Wish::GoOn);
+    let positions = host.status().positions;
+    let went = {
+        let world = end.0.borrow();
+        let load = world.board.loads().get(loads).copied().unwrap_or(u64::MAX);
+        assert!(world.board.loads().len() <= loads + 1, "a move was started twice");
+        for axis in 0..AXES as u8 {
+            assert_eq!(positions[usize::from(axis)], world.travelled(axis), "the position of axis {axis} is not true");
+        }
+        let stop = world.board.stops().get(stops).map(|&(cycle, cause)| (cycle.saturating_sub(load), cause));
+        Went { edges: world.edges_since(load), stop }
+    };
+    match (ended, went.stop) {
+        (Ok(Ended::Done), None) => {}
+        (Err(HostError::Fault { cause, .. }), Some((_, called))) => {
+            assert_eq!(cause, called as u8, "the stop has another name");
+            host.clear().unwrap();
+        }
+        other => panic!("{other:?}"),
+    }
+    went
+}
+
+/// What the pins of a new board do at the end of such a line, and how often that harms.
+fn on_a_line<B: Kind>(faults: Faults, seed: u64, commands: &[Command]) -> (Went, u64) {
+    let end = End::<B>::new(uart(), faults, seed);
+    let mut host = end.connect(uart());
+    host.enable().unwrap();
+    let went = make(&end, &mut host, commands);
+    let harmed = end.0.borrow().harmed();
+    (went, harmed)
+}
+
+/// The same edges, all of them, or all before a stop.
+fn compare(went: &Went, clean: &[Edge]) {
+    let until = went.stop.map_or(u64::MAX, |(cycle, _)| cycle);
+    let before = |edges: &[Edge]| edges.iter().take_while(|edge| edge.clock < until).copied().collect::<Vec<_>>();
+    let (found, expected) = (before(&went.edges), before(clean));
+    if let Some(place) = found.iter().zip(&expected).position(|(one, other)| one != other) {
+        panic!("edge {place} is {:?}, on a clean line {:?}", found[place], expected[place]);
+    }
+    assert_eq!(found.len(), expected.len(), "edges, stop {:?}", went.stop);
+}
+
+#[test]
+fn pulses_on_a_bad_line_are_those_of_a_clean_one() {
+    let frames = asked("CARRYSTEP_FRAMES", 3000);
+    let mut random = Random(11);
+    let (mut sent, mut moves, mut stops, mut edges, mut harmed) = (0, 0_u64, 0_u64, 0, 0);
+    while sent < frames {
+        let commands = waves(&mut random, SEGMENTS, TICKS);
+        let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
+        assert_eq!(clean.stop, None);
+        let (went, harms) = on_a_line::<Board>(Faults::BAD, random.next(), &commands);
+        compare(&went, &clean.edges);
+        if let Some((_, cause)) = went.stop {
+            // Nothing that a frame could have done: it came too late, or not at all.
+            assert!(matches!(cause, Cause::Underrun | Cause::Watchdog), "{cause:?}");
+            stops += 1;
+        }
+        edges += went.edges.len();
+        sent += commands.len() as u64;
+        moves += 1;
+        harmed += harms;
+    }
+    eprintln!(
+        "FIGURES {sent} frames in {moves} moves, the line harmed {harmed} times, {stops} moves stopped, {edges} edges as on a clean line"
+    );
+    assert!(harmed > sent / 50, "the line is too good: {harmed}");
+    assert!(stops * 2 < moves, "too few moves are made: {stops} of {moves} stopped");
+}
+
+/// The same line, at whose end is the exported Verilog: its pulses are those of a board of models on a clean one.
+#[test]
+fn pulses_of_the_verilog_on_a_bad_line_are_those_of_models_on_a_clean_one() {
+    let commands = waves(&mut Random(12), 9, 3000);
+    let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
+    let (went, harms) = on_a_line::<VerilatedBoard>(Faults::BAD, 5, &commands);
+    compare(&went, &clean.edges);
+    eprintln!("FIGURES the line harmed {harms} times, {} edges, stop {:?}", went.edges.len(), went.stop);
+    assert!(harms > 1, "the line is too good");
+    assert_eq!(went.stop, None, "too little is made");
+}
+
+/// `CARRYSTEP_GARBAGE` asks for so many milliseconds.
+#[test]
+fn garbage_hangs_nothing() {
+    hears_garbage::<Board>(asked("CARRYSTEP_GARBAGE", 2000));
+}
+
+/// `CARRYSTEP_VERILOG_MS` asks for so many milliseconds.
+#[test]
+fn garbage_hangs_no_verilog_at_921_600_baud() {
+    hears_garbage::<VerilatedBoard>(asked("CARRYSTEP_VERILOG_MS", 50));
+}
+
+fn hears_garbage<B: Kind>(milliseconds: u64) {
+    // As fast as the line carries it.
+    let uart = Uart::new(CLOCK_HZ, 921_600).unwrap();
+    let end = End::<B>::new(uart, Faults::default(), 3);
+    let mut random = Random(9);
+    let mut bytes = 0_u64;
+    for _ in 0..milliseconds {
+        let mut world = end.0.borrow_mut();
+        while world.board.unsaid() < 92 {
+            let any = random.next() as u8;
+            world.board.say(if random.below(5) == 0 { [0xc0, 0xdb, 0xdc, 0xdd][usize::from(any & 3)] } else { any });
+            bytes += 1;
+        }
+        drop(world);
+        end.wait(1);
+    }
+    assert_eq!(end.0.borrow().board.stops(), []);
+    let mut host = end.connect(uart);
+    assert_eq!(host.status().answer.next, 0, "garbage was executed");
+    host.enable().unwrap();
+    let went = make(&end, &mut host, &waves(&mut random, 3, 3000));
+    assert_eq!(went.stop, None);
+    eprintln!(
+        "FIGURES {bytes} bytes of garbage in {} s of the line's time, nothing executed, then a move",
+        milliseconds as f64 / 1000.0
+    );
+}

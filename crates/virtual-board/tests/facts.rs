@@ -1,0 +1,251 @@
+//! What docs/protocol.md says of rare requests and of the watchdog, from a board of models and from the exported Verilog.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use carrystep_core::engine::Cause;
+use carrystep_core::link::{END, Uart};
+use carrystep_link::registers::{
+    AXIS_COUNT, BUILD_HIGH, CLEAR, CONTROL, DISCARDED, HOME, IDENTITY, LATCHED, P_HIGH, P_LOW, POSITION, SEGMENT,
+    START, WATCHDOG_TICKS, WRITE,
+};
+use carrystep_link::{Answer, Patience, frame};
+use carrystep_virtual_board::{Board, VerilatedBoard};
+use support::link::device::on_the_line;
+use support::{CLOCK_HZ, Kind, MS};
+
+/// An answer comes within so many clocks.
+const PATIENCE: u64 = 30_000;
+
+/// A host that has one request on its way.
+struct Talk<B> {
+    board: B,
+    next: u8,
+}
+
+impl<B: Kind> Talk<B> {
+    fn new() -> Self {
+        Self { board: B::new(Uart::new(CLOCK_HZ, 3_000_000).unwrap()), next: 0 }
+    }
+
+    fn powered() -> Self {
+        let mut talk = Self::new();
+        talk.write(CONTROL, 1);
+        while !talk.read(POSITION).ready {}
+        talk
+    }
+
+    fn rest(&mut self, clocks: u64) {
+        self.board.reach(self.board.cycle() + clocks, &mut ());
+    }
+
+    fn send(&mut self, content: &[u8]) {
+        on_the_line(content).iter().for_each(|&byte| self.board.say(byte));
+    }
+
+    /// The next answer, if one comes.
+    fn answer(&mut self) -> Option<Answer> {
+        let end = self.board.cycle() + PATIENCE;
+        let mut line = Vec::new();
+        while self.board.cycle() < end {
+            match self.board.next_byte() {
+                None => self.rest(200),
+                Some(END) if line.is_empty() => {}
+                Some(END) => return Some(Answer::from_bytes(&support::unescaped(&line)).unwrap()),
+                Some(byte) => line.push(byte),
+            }
+        }
+        None
+    }
+
+    fn ask(&mut self, content: &[u8]) -> Answer {
+        self.send(content);
+        self.answer().unwrap_or_else(|| panic!("no answer to {content:02x?}"))
+    }
+
+    fn read(&mut self, address: u8) -> Answer {
+        self.ask(&[0, address])
+    }
+
+    fn write(&mut self, address: u8, word: u32) -> Answer {
+        self.words(WRITE | address, &[word])
+    }
+
+    fn segment(&mut self, axis: u8, words: [u32; 8]) -> Answer {
+        self.words(WRITE | frame::of_axis(SEGMENT, axis), &words)
+    }
+
+    fn words(&mut self, address: u8, words: &[u32]) -> Answer {
+        let head = [self.next, address];
+        let content: Vec<u8> = head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
+        let answer = self.ask(&content);
+        self.next = self.next.wrapping_add(1);
+        assert_eq!(answer.next, self.next, "{answer:?}");
+        answer
+    }
+}
+
+/// V = a quarter of a step per tick.
+const fn cruise(ticks_less_one: u32, last: bool) -> [u32; 8] {
+    [ticks_less_one, 0, 0x4000_0000, 0, 0, 0, 0, last as u32]
+}
+
+/// Axis k has k segments in its queue, which takes 7.
+fn filled<B: Kind>() -> Talk<B> {
+    let mut talk = Talk::powered();
+    for axis in 0..6 {
+        (0..axis).for_each(|_| assert!(!talk.segment(axis, cruise(99, true)).refused));
+    }
+    talk
+}
+
+/// The page's table: `free` is of the axis that bits 3 to 5 of the address name, below 40 too.
+fn reads<B: Kind>() {
+    let mut talk = filled::<B>();
+    let next = talk.next;
+    for address in 0..0x80_u8 {
+        let answer = talk.read(address);
+        let axis = address >> 3 & 7;
+        if axis < 6 {
+            assert_eq!(answer.free, 7 - axis, "{address:02x}");
+        }
+        assert_eq!((answer.next, answer.fault, answer.refused), (next, false, false), "{address:02x}");
+        let global = IDENTITY..=WATCHDOG_TICKS;
+        let of_axis = address >= 0x40
+            && axis < 6
+            && [P_LOW, P_HIGH, POSITION, DISCARDED, LATCHED].contains(&(0x40 | address & 7));
+        if !global.contains(&address) && !of_axis {
+            assert_eq!(answer.data, 0, "{address:02x} is no register");
+        }
+    }
+}
+
+/// A write to an address that is no register is executed and changes nothing; with another length it is not answered.
+fn writes<B: Kind>() {
+    let mut talk = filled::<B>();
+    for address in (0..0x40_u8).filter(|address| ![CONTROL, START, CLEAR, HOME].contains(address)) {
+        let answer = talk.write(address, 0xffff_ffff);
+        let state = (answer.free, answer.data, answer.fault, answer.refused, answer.ready, answer.armed, answer.homing);
+        assert_eq!(state, (7, 0, false, false, true, false, 0), "{address:02x}");
+    }
+    let next = talk.next;
+    talk.send(&[&[next, WRITE | AXIS_COUNT][..], &[0; 32]].concat());
+    assert_eq!(talk.answer(), None, "eight words for a register of one");
+    talk.send(&[&[next, WRITE | frame::of_axis(SEGMENT, 0)][..], &[0; 4]].concat());
+    assert_eq!(talk.answer(), None, "one word for a segment");
+    for axis in 0..6 {
+        let answer = talk.read(frame::of_axis(POSITION, axis));
+        assert_eq!((answer.next, answer.free), (next, 7 - axis));
+    }
+    // The low three bits of a segment's address mean nothing.
+    let answer = talk.words(WRITE | frame::of_axis(SEGMENT, 1) | 5, &cruise(99, true));
+    assert_eq!((answer.free, answer.fault), (5, false));
+    // An axis that the build has not.
+    let answer = talk.segment(7, cruise(99, true));
+    assert_eq!((answer.fault, answer.cause), (true, Cause::Protocol as u8));
+}
+
+/// A START of no axis is armed until the next tick, and moves nothing; one without power is busy until there is.
+fn starts<B: Kind>() {
+    for mask in [0_u32, 0x40, 0xffff_ffc0] {
+        let mut talk = filled::<B>();
+        assert!(talk.write(START, mask).armed, "{mask:x}");
+        talk.rest(10 * support::TICK);
+        let answer = talk.read(POSITION);
+        assert_eq!((answer.fault, answer.armed, answer.free), (false, false, 7), "{mask:x}");
+        assert_eq!(talk.read(frame::of_axis(POSITION, 5)).free, 2, "{mask:x}");
+    }
+    let mut talk = Talk::<B>::new();
+    talk.segment(0, cruise(99, true));
+    for _ in 0..3 {
+        let answer = talk.ask(&[&[talk.next, WRITE | START][..], &[1, 0, 0, 0]].concat());
+        assert_eq!((answer.next, answer.refused, answer.ready, answer.armed), (talk.next, true, false, false));
+    }
+    talk.write(CONTROL, 1);
+    while !talk.read(POSITION).ready {}
+    assert!(talk.write(START, 1).armed);
+}
+
+/// The longest segment has 2^32 - 1 ticks: one more would be none, which is a fault.
+fn ticks<B: Kind>() {
+    let mut talk = Talk::<B>::powered();
+    let longest = talk.segment(0, cruise(0xffff_fffe, true));
+    assert_eq!((longest.fault, longest.free), (false, 6));
+    let none = talk.segment(0, cruise(0xffff_ffff, true));
+    assert_eq!((none.fault, none.cause, none.free), (true, Cause::Protocol as u8, 6));
+}
+
+/// The watchdog of this build: 49 rounds of 1024 ticks of 2 us, 100.4 ms.
+const OVER: u64 = 110 * MS;
+const UNDER: u64 = 90 * MS;
+
+/// It runs while a segment waits at rest, not where nothing does; valid frames feed it, and nothing else.
+fn watchdog<B: Kind>() {
+    let mut talk = Talk::<B>::powered();
+    talk.rest(3 * OVER);
+    let answer = talk.read(POSITION);
+    assert!(!answer.fault && answer.idle, "nothing waits: {answer:?}");
+    talk.segment(0, cruise(99, true));
+    for _ in 0..3 {
+        talk.rest(UNDER);
+        assert!(!talk.read(BUILD_HIGH).fault, "any valid frame feeds it");
+    }
+    // Bytes without a frame, a frame with a wrong CRC, one with a wrong length.
+    let mut harmed = on_the_line(&[0, POSITION]);
+    harmed[3] ^= 1;
+    for noise in [vec![0x55; 20], harmed, on_the_line(&[0, POSITION, 1, 2, 3, 4]), vec![END; 20]] {
+        talk.rest(OVER / 5);
+        noise.iter().for_each(|&byte| talk.board.say(byte));
+    }
+    talk.rest(OVER / 5);
+    let answer = talk.read(POSITION);
+    assert_eq!((answer.fault, answer.cause), (true, Cause::Watchdog as u8), "{answer:?}");
+}
+
+/// A write that is refused or answered again is a valid frame too.
+fn refusals_feed<B: Kind>() {
+    let mut talk = Talk::<B>::powered();
+    talk.segment(0, cruise(99, true));
+    for number in [talk.next.wrapping_add(5), talk.next.wrapping_sub(1)] {
+        talk.rest(UNDER);
+        let answer = talk.ask(&[&[number, WRITE | START][..], &[0; 4]].concat());
+        assert_eq!((answer.next, answer.fault), (talk.next, false));
+    }
+    talk.rest(UNDER);
+    assert!(!talk.read(POSITION).fault);
+}
+
+/// The page's figures of time are those of our client.
+#[test]
+fn time_outs_are_those_of_the_page() {
+    let page = include_str!("../../../docs/protocol.md");
+    let Patience { timing, silence, lost, change, look } = Patience::default();
+    for row in [
+        format!("| no progress, send again from `next` on | after {} ms |", timing.resend),
+        format!("| busy, try again | after {} ms |", timing.pause),
+        format!("| no answer at all, give up | after {silence} ms, or {lost} ms once the board has answered |"),
+        format!("| power, a stop by ramps, a clear | {change} ms at most |"),
+        format!("| a look at the machine while there is nothing to send | every {look} ms |"),
+    ] {
+        assert!(page.contains(&row), "{row}");
+    }
+}
+
+fn all<B: Kind>() {
+    reads::<B>();
+    writes::<B>();
+    starts::<B>();
+    ticks::<B>();
+    watchdog::<B>();
+    refusals_feed::<B>();
+}
+
+#[test]
+fn of_models() {
+    all::<Board>();
+}
+
+#[test]
+fn of_the_verilog() {
+    all::<VerilatedBoard>();
+}

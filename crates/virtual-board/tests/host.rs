@@ -1,0 +1,187 @@
+//! The driver from connecting to a clean stop, with a board of models and with the exported Verilog, on clean lines and on
+//! bad ones; every error names its cause.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use carrystep_core::engine::Cause;
+use carrystep_core::link::{Line, Uart};
+use carrystep_link::{Command, Ended, HostError, Patience, Program, ProgramError, Progress, Segment, Timing, Wish};
+use carrystep_virtual_board::{Board, Switches, VerilatedBoard};
+use support::random::Random;
+use support::wire::Faults;
+use support::{BoardHost, CLOCK_HZ, End, Kind, MS, build, waves};
+
+const QUICK: Patience =
+    Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 100, look: 20 };
+
+/// Runs a body with both boards.
+macro_rules! on_both {
+    ($($name:ident)*) => {
+        $(mod $name {
+            #[test]
+            fn of_models() {
+                super::$name::<super::Board>();
+            }
+
+            #[test]
+            fn of_the_verilog() {
+                super::$name::<super::VerilatedBoard>();
+            }
+        })*
+    };
+}
+
+on_both! {
+    another_build_is_refused_and_both_are_named
+    a_wish_to_stop_is_obeyed_and_a_clear_resumes
+    a_stop_of_the_machine_is_named
+    a_restarted_gateware_is_noticed
+    what_a_dead_host_has_left_is_not_started
+    a_jog_is_a_move_of_one_axis
+}
+
+fn uart() -> Uart {
+    Uart::new(CLOCK_HZ, 3_000_000).unwrap()
+}
+
+/// Connected and powered.
+fn ready<B: Kind>(faults: Faults, seed: u64) -> (End<B>, BoardHost<B>) {
+    let end = End::new(uart(), faults, seed);
+    let mut host = end.connect_to(uart().build_id(&build()), QUICK).unwrap();
+    host.enable().unwrap();
+    (end, host)
+}
+
+fn go_on(_: &Progress<'_>) -> Wish {
+    Wish::GoOn
+}
+
+/// A tenth of a second on all axes; the queues hold most of it.
+fn moves(seed: u64) -> Vec<Command> {
+    waves(&mut Random(seed), 9, 6000)
+}
+
+/// Three steps up on axis 0 in 3 ms, on axis `axis`.
+fn hop(axis: u8) -> [Command; 2] {
+    let segment = Segment { ticks: 1536, v: 1 << 55, a: 0, j: 0, last: true };
+    [Command::Segment { axis, segment }, Command::Start { mask: 1 << axis }]
+}
+
+fn program(commands: &[Command]) -> Program<'_> {
+    Program::new(commands, 6).unwrap()
+}
+
+/// The board has been so many milliseconds in its first move.
+fn into_the_move<B: Kind>(end: &End<B>, milliseconds: u64) -> bool {
+    let board = &end.0.borrow().board;
+    board.loads().first().is_some_and(|load| board.cycle() > load + milliseconds * MS)
+}
+
+#[track_caller]
+fn positions_are_true<B: Kind>(end: &End<B>, host: &BoardHost<B>) {
+    let travelled = [0, 1, 2, 3, 4, 5].map(|axis| end.0.borrow().travelled(axis));
+    assert_eq!(host.status().positions[..6], travelled);
+}
+
+/// The same engine on an SPI is another build.
+fn another_build_is_refused_and_both_are_named<B: Kind>() {
+    let end = End::<B>::new(uart(), Faults::default(), 1);
+    let (own, other) = (uart().build_id(&build()), Line::Spi.build_id(&build()));
+    let refused = end.connect_to(other, QUICK).err().unwrap().to_string();
+    let expected = format!("the gateware is build {own}, this machine needs build {other}: ");
+    assert!(refused.starts_with(&expected), "{refused}");
+    assert_eq!(end.connect_to(own, QUICK).unwrap().status().answer.next, 0, "something was written");
+}
+
+fn a_wish_to_stop_is_obeyed_and_a_clear_resumes<B: Kind>() {
+    let (end, mut host) = ready::<B>(Faults::BAD, 7);
+    let stop_soon = |_: &Progress<'_>| if into_the_move(&end, 20) { Wish::Stop } else { Wish::GoOn };
+    assert_eq!(host.stream(program(&moves(7)), stop_soon), Ok(Ended::Stopped));
+    let status = *host.status();
+    assert_eq!(status.answer.cause_name(), Some("stop"));
+    positions_are_true(&end, &host);
+    // Not before a clear.
+    let hop = hop(0);
+    assert_eq!(host.stream(program(&hop), go_on), Err(HostError::Fault { cause: Cause::Stop as u8, culprits: 0 }));
+    host.clear().unwrap();
+    assert_eq!(host.stream(program(&hop), go_on), Ok(Ended::Done));
+    assert_eq!(host.status().positions[0], status.positions[0] + 3);
+    positions_are_true(&end, &host);
+    // A clear without a stop is nothing.
+    let next = host.status().answer.next;
+    host.clear().unwrap();
+    assert_eq!(host.look().unwrap().answer.next, next);
+}
+
+fn a_stop_of_the_machine_is_named<B: Kind>() {
+    let (end, mut host) = ready::<B>(Faults::BAD, 8);
+    end.0.borrow_mut().meanwhile = Box::new(|board| {
+        let reached = u8::from(board.position(2).abs() > 30) << 2;
+        board.press(Switches { limit_min: reached, limit_max: reached, estop: false });
+    });
+    let error = host.stream(program(&moves(8)), go_on).unwrap_err();
+    assert_eq!(error, HostError::Fault { cause: Cause::Limit as u8, culprits: 1 << 2 });
+    assert!(error.to_string().starts_with("the machine has stopped: limit"), "{error}");
+    positions_are_true(&end, &host);
+    let press = |estop| {
+        end.0.borrow_mut().meanwhile = Box::new(move |board| board.press(Switches { estop, ..Switches::default() }));
+    };
+    press(false);
+    host.clear().unwrap();
+    press(true);
+    end.wait(10);
+    let said = host.clear().unwrap_err().to_string();
+    assert_eq!(said, "the e-stop is still pressed, so nothing can be cleared: release it");
+    press(false);
+    host.clear().unwrap();
+}
+
+fn a_restarted_gateware_is_noticed<B: Kind>() {
+    let (end, mut host) = ready::<B>(Faults::default(), 9);
+    let mut fresh = Some(B::new(uart()));
+    let restart = |_: &Progress<'_>| {
+        if into_the_move(&end, 5)
+            && let Some(board) = fresh.take()
+        {
+            end.0.borrow_mut().board = board;
+        }
+        Wish::GoOn
+    };
+    let error = host.stream(program(&moves(9)), restart).unwrap_err();
+    assert!(matches!(error, HostError::Restarted | HostError::OutOfStep(_)), "{error}");
+}
+
+/// It died before the start: its segments lie in the queues.
+fn what_a_dead_host_has_left_is_not_started<B: Kind>() {
+    let (end, mut host) = ready::<B>(Faults::default(), 15);
+    let mut looks = 0;
+    let error = host.stream(program(&moves(15)), |_| {
+        looks += 1;
+        end.0.borrow_mut().dies = if looks == 2 { 0 } else { u64::MAX };
+        Wish::GoOn
+    });
+    assert!(matches!(error, Err(HostError::Line(_))), "{error:?}");
+    assert!(end.0.borrow().board.loads().is_empty(), "it has died too late");
+    drop(host);
+    end.0.borrow_mut().revive(Faults::default(), 15);
+    let mut host = end.connect(uart());
+    assert!(!host.status().answer.idle && !host.status().answer.fault);
+    let hop = hop(0);
+    assert_eq!(host.stream(program(&hop), go_on), Err(HostError::NotIdle));
+    host.settle().unwrap();
+    assert_eq!(host.stream(program(&hop), go_on), Ok(Ended::Done));
+    assert_eq!(host.status().positions[..6], [3, 0, 0, 0, 0, 0]);
+    assert!(host.status().answer.ready, "the drivers kept their power");
+}
+
+fn a_jog_is_a_move_of_one_axis<B: Kind>() {
+    let (end, mut host) = ready::<B>(Faults::BAD, 14);
+    let segment = Segment { ticks: 3072, v: 1 << 56, a: 0, j: 0, last: false };
+    let segments = [segment, segment, Segment { last: true, ..segment }];
+    assert_eq!(host.jog(5, &segments, go_on), Ok(Ended::Done));
+    assert_eq!(host.status().positions[..6], [0, 0, 0, 0, 0, 36]);
+    positions_are_true(&end, &host);
+    assert_eq!(host.jog(6, &segments, go_on), Err(ProgramError::Axis { axis: 6, axes: 6 }.into()));
+    assert_eq!(host.jog(5, &segments[..2], go_on), Err(ProgramError::NoEnd { axis: 5 }.into()));
+}

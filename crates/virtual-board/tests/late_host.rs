@@ -1,0 +1,121 @@
+//! `virtual-board --fast`: a host that is late by its own clock is not late for the board.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use carrystep_core::link::Uart;
+use carrystep_link::Line as _;
+use carrystep_link::line::serial::SerialLine;
+use carrystep_link::registers::{CONTROL, END, POSITION, SEGMENT, START, WRITE};
+use carrystep_link::{Answer, frame};
+use carrystep_virtual_board::{Board, Desk, Gateware, KEPT, Pace, Terminal};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use support::link::device::on_the_line;
+use support::{CLOCK_HZ, MS, build};
+
+/// Segments of 600 ticks of 2 us: 1.2 ms, 150 steps each.
+const SEGMENTS: u32 = 200;
+const WORDS: [u32; 6] = [599, 0, 0x4000_0000, 0, 0, 0];
+const STEPS: i32 = 150;
+
+/// A host that has one request on its way, and answers nothing for `delay` before each.
+struct LateHost {
+    line: SerialLine,
+    next: u8,
+    delay: Duration,
+}
+
+impl LateHost {
+    fn ask(&mut self, content: &[u8]) -> Answer {
+        let (mut out, mut came) = (on_the_line(content), Vec::new());
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_secs(20) {
+            let mut into = [0; 64];
+            let done = self.line.exchange(&out, &mut into).unwrap();
+            out.drain(..done.sent);
+            for &byte in &into[..done.received] {
+                match byte {
+                    END if came.is_empty() => {}
+                    END => return Answer::from_bytes(&support::unescaped(&came)).unwrap(),
+                    byte => came.push(byte),
+                }
+            }
+        }
+        panic!("no answer to {content:02x?}")
+    }
+
+    fn write(&mut self, address: u8, words: &[u32]) -> Answer {
+        let head = [self.next, WRITE | address];
+        let content: Vec<u8> = head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
+        self.next = self.next.wrapping_add(1);
+        let answer = self.ask(&content);
+        assert_eq!((answer.next, answer.fault), (self.next, false), "{answer:?}");
+        answer
+    }
+
+    fn segment(&mut self, number: u32) {
+        let last = u32::from(number + 1 == SEGMENTS);
+        self.write(frame::of_axis(SEGMENT, 0), &[&WORDS[..], &[0, last]].concat());
+    }
+
+    /// One segment for each look at the queue, as in a loop of a host that has more to do.
+    fn run(&mut self) -> Answer {
+        self.write(CONTROL, &[1]);
+        while !self.ask(&[0, POSITION]).ready {}
+        let mut sent = 7;
+        (0..sent).for_each(|number| self.segment(number));
+        self.write(START, &[1]);
+        loop {
+            std::thread::sleep(self.delay);
+            let answer = self.ask(&[0, POSITION]);
+            assert!(!answer.fault, "segment {sent}: {answer:?}");
+            if answer.idle {
+                assert_eq!(sent, SEGMENTS);
+                return answer;
+            }
+            if sent < SEGMENTS && answer.free > 0 {
+                self.segment(sent);
+                sent += 1;
+            }
+        }
+    }
+}
+
+#[test]
+fn a_host_that_is_late_by_the_wall_clock_is_never_late_for_a_fast_board() {
+    let uart = Uart::new(CLOCK_HZ, 3_000_000).unwrap();
+    let terminal = Terminal::new().unwrap();
+    let port = terminal.name().to_owned();
+    let is_over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let board = scope.spawn(|| {
+            let mut desk = Desk::new(Board::new(&build(), uart), terminal, Pace::fast(CLOCK_HZ, 25 * MS), CLOCK_HZ);
+            let mut least = usize::MAX;
+            while !is_over.load(Ordering::Relaxed) {
+                desk.step(&mut ()).unwrap();
+                let waits = support::Kind::least_waiting(&desk.board).filter(|_| desk.board.alone().is_some());
+                least = least.min(waits.unwrap_or(usize::MAX));
+            }
+            least
+        });
+        let _over = Over(&is_over);
+        let mut host =
+            LateHost { line: SerialLine::open(&port, 3_000_000).unwrap(), next: 0, delay: Duration::from_millis(30) };
+        assert_eq!(host.run().data.cast_signed(), STEPS * SEGMENTS as i32);
+        drop(_over);
+        // The line's own time may take a segment of those that are kept.
+        let least = board.join().unwrap();
+        assert!((KEPT - 1..=KEPT).contains(&least), "{least} segments waited");
+    });
+}
+
+/// Says so where it is dropped.
+struct Over<'a>(&'a AtomicBool);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}

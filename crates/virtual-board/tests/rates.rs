@@ -1,0 +1,81 @@
+//! How many segments a line carries to a board without a queue running dry.
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use carrystep_core::link::Uart;
+use carrystep_link::{Ended, Program, Wish};
+use carrystep_virtual_board::{Board, VerilatedBoard};
+use support::bus::Bus;
+use support::random::Random;
+use support::wire::Faults;
+use support::{CLOCK_HZ, End, Kind, TICK_NS, asked, waves};
+
+/// Six axes with so many segments a second each, for so many milliseconds.
+#[track_caller]
+fn carries<B: Kind>(baud: u32, per_second: u32, milliseconds: u32) {
+    let uart = Uart::new(CLOCK_HZ, baud).unwrap();
+    let end = End::<B>::new(uart, Faults::default(), 1);
+    let mut host = end.connect(uart);
+    host.enable().unwrap();
+    let ticks = (1_000_000_000 / TICK_NS) as u32 / per_second;
+    let commands = waves(&mut Random(7), per_second * milliseconds / 1000, ticks);
+    let begun = end.0.borrow().board.cycle();
+    let ended = host.stream(Program::new(&commands, 6).unwrap(), |progress| {
+        end.0.borrow_mut().handed_over = progress.handed_over;
+        Wish::GoOn
+    });
+    let world = end.0.borrow();
+    let took = (world.board.cycle() - begun) as f64 / CLOCK_HZ as f64;
+    let waiting = if world.least_waiting == usize::MAX {
+        String::new()
+    } else {
+        format!(", at least {} waiting", world.least_waiting)
+    };
+    assert_eq!(ended, Ok(Ended::Done));
+    eprintln!(
+        "FIGURES {baud} baud: 6 x {per_second} segments/s, {} segments in {took:.3} s{waiting}, no queue dry",
+        commands.len() - 1,
+    );
+    assert!(world.least_waiting > 0, "a queue was dry");
+}
+
+/// The same over SPI: the driver for embedded-hal, six segments on their way at the most (docs/protocol.md).
+#[test]
+fn six_axes_at_500_segments_over_spi_at_10_mhz() {
+    let bus = Bus::<Board>::new(10_000_000);
+    let mut host = bus.connect();
+    host.enable().unwrap();
+    let per_second = 500;
+    let commands = waves(&mut Random(7), per_second * 3 / 2, (1_000_000_000 / TICK_NS) as u32 / per_second);
+    let begun = bus.0.borrow().board.cycle();
+    let ended = host.stream(Program::new(&commands, 6).unwrap(), |progress| {
+        bus.0.borrow_mut().handed_over = progress.handed_over;
+        Wish::GoOn
+    });
+    let world = bus.0.borrow();
+    let took = (world.board.cycle() - begun) as f64 / CLOCK_HZ as f64;
+    assert_eq!(ended, Ok(Ended::Done));
+    eprintln!(
+        "FIGURES SPI at 10 MHz: 6 x {per_second} segments/s, {} segments in {took:.3} s, at least {} waiting",
+        commands.len() - 1,
+        world.least_waiting,
+    );
+    assert!(world.least_waiting > 0, "a queue was dry");
+}
+
+#[test]
+fn six_axes_at_500_segments_over_3_megabaud() {
+    carries::<Board>(3_000_000, 500, 1500);
+}
+
+/// What waits in its queues cannot be seen, but a dry one is a fault. `CARRYSTEP_VERILOG_MS` asks for so many milliseconds.
+#[test]
+fn the_verilog_at_500_segments_over_3_megabaud() {
+    carries::<VerilatedBoard>(3_000_000, 500, asked("CARRYSTEP_VERILOG_MS", 100) as u32);
+}
+
+#[test]
+fn six_axes_at_200_segments_over_921_600_baud() {
+    carries::<Board>(921_600, 200, 1500);
+}

@@ -1,0 +1,43 @@
+//! What the command makes of a machine file that homes.
+
+use carrystep_core::engine::Limits;
+use carrystep_files::Machine;
+use carrystep_files::machine::End;
+use carrystep_link::{AxisHoming, Homing, Wiring};
+
+/// What the command makes of a machine file.
+pub struct Owned {
+    homing: Homing<'static>,
+    groups: Vec<u8>,
+}
+
+impl Owned {
+    pub fn as_homing(&self) -> Homing<'_> {
+        Homing { groups: &self.groups, ..self.homing }
+    }
+}
+
+/// How a machine homes.
+pub fn homing_of(machine: &Machine) -> Owned {
+    let mut axes = [None; 8];
+    for (place, axis) in axes.iter_mut().zip(&machine.axes) {
+        *place = axis.home.map(|home| AxisHoming {
+            toward_max: home.toward == End::Max,
+            start: home.start,
+            accel: home.accel,
+            seek: home.seek,
+            slow: home.slow,
+            move_off: home.move_off,
+            max_travel: home.max_travel,
+            pull_off: home.pull_off,
+        });
+    }
+    let wiring = match machine.guard.limits {
+        Limits::Each => Wiring::Each,
+        Limits::One => Wiring::One,
+        Limits::Pair | Limits::None => Wiring::Pair,
+    };
+    let groups = machine.home_order.iter().map(|group| group.iter().fold(0, |mask, axis| mask | 1 << axis)).collect();
+    let (round, debounce) = (machine.guard.round, machine.guard.debounce);
+    Owned { homing: Homing { wiring, axes, groups: &[], others: 0, round, debounce }, groups }
+}

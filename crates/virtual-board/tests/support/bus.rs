@@ -1,0 +1,111 @@
+//! A board on an SPI bus, as embedded-hal has it; time is the board's, and a transfer takes a microsecond more than its bits.
+
+use super::wire::{Faults, Wire};
+use super::{CLOCK_HZ, Kind, MS, Seen, build};
+use carrystep_core::link::Line;
+use carrystep_link::line::spi::SpiLine;
+use carrystep_link::{Clock, Host, Patience, Timing};
+use carrystep_model::fast::Edge;
+use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
+use std::cell::RefCell;
+use std::convert::Infallible;
+use std::rc::Rc;
+
+/// Six segments on their way at the most (docs/protocol.md).
+pub type BusHost<B> = Host<SpiLine<Bus<B>>, Bus<B>, 6>;
+
+/// The board, and what is looked at.
+pub struct Wired<B> {
+    pub board: B,
+    edges: Seen,
+    sck_hz: u64,
+    there: Wire,
+    back: Wire,
+    /// As of [`super::World`].
+    pub least_waiting: usize,
+    pub handed_over: bool,
+}
+
+impl<B> Wired<B> {
+    /// Edges from this cycle on, their clocks counted from there.
+    pub fn edges_since(&self, cycle: u64) -> Vec<Edge> {
+        self.edges.since(cycle)
+    }
+
+    /// Bytes that the bus has harmed.
+    pub fn harmed(&self) -> u64 {
+        self.there.harmed + self.back.harmed
+    }
+}
+
+/// The bus and its clock.
+pub struct Bus<B>(pub Rc<RefCell<Wired<B>>>);
+
+impl<B> Clone for Bus<B> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<B: Kind> Bus<B> {
+    pub fn new(sck_hz: u64) -> Self {
+        Self::bad(sck_hz, 0, 0)
+    }
+
+    /// One that flips a bit in so many of a million bytes; bytes cannot be lost on it, nor come twice.
+    pub fn bad(sck_hz: u64, flip: u32, seed: u64) -> Self {
+        let faults = Faults { flip, ..Faults::default() };
+        Self(Rc::new(RefCell::new(Wired {
+            board: B::on_spi(sck_hz),
+            edges: Seen::default(),
+            sck_hz,
+            there: Wire::new(faults, seed),
+            back: Wire::new(faults, !seed),
+            least_waiting: usize::MAX,
+            handed_over: false,
+        })))
+    }
+
+    /// A host, which refuses any board but this.
+    pub fn connect(&self) -> BusHost<B> {
+        let id = Line::Spi.build_id(&build());
+        // No bridge holds an answer back.
+        let patience = Patience { timing: Timing { resend: 5, pause: 1 }, ..Patience::default() };
+        Host::connect(SpiLine::new(self.clone()), self.clone(), Some(id.0), patience).unwrap()
+    }
+}
+
+impl<B: Kind> Clock for Bus<B> {
+    fn milliseconds(&mut self) -> u32 {
+        (self.0.borrow().board.cycle() / MS) as u32
+    }
+}
+
+impl<B> ErrorType for Bus<B> {
+    type Error = Infallible;
+}
+
+impl<B: Kind> SpiDevice for Bus<B> {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+        let wired = &mut *self.0.borrow_mut();
+        let Wired { board, edges, sck_hz, there, back, .. } = wired;
+        for operation in operations {
+            let Operation::TransferInPlace(bytes) = operation else {
+                panic!("{operation:?} is not what the driver does")
+            };
+            there.send(0, bytes);
+            there.receive(0).into_iter().for_each(|byte| board.say(byte));
+            // Its bits, and half a period before and behind them.
+            let halves = 16 * bytes.len() as u64 + 2;
+            board.reach(board.cycle() + (halves * CLOCK_HZ).div_ceil(2 * *sck_hz), edges);
+            assert_eq!(board.unsaid(), 0, "the bus is slower than its clock");
+            let heard: Vec<u8> = std::iter::from_fn(|| board.next_byte()).collect();
+            back.send(0, &heard);
+            bytes.copy_from_slice(&back.receive(0));
+        }
+        board.reach(board.cycle() + CLOCK_HZ / 1_000_000, edges);
+        let waiting = board.least_waiting().filter(|_| !wired.handed_over);
+        wired.least_waiting = waiting.unwrap_or(usize::MAX).min(wired.least_waiting);
+        Ok(())
+    }
+}

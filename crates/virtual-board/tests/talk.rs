@@ -1,0 +1,182 @@
+//! A host and a board in one process: who it is, a move, a stop, in simulated time.
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use carrystep_core::link::Uart;
+use carrystep_link::{Clock, Command, Ended, Exchanged, Host, HostError, Line, Patience, Program, Segment, Wish};
+use carrystep_model::fast::Edge;
+use carrystep_virtual_board::{Board, Switches, VerilatedBoard};
+use std::cell::RefCell;
+use std::convert::Infallible;
+use std::rc::Rc;
+use support::{CLOCK_HZ, Kind, build};
+
+/// The host's end: each exchange is half a millisecond of the board.
+struct End<B>(Rc<RefCell<(B, Vec<Edge>)>>);
+
+impl<B> Clone for End<B> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<B: Kind> End<B> {
+    fn new(uart: Uart) -> Self {
+        Self(Rc::new(RefCell::new((B::new(uart), Vec::new()))))
+    }
+}
+
+impl<B: Kind> Clock for End<B> {
+    fn milliseconds(&mut self) -> u32 {
+        (self.0.borrow().0.cycle() / (CLOCK_HZ / 1000)) as u32
+    }
+}
+
+impl<B: Kind> Line for End<B> {
+    type Error = Infallible;
+
+    fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> Result<Exchanged, Infallible> {
+        let (board, edges) = &mut *self.0.borrow_mut();
+        out.iter().for_each(|&byte| board.say(byte));
+        let end = board.cycle() + CLOCK_HZ / 2000;
+        board.reach(end, edges);
+        let mut received = 0;
+        for place in into {
+            let Some(byte) = board.next_byte() else { break };
+            *place = byte;
+            received += 1;
+        }
+        Ok(Exchanged { sent: out.len(), received })
+    }
+}
+
+fn connected<B: Kind>(baud: u32) -> (End<B>, Host<End<B>, End<B>>) {
+    let uart = Uart::new(CLOCK_HZ, baud).unwrap();
+    let end = End::new(uart);
+    let id = uart.build_id(&build());
+    let host =
+        Host::connect(end.clone(), end.clone(), Some(id.0), Patience { change: 50, ..Patience::default() }).unwrap();
+    (end, host)
+}
+
+/// A hundred steps forward and as many back, in pieces, on two axes.
+fn commands(pieces: u32) -> Vec<Command> {
+    let v = i64::MAX / 100;
+    let mut commands = Vec::new();
+    for piece in 0..pieces {
+        for axis in [0, 3] {
+            let v = if piece % 2 == 0 { v } else { -v };
+            let segment = Segment { ticks: 1000, v, a: 0, j: 0, last: piece + 1 == pieces };
+            commands.push(Command::Segment { axis, segment });
+        }
+    }
+    commands.push(Command::Start { mask: 0b1001 });
+    commands
+}
+
+/// The edges of a move from its load on.
+fn moves<B: Kind>(baud: u32) -> Vec<Edge> {
+    let (end, mut host) = connected::<B>(baud);
+    assert_eq!((host.facts().axes, host.facts().tick_ns, host.facts().watchdog_ticks), (6, 2000, 50_176));
+    host.enable().unwrap();
+    let commands = commands(41);
+    let ended = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap();
+    assert_eq!(ended, Ended::Done);
+    // Half of a step is behind it when it begins.
+    assert_eq!(host.status().positions[..6], [5, 0, 0, 5, 0, 0], "{:?}", host.status());
+    let (board, edges) = &*end.0.borrow();
+    assert_eq!(board.position(3), 5);
+    let load = board.loads()[0];
+    edges.iter().map(|edge| Edge { clock: edge.clock - load, ..*edge }).collect()
+}
+
+fn stops<B: Kind>() {
+    let (end, mut host) = connected::<B>(921_600);
+    host.enable().unwrap();
+    let commands = commands(401);
+    let program = || Program::new(&commands, 6).unwrap();
+    let mut looks = 0;
+    let ended = host.stream(program(), |_| {
+        looks += 1;
+        if looks == 100 { Wish::Stop } else { Wish::GoOn }
+    });
+    assert_eq!(ended, Ok(Ended::Stopped));
+    let true_position = end.0.borrow().0.position(0);
+    assert_eq!(host.status().positions[0], true_position);
+    host.clear().unwrap();
+
+    let pressed = end.clone();
+    let mut looks = 0;
+    let error = host.stream(program(), |_| {
+        looks += 1;
+        if looks == 60 {
+            pressed.0.borrow_mut().0.press(Switches { estop: true, ..Switches::default() });
+        }
+        Wish::GoOn
+    });
+    assert_eq!(error, Err(HostError::Fault { cause: 0, culprits: 0 }));
+    assert_eq!(host.clear(), Err(HostError::StillPressed));
+    end.0.borrow_mut().0.press(Switches::default());
+    host.clear().unwrap();
+}
+
+#[test]
+fn it_knows_who_it_is_and_moves() {
+    for baud in [921_600, 3_000_000] {
+        moves::<Board>(baud);
+    }
+}
+
+#[test]
+fn it_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
+    stops::<Board>();
+}
+
+#[test]
+fn its_verilog_makes_the_same_pulses_in_the_same_clocks() {
+    let baud = 3_000_000;
+    let edges = moves::<VerilatedBoard>(baud);
+    assert!(edges.len() > 400, "{} edges are no move", edges.len());
+    assert_eq!(edges, moves::<Board>(baud));
+}
+
+#[test]
+fn its_verilog_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
+    stops::<VerilatedBoard>();
+}
+
+/// What a board says to some requests in the middle of a move, and all of it in the end; it runs so many clocks at once.
+fn said(at_once: u64) -> (Vec<u8>, String) {
+    let (end, mut host) = connected::<Board>(3_000_000);
+    host.enable().unwrap();
+    let commands = commands(41);
+    let mut looks = 0;
+    let stopped = host.stream(Program::new(&commands, 6).unwrap(), |_| {
+        looks += 1;
+        if looks == 50 { Wish::Stop } else { Wish::GoOn }
+    });
+    assert_eq!(stopped, Ok(Ended::Stopped));
+    let mut board = end.0.borrow().0.clone();
+    let mut said = Vec::new();
+    let identity = [0xc0, 0x00, 0x00, 0xff, 0x12, 0xd9, 0x41, 0xc0];
+    let position = [0xc0, 0x01, 0x4a, 0x30, 0x8b, 0xcb, 0xce, 0xc0];
+    for request in [identity, position] {
+        request.iter().for_each(|&byte| board.say(byte));
+        let until = board.cycle() + 10_000;
+        while board.cycle() < until {
+            board.run((board.cycle() + at_once).min(until), &mut ());
+        }
+        said.extend(std::iter::from_fn(|| board.next_byte()));
+    }
+    (said, format!("{board:?}"))
+}
+
+#[test]
+fn it_is_the_same_however_it_is_run() {
+    let slowly = said(1);
+    assert!(slowly.0.len() >= 34, "{slowly:?}");
+    for at_once in [7, 96, 1000, 10_000] {
+        assert!(said(at_once) == slowly, "{at_once} at once");
+    }
+}

@@ -1,0 +1,96 @@
+//! Hosts that open the pseudo-terminal of a board as their serial port, in Rust and in C: the pulses are those of a board
+//! in simulated time.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
+
+mod support;
+
+use carrystep_core::AXES;
+use carrystep_core::link::Uart;
+use carrystep_link::host::SystemClock;
+use carrystep_link::line::serial::SerialLine;
+use carrystep_link::{Command, Ended, Host, Patience, Program, Wish};
+use carrystep_model::fast::Edge;
+use carrystep_virtual_board::{Board, Desk, Pace, Terminal, VerilatedBoard};
+use std::sync::atomic::{AtomicBool, Ordering};
+use support::link::c_library::CClient;
+use support::random::Random;
+use support::wire::Faults;
+use support::words::WordHost;
+use support::{CLOCK_HZ, End, Kind, MS, Seen, build, waves};
+
+fn uart() -> Uart {
+    Uart::new(CLOCK_HZ, 3_000_000).unwrap()
+}
+
+/// All of it fits into the queues: the Verilog cannot say how far they reach, and its host may be held up.
+fn commands() -> Vec<Command> {
+    waves(&mut Random(8), 7, 2000)
+}
+
+/// The edges from the first load on of a board whose host does this to its port.
+fn served<B: Kind>(host: impl FnOnce(&str)) -> Vec<Edge> {
+    let terminal = Terminal::new().unwrap();
+    let port = terminal.name().to_owned();
+    let is_over = &AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let board = scope.spawn(move || {
+            // A quarter of the watchdog's time.
+            let mut desk = Desk::new(B::new(uart()), terminal, Pace::fast(CLOCK_HZ, 25 * MS), CLOCK_HZ);
+            let mut seen = Seen::default();
+            while !is_over.load(Ordering::Relaxed) {
+                desk.step(&mut seen).unwrap();
+            }
+            seen.since(desk.board.loads()[0])
+        });
+        // The board ends where its host fails.
+        let _over = Over(is_over);
+        host(&port);
+        drop(_over);
+        board.join().unwrap()
+    })
+}
+
+/// Says so where it is dropped.
+struct Over<'a>(&'a AtomicBool);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+fn in_rust(port: &str) {
+    let line = SerialLine::open(port, uart().baud()).unwrap();
+    // A board may be slow.
+    let patience = Patience { silence: 60_000, lost: 60_000, change: 60_000, ..Patience::default() };
+    let id = uart().build_id(&build()).0;
+    let mut host: Host<_, _> = Host::connect(line, SystemClock::default(), Some(id), patience).unwrap();
+    host.enable().unwrap();
+    let commands = commands();
+    assert_eq!(host.stream(Program::new(&commands, AXES as u8).unwrap(), |_| Wish::GoOn).unwrap(), Ended::Done);
+}
+
+fn in_c(port: &str) {
+    let line = SerialLine::open(port, uart().baud()).unwrap();
+    let mut client = CClient::shared();
+    let id = uart().build_id(&build()).0;
+    let mut host = WordHost::connect(&mut client, line, SystemClock::default(), 40, id).unwrap();
+    host.enable();
+    assert_eq!(host.stream(&commands(), || false), None);
+}
+
+#[test]
+fn pulses_through_it_are_those_of_simulated_time() {
+    let end = End::<Board>::new(uart(), Faults::default(), 0);
+    let mut host = end.connect(uart());
+    host.enable().unwrap();
+    host.stream(Program::new(&commands(), AXES as u8).unwrap(), |_| Wish::GoOn).unwrap();
+    let world = end.0.borrow();
+    let expected = world.edges_since(world.board.loads()[0]);
+    assert!(expected.len() > 100, "{} edges are no move", expected.len());
+    assert!(served::<Board>(in_rust) == expected, "models, a host in Rust");
+    assert!(served::<Board>(in_c) == expected, "models, a host in C");
+    assert!(served::<VerilatedBoard>(in_rust) == expected, "the Verilog, a host in Rust");
+    assert!(served::<VerilatedBoard>(in_c) == expected, "the Verilog, a host in C");
+}

@@ -1,0 +1,72 @@
+//! Every level on the same move: clock cycles a second.
+
+use crate::moves::Moves;
+use crate::stopwatch;
+use carrystep_model::fast::{Change, Edge, Edges};
+use carrystep_simulators::engine::run::EngineJob;
+use carrystep_simulators::{Job, Level, LevelError, fast};
+use std::time::Instant;
+
+/// Seconds that a level of this process is measured for.
+const BUDGET: f64 = 0.3;
+
+/// Counts all edges and hashes clock, axis, kind and direction of each.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+pub struct Consumer {
+    pub pulses: u64,
+    pub turns: u64,
+    pub hash: u64,
+}
+
+impl Edges for Consumer {
+    #[inline]
+    fn edge(&mut self, Edge { clock, axis, change, backward }: Edge) {
+        let turn = change == Change::Turn;
+        self.pulses += u64::from(!turn);
+        self.turns += u64::from(turn);
+        let word = clock << 5 | u64::from(axis) << 2 | u64::from(turn) << 1 | u64::from(backward);
+        self.hash = (self.hash ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+    }
+}
+
+/// Seconds for the whole move on the fast model, and what its consumer has heard.
+pub fn fast(moves: &Moves) -> Result<(f64, Consumer), String> {
+    let (seconds, result) = stopwatch::least(BUDGET, || {
+        let mut listener = fast::EdgesOnly(Consumer::default());
+        fast::run(&moves.job(), &mut listener).map(|_| listener.0)
+    });
+    result.map(|consumer| (seconds, consumer)).map_err(|error| error.to_string())
+}
+
+/// How many times faster than its clock an engine of 80 MHz runs on the fast model; it must make the same pulses.
+pub fn engine(moves: &Moves, heard: &Consumer) -> Result<f64, String> {
+    let job = EngineJob::new(&moves.engine, &moves.program, moves.plan.total_ticks());
+    let (seconds, result) = stopwatch::least(BUDGET, || {
+        let mut listener = fast::EdgesOnly(Consumer::default());
+        job.run_fast(&mut listener).map(|outcome| (outcome, listener.0))
+    });
+    let (outcome, consumer) = result.map_err(|error| error.to_string())?;
+    if outcome.fault.is_some() || (consumer.pulses, consumer.turns) != (heard.pulses, heard.turns) {
+        return Err(format!("the engine makes other pulses: {consumer:?}, fault {:?}", outcome.fault));
+    }
+    Ok(outcome.clocks as f64 / moves.engine.timebase.clock_hz() as f64 / seconds)
+}
+
+/// Clock cycles a second of a slower level over the first `clocks` of a move: in processor time, or by the clock on
+/// the wall where the level runs in a process of its own.
+pub fn clocks_per_second(level: Level, moves: &Moves, clocks: u64) -> Result<f64, String> {
+    let run = |clocks: u64| {
+        let (begin, wall) = (stopwatch::now(), Instant::now());
+        let job = Job { max_clocks: clocks, ..moves.job() };
+        match carrystep_simulators::run(level, &job, &mut |_, _| {}) {
+            Ok(_) | Err(LevelError::Endless(_)) => match level {
+                Level::Fast | Level::Model | Level::RustHdl => Ok(stopwatch::now() - begin),
+                Level::Icarus | Level::Verilator => Ok(wall.elapsed().as_secs_f64()),
+            },
+            Err(error) => Err(error.to_string()),
+        }
+    };
+    // What starting takes is in both, and not in their difference.
+    let few = run(clocks / 10)?;
+    Ok((clocks - clocks / 10) as f64 / (run(clocks)? - few).max(1e-9))
+}

@@ -1,0 +1,67 @@
+//! The fast engine is the clock-by-clock one, whatever stops it.
+
+use crate::leaps;
+use carrystep_core::engine::{Cause, Guard, Limits};
+use carrystep_core::{EngineBuild, PinTiming, Program, StartPhase};
+use carrystep_simulators::engine::Events;
+use carrystep_tests::engine_twins::{self, Came};
+use carrystep_tests::{dense, effort, engine_programs};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use std::cell::Cell;
+
+/// The engine under programs and what happens around them; how far they came.
+fn engines(build: &EngineBuild, cases: u32, programs: impl Strategy<Value = (Program, Events)>) -> Came {
+    let sum = Cell::new(Came::default());
+    let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 300, ..Config::default() });
+    let held = runner.run(&(programs, leaps()), |((program, events), leaps)| {
+        let came = engine_twins::run(build, &program, &events, &leaps, 500_000).map_err(TestCaseError::fail)?;
+        sum.set(sum.get().and(came));
+        Ok(())
+    });
+    held.unwrap_or_else(|error| panic!("{error}\n of {build:?}"));
+    effort::say(&format!("{:?}", sum.get()));
+    sum.get()
+}
+
+/// The e-stop, limits, stops and silence at any clock, whatever the host does.
+fn stops_at_any_clock(axes: usize, clock_hz: u64, phases: u32, limits: Limits, round: u32) {
+    let build = engine_programs::build(axes, clock_hz, phases, StartPhase::Half, limits);
+    let guard = Guard { round, watchdog: 80 / round, ..build.guard.clone() };
+    let came = engines(&EngineBuild { guard, ..build }, 100, engine_programs::program(axes));
+    // An overspeed freezes first; promises of the rest are kept by others.
+    let causes = came.faults.iter().filter(|count| **count > 0).count();
+    assert!(came.leapt > came.clocks / 3 && came.edges > 1000 && causes >= 7, "{came:?}");
+}
+
+#[test]
+fn an_engine_with_a_pair_of_limits_for_each_axis() {
+    stops_at_any_clock(6, 80_000_000, 16, Limits::Pair, 2);
+}
+
+#[test]
+fn an_engine_with_looks_far_between() {
+    stops_at_any_clock(6, 79_000_000, 1, Limits::Pair, 16);
+}
+
+#[test]
+fn an_engine_that_limits_freeze() {
+    stops_at_any_clock(6, 80_000_000, 16, Limits::Each, 4);
+}
+
+#[test]
+fn an_engine_of_eight_axes() {
+    stops_at_any_clock(8, 112_000_000, 4, Limits::One, 2);
+}
+
+/// Each with something that an edge search can get wrong.
+#[test]
+fn an_engine_of_many_edges() {
+    let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Zero, Limits::None);
+    let guard = Guard { watchdog: 0, ..build.guard.clone() };
+    let build = EngineBuild { guard, pins: vec![PinTiming::SHORTEST; 6], ..build };
+    let programs = dense::program(500).prop_map(|program| (engine_programs::queued_first(program), Events::new()));
+    let came = engines(&build, 100, programs);
+    let underruns = came.faults[Cause::Underrun as usize];
+    assert!(came.edges > 30_000 && underruns > 0, "{came:?}");
+}

@@ -1,0 +1,93 @@
+//! The fast parallel core is the clock-by-clock one: registers, edges and outputs.
+
+use crate::leaps;
+use carrystep_core::{AXES, Build, PinTiming, StartPhase};
+use carrystep_simulators::{Job, Level};
+use carrystep_tests::golden::{Case, engine_vectors};
+use carrystep_tests::twins::Twins;
+use carrystep_tests::{dense, lockstep, moves, programs};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use std::cell::Cell;
+
+fn random_programs(phases: u32, phase: StartPhase, cases: u32) {
+    let build = lockstep::tight_build(phases, phase);
+    let mut runner = TestRunner::new(Config { cases, ..Config::default() });
+    let held = runner.run(&programs::program(), |program| {
+        lockstep::assert_equals_model(Level::Fast, &lockstep::job(&build, &program));
+        Ok(())
+    });
+    held.unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn random_programs_at_16_phases() {
+    random_programs(16, StartPhase::Half, 3000);
+}
+
+#[test]
+fn random_programs_at_4_phases() {
+    random_programs(4, StartPhase::Zero, 1000);
+}
+
+#[test]
+fn random_programs_at_1_phase() {
+    random_programs(1, StartPhase::Half, 1000);
+}
+
+#[test]
+fn the_demo() {
+    let plan = moves::demo();
+    lockstep::assert_equals_model(Level::Fast, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+}
+
+/// On the pins: the cases of one start phase side by side, one on each axis.
+#[test]
+fn golden_vectors_to_the_last_edge_and_phase() {
+    let all = engine_vectors();
+    for phase in [StartPhase::Half, StartPhase::Zero] {
+        let cases: Vec<&Case> = all.iter().filter(|case| case.phase() == phase).collect();
+        let build = lockstep::quick_build(16, phase);
+        let (program, ticks) = moves::side_by_side(&cases);
+        let record = lockstep::record(Level::Fast, &Job::new(&build, &program, ticks)).expect("the fast model");
+        for (axis, case) in cases.iter().enumerate() {
+            case.assert_edges(&lockstep::edges_on_the_pins(&build, &record, axis));
+        }
+    }
+}
+
+/// Dense programs on a build; how many edges they made.
+fn dense_programs(build: &Build, ticks: u32, cases: u32) -> u64 {
+    let edges = Cell::new(0);
+    let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 500, ..Config::default() });
+    let held = runner.run(&(dense::program(ticks), leaps()), |(program, leaps)| {
+        let mut twins = Twins::new(build, leaps);
+        twins.feed(&program, 300).map_err(TestCaseError::fail)?;
+        edges.set(edges.get() + twins.edges);
+        Ok(())
+    });
+    held.unwrap_or_else(|error| panic!("{error}"));
+    edges.get()
+}
+
+/// Pins that never delay a step: all edges of the accumulators come through.
+#[test]
+fn ten_million_edges_with_fast_pins() {
+    let edges = dense_programs(&lockstep::quick_build(16, StartPhase::Half), 20_000, 400);
+    assert!(edges >= 5_000_000, "only {edges} edges");
+}
+
+#[test]
+fn ten_million_edges_from_zero_phase() {
+    let edges = dense_programs(&lockstep::quick_build(4, StartPhase::Zero), 20_000, 400);
+    assert!(edges >= 5_000_000, "only {edges} edges");
+}
+
+/// Pins that delay steps and turns, and overrun.
+#[test]
+fn registers_with_slow_pins() {
+    let slow = PinTiming { width: 12, gap: 20, setup: 30, hold: 70 };
+    let build = Build { pins: [slow; AXES], ..lockstep::tight_build(16, StartPhase::Half) };
+    let edges = dense_programs(&build, 500, 400);
+    assert!(edges >= 10_000, "only {edges} edges");
+}

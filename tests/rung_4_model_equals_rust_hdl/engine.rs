@@ -1,0 +1,102 @@
+//! Rust-HDL's simulation of the engine is the engine's model, every output in every clock, and the
+//! engine's memory holds what the model holds.
+
+use carrystep_core::engine::{EngineInputs, Limits};
+use carrystep_core::{EngineBuild, Program, StartPhase};
+use carrystep_hdl::EngineSim;
+use carrystep_model::Engine;
+use carrystep_simulators::engine::{EngineCore, EngineHost, Events};
+use carrystep_tests::engine_programs::{build, run_programs};
+use proptest::prelude::*;
+
+/// Runs both until the program is over and both are quiet; the clocks it took.
+fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Result<u64, TestCaseError> {
+    let mut model = Engine::new(build);
+    let mut engine = EngineSim::new(build).expect("a fine build");
+    let mut host = EngineHost::new(&build.guard, program, events);
+    let mut fault = false;
+    let mut quiet = 0;
+    for cycle in 0..200_000_u64 {
+        let mut inputs = host.inputs(fault);
+        let mut expected = EngineCore::outputs(&mut model, &inputs);
+        if expected.fault.is_some() != fault {
+            fault = expected.fault.is_some();
+            inputs = host.inputs(fault);
+            expected = EngineCore::outputs(&mut model, &inputs);
+        }
+        let found = engine.settle(&inputs);
+        prop_assert_eq!(
+            expected,
+            found,
+            "cycle {}, tick {}",
+            cycle,
+            cycle / u64::from(build.timebase.clocks_per_tick())
+        );
+        host.advance(&expected);
+        quiet = if host.is_done() && (expected.idle || expected.halted) { quiet + 1 } else { 0 };
+        if quiet > 12 * build.timebase.clocks_per_tick() {
+            assert_kept(build, &model, &engine)?;
+            return Ok(cycle);
+        }
+        EngineCore::clock(&mut model, &inputs);
+        EngineCore::clock(&mut engine, &inputs);
+    }
+    Ok(200_000)
+}
+
+/// P, positions and discarded steps, when nothing moves.
+fn assert_kept(build: &EngineBuild, model: &Engine, engine: &EngineSim) -> Result<(), TestCaseError> {
+    for axis in 0..build.axes() {
+        let shaper = model.shaper(axis);
+        let p = u64::from(engine.kept(axis, 1)) << 32 | u64::from(engine.kept(axis, 0));
+        prop_assert_eq!(model.fraction(axis), p, "P of axis {}", axis);
+        prop_assert_eq!(shaper.position, engine.kept(axis, 2).cast_signed(), "position of axis {}", axis);
+        prop_assert_eq!(shaper.discarded, engine.kept(axis, 3), "discarded steps of axis {}", axis);
+    }
+    Ok(())
+}
+
+fn in_rust_hdl(build: &EngineBuild, usual: u64) {
+    run_programs(build, usual, |program, events| assert_equal(build, program, events));
+}
+
+#[test]
+fn random_programs_at_16_phases() {
+    in_rust_hdl(&build(6, 80_000_000, 16, StartPhase::Half, Limits::Pair), 400_000);
+}
+
+#[test]
+fn random_programs_at_1_phase_in_the_shortest_tick() {
+    in_rust_hdl(&build(6, 79_000_000, 1, StartPhase::Half, Limits::One), 200_000);
+}
+
+#[test]
+fn random_programs_of_eight_axes_at_4_phases_with_clocks_to_spare() {
+    in_rust_hdl(&build(8, 120_000_000, 4, StartPhase::Zero, Limits::Each), 200_000);
+}
+
+#[test]
+fn random_programs_of_eight_axes_at_1_phase_in_the_shortest_tick() {
+    in_rust_hdl(&build(8, 105_000_000, 1, StartPhase::Half, Limits::Pair), 200_000);
+}
+
+#[test]
+fn random_programs_of_one_axis_in_the_shortest_phases() {
+    in_rust_hdl(&build(1, 32_000_000, 16, StartPhase::Half, Limits::Pair), 100_000);
+}
+
+#[test]
+fn random_programs_of_one_axis_in_the_shortest_tick() {
+    in_rust_hdl(&build(1, 16_000_000, 4, StartPhase::Zero, Limits::One), 100_000);
+}
+
+#[test]
+fn nothing_happens_to_an_engine_without_a_host() {
+    let build = build(6, 80_000_000, 16, StartPhase::Half, Limits::None);
+    let mut engine = EngineSim::new(&build).expect("a fine build");
+    for _ in 0..1000 {
+        let outputs = engine.settle(&EngineInputs::default());
+        assert!(outputs.idle && outputs.fault.is_none() && outputs.step == 0 && outputs.dir == 0 && !outputs.enabled);
+        engine.clock();
+    }
+}

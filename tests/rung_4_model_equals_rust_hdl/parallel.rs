@@ -1,0 +1,77 @@
+//! Rust-HDL's simulation of the parallel core is the parallel model.
+
+use carrystep_core::StartPhase;
+use carrystep_hdl::AxisSim;
+use carrystep_simulators::{Job, Level};
+use carrystep_tests::golden::{Case, Edge, engine_vectors};
+use carrystep_tests::{lockstep, moves, programs};
+use proptest::test_runner::{Config, TestRunner};
+
+fn random_programs(phases: u32, phase: StartPhase, cases: u32) {
+    let build = lockstep::tight_build(phases, phase);
+    let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 200, ..Config::default() });
+    let held = runner.run(&programs::program(), |program| {
+        lockstep::assert_equals_model(Level::RustHdl, &lockstep::job(&build, &program));
+        Ok(())
+    });
+    held.unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn random_programs_at_16_phases() {
+    random_programs(16, StartPhase::Half, 300);
+}
+
+#[test]
+fn random_programs_at_4_phases() {
+    random_programs(4, StartPhase::Zero, 150);
+}
+
+#[test]
+fn random_programs_at_1_phase() {
+    random_programs(1, StartPhase::Half, 150);
+}
+
+#[test]
+fn the_demo() {
+    let plan = moves::demo();
+    lockstep::assert_equals_model(Level::RustHdl, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+}
+
+#[test]
+fn every_profile() {
+    let plan = moves::curves();
+    lockstep::assert_equals_model(Level::RustHdl, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+}
+
+#[test]
+fn golden_vectors_to_the_last_edge_and_phase() {
+    for case in engine_vectors() {
+        let (edges, p) = axis_edges(&case);
+        case.assert_edges(&edges);
+        assert_eq!(p, case.p_end(), "{}: P at the end", case.name);
+    }
+}
+
+/// The axis module alone, a tick as short as its bisection allows: the vectors have millions of ticks.
+fn axis_edges(case: &Case) -> (Vec<Edge>, u64) {
+    let mut axis = AxisSim::new(16, case.phase()).expect("an axis");
+    let mut segments = case.segments().into_iter();
+    assert!(axis.offer(&segments.next().expect("a segment")));
+    axis.tick(true); // the strobe that loads
+    let mut edges = Vec::new();
+    let mut p = 0;
+    for tick in 1..=case.total_ticks {
+        if !axis.waiting()
+            && let Some(segment) = segments.next()
+        {
+            assert!(axis.offer(&segment));
+        }
+        let now = axis.tick(false);
+        if now.crossed {
+            edges.push((tick, u32::from(now.q), if now.back { -1 } else { 1 }));
+        }
+        p = now.p;
+    }
+    (edges, p)
+}

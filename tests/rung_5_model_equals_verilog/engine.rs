@@ -1,0 +1,161 @@
+//! The exported engine in Icarus and in Verilator is the engine's model, every output in every clock.
+
+use carrystep_core::engine::{CAUSES, Cause, Limits, QUEUE};
+use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_simulators::Level;
+use carrystep_simulators::engine::Events;
+use carrystep_simulators::engine::replay::{self, Recording};
+use carrystep_tests::effort;
+use carrystep_tests::engine_programs::{build, run_programs};
+use carrystep_tests::golden::{self, Case, Edge};
+use proptest::prelude::*;
+use std::cell::Cell;
+
+fn in_verilog(level: Level, build: &EngineBuild, usual: u64) -> Seen {
+    let verilog = carrystep_verilog::engine_verilog(build, "a test").expect("a fine build");
+    let seen = Cell::new(Seen::default());
+    run_programs(build, usual, |program, events| {
+        let recording = Recording::new(build, program, events, 200_000);
+        let difference = replay::difference(level, &verilog, &recording).expect("the tools");
+        prop_assert!(difference.is_none(), "{}", difference.unwrap_or_default());
+        seen.set(seen.get().with(&recording));
+        Ok(recording.clocks)
+    });
+    effort::say(&format!("{:?}", seen.get()));
+    seen.get()
+}
+
+/// What happened in random programs: lock-step over nothing would prove nothing.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    clocks: u64,
+    edges: u64,
+    /// Edges of several axes in one clock.
+    together: u64,
+    /// Stops by each cause.
+    causes: [u64; CAUSES.len()],
+    /// Edges after a stop was called: of ramps.
+    ramped: u64,
+    cleared: u64,
+    /// Axes that have met the limit that they waited for, while others waited on.
+    homed: u64,
+}
+
+impl Seen {
+    fn with(mut self, recording: &Recording) -> Self {
+        self.clocks += recording.clocks;
+        for pair in recording.outputs.windows(2) {
+            let [(_, before), (_, now)] = pair else { continue };
+            let rising = (now.step & !before.step).count_ones();
+            self.edges += u64::from(rising);
+            self.together += u64::from(rising > 1);
+            self.homed += u64::from(now.homing != 0 && before.homing & !now.homing != 0);
+            match (before.fault, now.fault) {
+                (None, Some((cause, _))) => self.causes[cause as usize] += 1,
+                (Some((Cause::Stop, _)), Some(_)) => self.ramped += u64::from(rising),
+                (Some(_), None) => self.cleared += 1,
+                _ => {}
+            }
+        }
+        self
+    }
+
+    fn assert_everything(&self) {
+        let Self { clocks, edges, together, causes, ramped, cleared, homed } = *self;
+        let all = [[clocks, edges, together, ramped, cleared, homed].as_slice(), &causes].concat();
+        assert!(all.iter().all(|count| *count > 0), "random programs miss something: {self:?}");
+        let stops: u64 = causes.iter().sum();
+        effort::figures(&format!("{edges} edges, {stops} stops of all {} causes", CAUSES.len()));
+    }
+}
+
+#[test]
+fn random_programs_in_verilator() {
+    let build = build(6, 80_000_000, 16, StartPhase::Half, Limits::Pair);
+    in_verilog(Level::Verilator, &build, 7_000_000).assert_everything();
+}
+
+#[test]
+fn random_programs_of_eight_axes_in_verilator() {
+    let build = build(8, 112_000_000, 16, StartPhase::Half, Limits::Each);
+    let seen = in_verilog(Level::Verilator, &build, 2_000_000);
+    assert!(seen.edges > 0 && seen.together > 0, "too little happens: {seen:?}");
+}
+
+#[test]
+fn random_programs_of_one_axis_in_verilator() {
+    in_verilog(Level::Verilator, &build(1, 32_000_000, 16, StartPhase::Zero, Limits::Pair), 1_000_000);
+}
+
+#[test]
+fn random_programs_in_icarus() {
+    in_verilog(Level::Icarus, &build(6, 96_000_000, 4, StartPhase::Zero, Limits::One), 150_000);
+}
+
+#[test]
+fn random_programs_of_one_and_of_eight_axes_in_icarus() {
+    in_verilog(Level::Icarus, &build(1, 32_000_000, 16, StartPhase::Half, Limits::Each), 50_000);
+    in_verilog(Level::Icarus, &build(8, 112_000_000, 16, StartPhase::Zero, Limits::Pair), 100_000);
+}
+
+/// All golden cases of a phase, one an axis; started together, each to its last edge. The short ones in every run.
+#[test]
+fn golden_vectors_in_verilator() {
+    let vectors = golden::engine_vectors();
+    for phase in [StartPhase::Zero, StartPhase::Half] {
+        let cases: Vec<&Case> = vectors
+            .iter()
+            .filter(|case| case.phase() == phase && (effort::is_long() || case.total_ticks <= 400_000))
+            .collect();
+        for cases in cases.chunks(AXES) {
+            let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
+            let build = Build { timebase, phase, pins: [PinTiming::SHORTEST; AXES] };
+            let build = EngineBuild::minimal(&build, 1 << 40);
+            let recording = Recording::new(&build, &golden_program(cases), &Events::new(), u64::MAX);
+            let verilog = carrystep_verilog::engine_verilog(&build, "a test").expect("a fine build");
+            let difference = replay::difference(Level::Verilator, &verilog, &recording).expect("the tools");
+            assert_eq!(difference, None);
+            for (axis, case) in cases.iter().enumerate() {
+                case.assert_edges(&edges(&build, &recording, axis));
+                let [low, high, ..] = recording.kept[axis];
+                assert_eq!(u64::from(high) << 32 | u64::from(low), case.p_end(), "{}", case.name);
+            }
+        }
+    }
+}
+
+/// What fits into the queues, the start, and the rest as the queues have room.
+fn golden_program(cases: &[&Case]) -> Program {
+    let segments: Vec<Vec<Segment>> = cases.iter().map(|case| case.segments()).collect();
+    let part = |rows: std::ops::Range<usize>| {
+        let mut part = Program::new();
+        for row in rows {
+            let lanes = (0..).zip(&segments).filter_map(|(axis, lane)| lane.get(row).map(|segment| (axis, *segment)));
+            part.extend(lanes.map(|(axis, segment)| Command::Segment { axis, segment }));
+        }
+        part
+    };
+    let start = Command::Start { mask: (1 << cases.len()) - 1 };
+    let rows = segments.iter().map(Vec::len).max().unwrap_or(0);
+    [part(0..QUEUE), vec![start], part(QUEUE..rows)].concat()
+}
+
+/// The edges of an axis: tick, phase and direction.
+fn edges(build: &EngineBuild, recording: &Recording, axis: usize) -> Vec<Edge> {
+    let time = &build.timebase;
+    let started = recording.outputs.iter().find(|(_, outputs)| outputs.started).expect("a start").0;
+    let zero = started + 1 + time.latency_clocks();
+    let (tick, phase) = (u64::from(time.clocks_per_tick()), u64::from(time.clocks_per_phase()));
+    let level = |mask: u8| mask >> axis & 1 == 1;
+    let mut before = false;
+    let mut edges = Vec::new();
+    for (cycle, outputs) in &recording.outputs {
+        if level(outputs.step) && !before {
+            let since = cycle - zero;
+            assert_eq!(since % phase, 0, "an edge off its phase");
+            edges.push((since / tick + 1, (since % tick / phase) as u32, if level(outputs.dir) { -1 } else { 1 }));
+        }
+        before = level(outputs.step);
+    }
+    edges
+}

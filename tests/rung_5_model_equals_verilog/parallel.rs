@@ -1,0 +1,88 @@
+//! The exported parallel core in Icarus and in Verilator is the parallel model.
+
+use carrystep_core::StartPhase;
+use carrystep_plan::Plan;
+use carrystep_simulators::{Job, Level};
+use carrystep_tests::golden::{Case, engine_vectors};
+use carrystep_tests::{axis_bench, lockstep, moves, programs};
+use proptest::test_runner::{Config, TestRunner};
+
+fn random_programs(level: Level, phases: u32, phase: StartPhase, cases: u32) {
+    let build = lockstep::tight_build(phases, phase);
+    let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 100, ..Config::default() });
+    let held = runner.run(&programs::program(), |program| {
+        lockstep::assert_equals_model(level, &lockstep::job(&build, &program));
+        Ok(())
+    });
+    held.unwrap_or_else(|error| panic!("{error}"));
+}
+
+fn planned(level: Level, plan: &Plan) {
+    lockstep::assert_equals_model(level, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+}
+
+#[test]
+fn random_programs_in_verilator_at_16_phases() {
+    random_programs(Level::Verilator, 16, StartPhase::Half, 500);
+}
+
+#[test]
+fn random_programs_in_verilator_at_4_phases() {
+    random_programs(Level::Verilator, 4, StartPhase::Zero, 300);
+}
+
+#[test]
+fn random_programs_in_icarus_at_16_phases() {
+    random_programs(Level::Icarus, 16, StartPhase::Half, 60);
+}
+
+#[test]
+fn random_programs_in_icarus_at_1_phase() {
+    random_programs(Level::Icarus, 1, StartPhase::Half, 60);
+}
+
+#[test]
+fn the_demo_in_verilator() {
+    planned(Level::Verilator, &moves::demo());
+}
+
+#[test]
+fn the_demo_in_icarus() {
+    planned(Level::Icarus, &moves::demo());
+}
+
+#[test]
+fn every_profile_in_verilator() {
+    planned(Level::Verilator, &moves::curves());
+}
+
+#[test]
+fn every_profile_in_icarus() {
+    planned(Level::Icarus, &moves::curves());
+}
+
+/// On the pins: the cases of one start phase side by side, one on each axis.
+#[test]
+fn golden_vectors_in_verilator() {
+    let all = engine_vectors();
+    for phase in [StartPhase::Half, StartPhase::Zero] {
+        let cases: Vec<&Case> = all.iter().filter(|case| case.phase() == phase).collect();
+        let build = lockstep::quick_build(16, phase);
+        let (program, ticks) = moves::side_by_side(&cases);
+        let record = lockstep::record(Level::Verilator, &Job::new(&build, &program, ticks)).expect("Verilator");
+        for (axis, case) in cases.iter().enumerate() {
+            case.assert_edges(&lockstep::edges_on_the_pins(&build, &record, axis));
+        }
+    }
+}
+
+/// The axis alone: Icarus would take hours for the pins of three million ticks.
+#[test]
+fn golden_vectors_in_icarus() {
+    for case in engine_vectors() {
+        let build = lockstep::quick_build(16, case.phase());
+        let (edges, p) = axis_bench::edges_in_icarus(&build, &case.segments());
+        case.assert_edges(&edges);
+        assert_eq!(p, case.p_end(), "{}: P at the end", case.name);
+    }
+}

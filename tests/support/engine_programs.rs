@@ -1,0 +1,171 @@
+//! Random programs for the engine: queues filled and run dry, joint moves whose axes turn and end in one
+//! tick, and whatever the other cores are given; with the e-stop, limits, stops and silence at any clock.
+
+use crate::programs::{self, all};
+use crate::{effort, lockstep};
+use carrystep_core::engine::{Guard, Limits, QUEUE};
+use carrystep_core::{AXES, Build, Command, EngineBuild, Program, Segment, StartPhase, Timebase};
+use carrystep_simulators::engine::{Event, Events};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed, TestRunner};
+use std::cell::Cell;
+
+/// Speeds up to the bound, so that axes step in almost every second tick.
+fn fast() -> impl Strategy<Value = i64> {
+    prop_oneof![
+        4 => prop_oneof![Just(i64::MAX), Just(-i64::MAX)],
+        4 => -i64::MAX..i64::MAX,
+        2 => (20_u32..62).prop_flat_map(|bits| -(1_i64 << bits)..(1 << bits)),
+        1 => Just(0),
+    ]
+}
+
+/// All axes the same ticks, a few segments ahead of the start; every axis turns at each boundary.
+fn reversals(axes: usize) -> impl Strategy<Value = Program> {
+    let row = (prop_oneof![1_u32..4, 4_u32..40], prop::collection::vec(fast(), axes));
+    (prop::collection::vec(row, 1..8), any::<bool>()).prop_map(move |(rows, dry)| {
+        let count = rows.len();
+        let mut program = Program::new();
+        for (place, (ticks, lanes)) in rows.into_iter().enumerate() {
+            for (axis, v) in (0..).zip(lanes) {
+                let v = if place % 2 == 0 { v } else { v.wrapping_neg() };
+                let segment = Segment { ticks, v, a: 0, j: 0, last: place + 1 == count && !dry };
+                program.push(Command::Segment { axis, segment });
+            }
+        }
+        program.push(Command::Start { mask: all(axes) });
+        if dry {
+            program.extend([Command::Wait { clocks: 4000 }, Command::Clear]);
+        }
+        program
+    })
+}
+
+/// V and A that leave the range after some ticks, on several axes at once.
+fn too_fast(axes: usize) -> impl Strategy<Value = Program> {
+    let axis = (1_u32..12, fast(), fast(), fast(), any::<bool>());
+    prop::collection::vec(axis, axes).prop_map(move |lanes| {
+        let mut program = Program::new();
+        for (axis, (ticks, v, a, j, least)) in (0..).zip(lanes) {
+            let v = if least && axis % 4 == 3 { i64::MIN } else { v };
+            program.push(Command::Segment { axis, segment: Segment { ticks, v, a: a / 4, j: j / 16, last: true } });
+        }
+        program.extend([Command::Start { mask: all(axes) }, Command::Wait { clocks: 2500 }, Command::Clear]);
+        program
+    })
+}
+
+/// Long segments at speeds that steps come from, and a clear for when they are stopped.
+fn cruises(axes: usize) -> impl Strategy<Value = Program> {
+    let axis = (200_u32..600, prop_oneof![4 => -(1_i64 << 60)..(1 << 60), 1 => fast()], -(1_i64 << 50)..(1 << 50));
+    prop::collection::vec(axis, axes).prop_map(move |lanes| {
+        let mut program = Program::new();
+        for (axis, (ticks, v, a)) in (0..).zip(lanes) {
+            program.push(Command::Segment { axis, segment: Segment { ticks, v, a, j: 0, last: true } });
+        }
+        program.extend([Command::Start { mask: all(axes) }, Command::Wait { clocks: 12_000 }, Command::Clear]);
+        program
+    })
+}
+
+/// One thing that goes on and is over again.
+fn episode(axes: usize) -> impl Strategy<Value = Events> {
+    let what = prop_oneof![
+        2 => Just((Event::EStop(true), Event::EStop(false))),
+        5 => (0..=all(axes)).prop_map(|mask| (Event::LimitMin(mask), Event::LimitMin(0))),
+        5 => (0..=all(axes)).prop_map(|mask| (Event::LimitMax(mask), Event::LimitMax(0))),
+        3 => Just((Event::Stop(true), Event::Stop(false))),
+        1 => Just((Event::Enable(false), Event::Enable(true))),
+        6 => (1..=all(axes)).prop_map(|mask| (Event::Home(mask), Event::Home(0))),
+        1 => Just((Event::Broken, Event::Kick)),
+    ];
+    let length = prop_oneof![1 => 1_u64..10, 2 => 100_u64..400, 4 => 500_u64..5000];
+    (what, 0_u64..60_000, length).prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])
+}
+
+/// The same with the start behind as many rows of segments as queues hold: then the host is in time.
+pub fn queued_first(mut program: Program) -> Program {
+    program.retain(|command| !matches!(command, Command::Start { .. }));
+    let segments = program.iter().filter(|command| matches!(command, Command::Segment { .. })).count();
+    program.insert(segments.min(QUEUE * AXES), Command::Start { mask: all(AXES) });
+    program
+}
+
+/// Signs of life from a host that is heard of every so often, or falls silent.
+fn signs_of_life() -> impl Strategy<Value = Events> {
+    let interval = prop_oneof![3 => 100_u64..5000, 1 => 5000_u64..12_000];
+    (interval, prop_oneof![3 => Just(120_000_u64), 1 => 0_u64..40_000])
+        .prop_map(|(interval, end)| (0..end / interval).map(|i| (i * interval, Event::Kick)).collect())
+}
+
+/// Everything that happens around a program.
+fn events(axes: usize) -> impl Strategy<Value = Events> {
+    let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode(axes), 1..8)];
+    (episodes, signs_of_life()).prop_map(|(episodes, life)| {
+        let mut events = episodes.concat();
+        events.extend(life);
+        events.sort_by_key(|(cycle, _)| *cycle);
+        events
+    })
+}
+
+/// A segment for the last axis that can be: mostly one that there is not.
+const STRAY: Segment = Segment { ticks: 1, v: 0, a: 0, j: 0, last: true };
+
+/// Programs for an engine of so many axes, and what happens around them.
+pub fn program(axes: usize) -> impl Strategy<Value = (Program, Events)> {
+    let stray = vec![Command::Segment { axis: 7, segment: STRAY }, Command::Clear];
+    let part = prop_oneof![
+        2 => reversals(axes),
+        1 => too_fast(axes),
+        4 => cruises(axes),
+        2 => programs::program_of(axes),
+        1 => Just(stray),
+    ];
+    (prop::collection::vec(part, 1..5).prop_map(|parts| parts.concat()), events(axes))
+}
+
+/// A tick of 1 us; pins as different as in the other rungs, two of them too slow for a step in every other tick;
+/// ramps of ten ticks to some hundreds; rounds so short that all of a guard happens.
+pub fn build(axes: usize, clock_hz: u64, phases: u32, phase: StartPhase, limits: Limits) -> EngineBuild {
+    let timebase = Timebase::new(clock_hz, 1000, phases).expect("a fine timebase");
+    let mut build = Build { timebase, ..lockstep::tight_build(phases, phase) };
+    build.pins[3].gap = 237;
+    build.pins[5].hold = 221;
+    let mut build = EngineBuild::minimal(&build, 1);
+    build.pins = build.pins.iter().copied().cycle().take(axes).collect();
+    let low = limits == Limits::Pair;
+    build.guard = Guard {
+        round: 2,
+        debounce: 3,
+        watchdog: 40,
+        enable: 2,
+        limits,
+        limit_freezes: limits == Limits::Each,
+        estop_low: low,
+        limits_low: low,
+        stop: (0..axes).map(|axis| 1 << (52 + 2 * (axis % AXES))).collect(),
+    };
+    build
+}
+
+/// Runs random programs until they have taken so many clocks.
+///
+/// # Panics
+/// Where `one`, which gives the clocks that a program took, finds a difference.
+pub fn run_programs(build: &EngineBuild, usual: u64, one: impl Fn(&Program, &Events) -> Result<u64, TestCaseError>) {
+    let (clocks, enough) = (Cell::new(0), effort::clocks(usual));
+    let mut config = Config { cases: 4, max_shrink_time: 20_000, failure_persistence: None, ..Config::default() };
+    while clocks.get() < enough {
+        // From a given seed, other programs in each round too.
+        if let RngSeed::Fixed(seed) = &mut config.rng_seed {
+            *seed = seed.wrapping_add(1);
+        }
+        let held = TestRunner::new(config.clone()).run(&program(build.axes()), |(program, events)| {
+            clocks.set(clocks.get() + one(&program, &events)?);
+            Ok(())
+        });
+        held.unwrap_or_else(|error| panic!("{error}\n of {build:?}"));
+    }
+    effort::figures(&format!("{} clocks, no difference", clocks.get()));
+}

@@ -1,0 +1,122 @@
+//! The fast engine and the clock-by-clock one side by side, each under a host of its own: the same edges, and the
+//! same registers and inputs wherever the fast one stops.
+
+use carrystep_core::engine::{CAUSES, EngineInputs, EngineOutputs};
+use carrystep_core::{EngineBuild, Program};
+use carrystep_model::fast::{Change, Edge};
+use carrystep_model::{Engine, FastEngine};
+use carrystep_simulators::engine::{EngineHost, Events};
+
+/// What two runs that are the same have come to.
+#[derive(Debug, Default, Clone, Copy)]
+pub struct Came {
+    /// Edges on the pins.
+    pub edges: u64,
+    /// Cycles.
+    pub clocks: u64,
+    /// Cycles that were leapt over.
+    pub leapt: u64,
+    /// Stops by each cause.
+    pub faults: [u64; CAUSES.len()],
+}
+
+impl Came {
+    /// Both together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let faults = std::array::from_fn(|cause| self.faults[cause] + other.faults[cause]);
+        let Self { edges, clocks, leapt, .. } = self;
+        Self { edges: edges + other.edges, clocks: clocks + other.clocks, leapt: leapt + other.leapt, faults }
+    }
+}
+
+/// Runs a program, and what happens around it, until all is quiet, or for `most` cycles.
+///
+/// `leaps` are the longest leaps, taken in turn: so that a leap ends in any clock.
+///
+/// # Errors
+/// The first difference.
+pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64], most: u64) -> Result<Came, String> {
+    let (mut fast, mut slow) = (FastEngine::new(build), Engine::new(build));
+    let (mut fast_host, mut slow_host) =
+        (EngineHost::new(&build.guard, program, events), EngineHost::new(&build.guard, program, events));
+    let (mut fast_edges, mut slow_edges) = (Vec::new(), Vec::new());
+    let mut came = Came::default();
+    let mut leaps = leaps.iter().cycle();
+    let (mut quiet, mut fault, mut by_run) = (false, None, false);
+    while came.clocks < most && !quiet {
+        let (inputs, outputs) = fast_host.meet(|inputs| fast.outputs(inputs));
+        let longest = *leaps.next().unwrap_or(&u64::MAX);
+        let patience = fast_host.patience(&outputs).min(most - came.clocks).min(longest);
+        // By turns: a leap or a clock, or as far as there is nothing to be heard.
+        by_run = !by_run;
+        let mut heard = None;
+        if by_run {
+            heard = fast.run(&inputs, came.clocks + patience.max(1), &mut fast_edges);
+            // Without patience the host goes on in this cycle, whatever it hears.
+            let goes_on = heard.or((patience == 0).then_some(outputs));
+            fast_host.wait(fast.cycle() - came.clocks - u64::from(goes_on.is_some()));
+            goes_on.iter().for_each(|outputs| fast_host.advance(outputs));
+        } else if patience > 0 && fast.leap(&inputs, patience, &mut fast_edges) > 0 {
+            came.leapt += fast.cycle() - came.clocks;
+            fast_host.wait(fast.cycle() - came.clocks);
+        } else {
+            fast_host.advance(&outputs);
+            fast.clock(&inputs, &mut fast_edges);
+            heard = Some(outputs);
+        }
+        for clock in came.clocks + 1..=fast.cycle() {
+            let before: Vec<_> = (0..build.axes()).map(|axis| *slow.shaper(axis)).collect();
+            let (slow_inputs, slow_outputs) = slow_host.meet(|inputs| slow.outputs(inputs));
+            slow_host.advance(&slow_outputs);
+            if let (None, Some((cause, _))) = (fault, slow_outputs.fault) {
+                came.faults[cause as usize] += 1;
+            }
+            fault = slow_outputs.fault;
+            slow.clock(&slow_inputs);
+            if slow_inputs != inputs {
+                return Err(format!("cycle {}: inputs\n fast {inputs:?}\n slow {slow_inputs:?}", clock - 1));
+            }
+            let last = clock == fast.cycle();
+            let silent = is_silent(&slow_inputs, &slow_outputs, &slow.outputs(&slow_inputs));
+            let heard_now = heard.filter(|_| last);
+            if heard_now.map_or(!silent, |heard| heard != slow_outputs) {
+                return Err(format!("cycle {}: heard {heard:?}, not {slow_outputs:?}", clock - 1));
+            }
+            for (axis, before) in (0..).zip(before) {
+                let now = slow.shaper(axis);
+                let edge = |change| Edge { clock, axis: axis as u8, change, backward: now.dir };
+                slow_edges.extend((now.step && !before.step).then(|| edge(Change::Rise)));
+                slow_edges.extend((now.dir != before.dir).then(|| edge(Change::Turn)));
+            }
+        }
+        came.clocks = fast.cycle();
+        if fast_edges != slow_edges {
+            let pair = fast_edges.iter().zip(&slow_edges).find(|(fast, slow)| fast != slow);
+            let counts = (fast_edges.len(), slow_edges.len());
+            return Err(format!(
+                "up to cycle {}: edges {counts:?} (fast, slow), first difference {pair:?}",
+                came.clocks
+            ));
+        }
+        if *fast.core() != slow {
+            return Err(format!("cycle {}: registers\n fast {:?}\n slow {slow:?}", came.clocks, fast.core()));
+        }
+        came.edges += fast_edges.len() as u64;
+        fast_edges.clear();
+        slow_edges.clear();
+        // The end may come anywhere in the rest.
+        quiet = slow_host.is_done() && (outputs.idle || outputs.halted);
+    }
+    Ok(came)
+}
+
+/// A host has nothing to hear of in a cycle with these inputs and outputs, and the outputs behind it.
+fn is_silent(inputs: &EngineInputs, now: &EngineOutputs, next: &EngineOutputs) -> bool {
+    let taken = (now.put_ready && inputs.put.is_some()) || (now.start_ready && inputs.start.is_some());
+    let state = |outputs: &EngineOutputs| {
+        let EngineOutputs { fault, halted, idle, enabled, homing, .. } = *outputs;
+        (fault, halted, idle, enabled, homing)
+    };
+    !taken && !now.started && state(now) == state(next)
+}

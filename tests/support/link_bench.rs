@@ -1,0 +1,212 @@
+//! The link and the engine together, with a host at the other end of the line: Rust-HDL's modules of both, the model of the
+//! link in lock-step.
+
+mod board;
+mod frames;
+mod hosts;
+pub mod ports;
+
+pub use board::BoardPins;
+pub use frames::{Said, frame, on_the_line, unframe};
+
+use hosts::{Receiver, Sender, SpiHost};
+
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{EngineInputs, EngineOutputs};
+use carrystep_core::link::{END, Line, LinkInputs, LinkOutputs, Uart};
+use carrystep_hdl::{AnyLink, EngineSim, LinkSim, SpiSim, link};
+use carrystep_model::Link;
+use carrystep_simulators::vectors::{Bits, Vectors};
+use std::collections::VecDeque;
+
+/// Both modules, the line between them and the test.
+pub struct LinkBench {
+    wire: Wire,
+    engine: EngineSim,
+    /// Bytes to be sent.
+    bytes: VecDeque<u8>,
+    /// The pins of switches.
+    pub pins: EngineInputs,
+    /// What the engine showed last.
+    pub outputs: EngineOutputs,
+    /// Cycles so far.
+    pub clocks: u64,
+    /// Rising edges of STEP so far, of all axes.
+    pub steps: u64,
+    /// What the link was told and showed, if it is kept.
+    pub vectors: Option<Both>,
+    /// What the pins of a board have done, if it is kept.
+    pub board: Option<BoardPins>,
+}
+
+/// The cycles of link and line.
+#[derive(Debug, Clone)]
+pub struct Both {
+    /// Of the link.
+    pub link: Vectors,
+    /// Of its line.
+    pub line: Vectors,
+}
+
+/// The link with its line, and the host's end of that.
+enum Wire {
+    Uart { link: LinkSim, model: Link, sender: Sender, receiver: Receiver },
+    Spi { link: Box<dyn AnyLink>, line: SpiSim, model: Link, host: SpiHost },
+}
+
+impl LinkBench {
+    /// Both as they are configured, the line at rest.
+    pub fn uart(build: &EngineBuild, uart: Uart) -> Self {
+        let bit_clocks = uart.bit_clocks();
+        let link = LinkSim::new(build, uart).expect("a link");
+        let (sender, receiver) = (Sender::new(bit_clocks), Receiver::new(bit_clocks));
+        Self::new(build, Wire::Uart { link, model: Link::new(build, uart), sender, receiver })
+    }
+
+    /// The same over SPI, SCK's half period in tenths of a clock.
+    pub fn spi(build: &EngineBuild, tenths: u32) -> Self {
+        let mut link = link(build, Line::Spi.build_id(build)).expect("a link");
+        link.connect_all();
+        let model = Link::new(build, Line::Spi);
+        Self::new(build, Wire::Spi { link, line: SpiSim::new().expect("a line"), model, host: SpiHost::new(tenths) })
+    }
+
+    fn new(build: &EngineBuild, wire: Wire) -> Self {
+        Self {
+            wire,
+            engine: EngineSim::new(build).expect("an engine"),
+            bytes: VecDeque::new(),
+            pins: EngineInputs::default(),
+            outputs: EngineOutputs::default(),
+            clocks: 0,
+            steps: 0,
+            vectors: None,
+            board: None,
+        }
+    }
+
+    /// Bytes that are to be sent.
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.bytes.extend(bytes);
+    }
+
+    /// All bytes are sent.
+    pub fn has_sent(&self) -> bool {
+        let busy = match &self.wire {
+            Wire::Uart { sender, .. } => sender.left > 0,
+            Wire::Spi { host, .. } => host.sends.is_some_and(|byte| byte != END),
+        };
+        self.bytes.is_empty() && !busy
+    }
+
+    /// One cycle; a byte that has come.
+    pub fn clock(&mut self) -> Option<u8> {
+        let mut seen = LinkInputs::default();
+        match &mut self.wire {
+            Wire::Uart { sender, .. } => seen.rx = sender.clock(&mut self.bytes),
+            Wire::Spi { host, .. } => {
+                host.clock(&mut self.bytes);
+                let [sck, select_n, mosi] = host.pins();
+                (seen.spi, seen.rx) = ([sck, select_n], mosi);
+            }
+        }
+        let asked = self.wire.settle(&seen).0;
+        let EngineInputs { estop, limit_min, limit_max, .. } = self.pins;
+        let told = EngineInputs { estop, limit_min, limit_max, ..asked.engine };
+        let (axis, item) = (asked.get_axis.into(), asked.get_item.into());
+        self.engine.get(axis, item);
+        let before = std::mem::replace(&mut self.outputs, self.engine.settle(&told)).step;
+        self.steps += u64::from((self.outputs.step & !before).count_ones());
+        seen.engine = self.outputs;
+        seen.get_valid = self.engine.get(axis, item).is_some();
+        seen.get_data = self.engine.latched();
+        let (shown, level) = self.wire.settle(&seen);
+        if let Some(both) = &mut self.vectors {
+            self.wire.keep(&seen, &shown, level, both);
+        }
+        if let Some(board) = &mut self.board {
+            board.add(seen.rx, &self.pins, shown.tx, &self.outputs);
+        }
+        let byte = self.wire.clock(&seen, &shown, level, self.clocks);
+        self.engine.clock();
+        self.clocks += 1;
+        byte
+    }
+
+    /// So many cycles in which nothing comes.
+    pub fn rest(&mut self, clocks: u64) {
+        for _ in 0..clocks {
+            let byte = self.clock();
+            assert_eq!(byte, None, "an answer that nobody asked for");
+        }
+    }
+
+    /// The bytes of the next answer between its ENDs, within so many cycles.
+    pub fn answer(&mut self, within: u64) -> Option<Vec<u8>> {
+        let mut frame = Vec::new();
+        let end = self.clocks + within;
+        while self.clocks < end {
+            match self.clock() {
+                Some(END) if frame.is_empty() => {}
+                Some(END) => return Some(frame),
+                Some(byte) => frame.push(byte),
+                None => {}
+            }
+        }
+        None
+    }
+}
+
+impl Wire {
+    /// The outputs of the present cycle, and the level of the line to the host.
+    fn settle(&mut self, seen: &LinkInputs) -> (LinkOutputs, bool) {
+        match self {
+            Self::Uart { link, .. } => {
+                let shown = link.settle(seen);
+                (shown, shown.tx)
+            }
+            Self::Spi { link, line, host, .. } => {
+                let (line, miso) = line.settle(host.pins(), link.offered());
+                (LinkOutputs { tx: miso, ..link.settle(seen, line) }, miso)
+            }
+        }
+    }
+
+    /// Keeps what the modules were told and showed in the present cycle.
+    fn keep(&self, seen: &LinkInputs, shown: &LinkOutputs, level: bool, both: &mut Both) {
+        let (bytes, offered) = match self {
+            Self::Uart { link, .. } => link.bytes(),
+            Self::Spi { link, line, .. } => (line.last(), link.offered()),
+        };
+        both.link.add(ports::link_inputs(seen, bytes), ports::link_outputs(shown, offered));
+        let told = match self {
+            Self::Uart { .. } => Bits::default().and(1, u64::from(seen.rx)),
+            Self::Spi { host, .. } => {
+                host.pins().into_iter().fold(Bits::default(), |bits, pin| bits.and(1, u64::from(pin)))
+            }
+        };
+        both.line.add(
+            told.and(1, u64::from(offered.is_some())).and(8, offered.map_or(0, u64::from)),
+            ports::line_outputs(bytes, level),
+        );
+    }
+
+    /// To the next cycle; a byte that has come.
+    fn clock(&mut self, seen: &LinkInputs, shown: &LinkOutputs, level: bool, clocks: u64) -> Option<u8> {
+        match self {
+            Self::Uart { link, model, receiver, .. } => {
+                assert_eq!(model.outputs(), *shown, "cycle {clocks}: model and Rust-HDL");
+                model.clock(seen);
+                link.clock();
+                receiver.clock(level)
+            }
+            Self::Spi { link, line, model, host } => {
+                assert_eq!(model.outputs(), *shown, "cycle {clocks}: model and Rust-HDL");
+                model.clock(seen);
+                link.clock();
+                line.clock();
+                host.look(level)
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The host's end of a UART and of an SPI, clock by clock.
+
+use carrystep_core::link::END;
+use std::collections::VecDeque;
+
+/// The host's transmitter.
+pub(super) struct Sender {
+    bit_clocks: u32,
+    /// Bits of the present byte, the next one lowest: start, eight, stop.
+    bits: u32,
+    /// Clocks that they take yet.
+    pub(super) left: u32,
+}
+
+impl Sender {
+    pub(super) fn new(bit_clocks: u32) -> Self {
+        Self { bit_clocks, bits: 0, left: 0 }
+    }
+
+    /// The line in this cycle.
+    pub(super) fn clock(&mut self, bytes: &mut VecDeque<u8>) -> bool {
+        if self.left == 0 {
+            let Some(byte) = bytes.pop_front() else { return true };
+            self.bits = 1 << 9 | u32::from(byte) << 1;
+            self.left = 10 * self.bit_clocks;
+        }
+        let line = self.bits & 1 == 1;
+        self.left -= 1;
+        if self.left.is_multiple_of(self.bit_clocks) {
+            self.bits >>= 1;
+        }
+        line
+    }
+}
+
+/// The host's receiver: looks at the middle of each bit.
+pub(super) struct Receiver {
+    bit_clocks: u32,
+    /// Clocks since the start bit began.
+    since: Option<u32>,
+    bits: u32,
+}
+
+impl Receiver {
+    pub(super) fn new(bit_clocks: u32) -> Self {
+        Self { bit_clocks, since: None, bits: 0 }
+    }
+
+    /// One cycle of the line; a byte that is whole with it.
+    pub(super) fn clock(&mut self, line: bool) -> Option<u8> {
+        let since = match self.since {
+            None if line => return None,
+            None => 0,
+            Some(since) => since + 1,
+        };
+        self.since = Some(since);
+        if since % self.bit_clocks == self.bit_clocks / 2 {
+            self.bits = self.bits >> 1 | u32::from(line) << 9;
+            if since / self.bit_clocks == 9 {
+                self.since = None;
+                assert!(line, "no stop bit");
+                return Some((self.bits >> 1) as u8);
+            }
+        }
+        None
+    }
+}
+
+/// A host that speaks SPI all the time, mode 0: END where it has nothing to say. It lets go of select behind each seventh byte.
+pub(super) struct SpiHost {
+    /// Half a period of SCK, and when its next edge is, in tenths of a clock from now.
+    half: u32,
+    due: u32,
+    pub(super) sends: Option<u8>,
+    bit: u32,
+    bytes: u32,
+    rest: u32,
+    sck: bool,
+    rises: bool,
+    comes: u8,
+}
+
+impl SpiHost {
+    pub(super) fn new(half: u32) -> Self {
+        Self { half, due: 0, sends: None, bit: 0, bytes: 0, rest: 0, sck: false, rises: false, comes: 0 }
+    }
+
+    /// SCK, select (low), MOSI.
+    pub(super) fn pins(&self) -> [bool; 3] {
+        let mosi = self.sends.is_some_and(|byte| byte << self.bit >> 7 == 1);
+        [self.sck, self.sends.is_none(), mosi]
+    }
+
+    /// What the pins are in this cycle.
+    pub(super) fn clock(&mut self, bytes: &mut VecDeque<u8>) {
+        self.rises = false;
+        if self.rest > 0 {
+            self.rest -= 1;
+            return;
+        }
+        if self.sends.is_none() {
+            self.sends = Some(bytes.pop_front().unwrap_or(END));
+            (self.bit, self.due) = (0, self.half);
+            return;
+        }
+        if self.due >= 10 {
+            self.due -= 10;
+            return;
+        }
+        self.due += self.half - 10;
+        self.sck = !self.sck;
+        self.rises = self.sck;
+        if !self.sck {
+            self.bit += 1;
+        }
+        if self.bit == 8 {
+            self.bit = 0;
+            self.bytes += 1;
+            self.sends = if self.bytes.is_multiple_of(7) { None } else { Some(bytes.pop_front().unwrap_or(END)) };
+            self.rest = if self.sends.is_none() { 9 } else { 0 };
+        }
+    }
+
+    /// Looks at MISO as SCK rises; a byte that is whole with it.
+    pub(super) fn look(&mut self, miso: bool) -> Option<u8> {
+        if !self.rises {
+            return None;
+        }
+        self.comes = self.comes << 1 | u8::from(miso);
+        (self.bit == 7).then_some(self.comes)
+    }
+}

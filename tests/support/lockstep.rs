@@ -1,0 +1,97 @@
+//! Two levels on the same program, every output in every clock.
+
+use crate::golden::Edge;
+use carrystep_core::ports::Outputs;
+use carrystep_core::{AXES, Build, PinTiming, Program, StartPhase, Timebase};
+use carrystep_simulators::{Job, Level, LevelError, Outcome, run};
+
+/// All outputs in each cycle in which any of them changed, and how the run ended; a host can block
+/// itself for ever (a start that can never be), and then there is no end.
+#[derive(Debug, PartialEq)]
+pub struct Record {
+    /// Cycle and outputs.
+    pub changes: Vec<(u64, Outputs)>,
+    /// The end, if it came before the job's last clock.
+    pub outcome: Option<Outcome>,
+}
+
+/// Runs a job at a level and keeps everything.
+pub fn record(level: Level, job: &Job<'_>) -> Result<Record, LevelError> {
+    let mut changes = Vec::new();
+    let outcome = match run(level, job, &mut |cycle, outputs| changes.push((cycle, *outputs))) {
+        Err(LevelError::Endless(_)) => None,
+        other => Some(other?),
+    };
+    Ok(Record { changes, outcome })
+}
+
+/// What is different between two records, first difference first; `None` if nothing is.
+pub fn difference(expected: &Record, found: &Record) -> Option<String> {
+    let pairs = expected.changes.iter().zip(&found.changes);
+    if let Some((e, f)) = pairs.into_iter().find(|(e, f)| e != f) {
+        let cycle = e.0.min(f.0);
+        return Some(format!("first difference in cycle {cycle}:\n expected {e:?}\n found    {f:?}"));
+    }
+    if expected.changes.len() != found.changes.len() {
+        return Some(format!("{} changes expected, {} found", expected.changes.len(), found.changes.len()));
+    }
+    (expected.outcome != found.outcome).then(|| format!("{:?} expected, {:?} found", expected.outcome, found.outcome))
+}
+
+/// Panics at the first clock in which a level differs from the model, clock by clock or fast.
+pub fn assert_equals_model(level: Level, job: &Job<'_>) {
+    let found = record(level, job).unwrap_or_else(|error| panic!("{level}: {error}"));
+    for model in [Level::Model, Level::Fast] {
+        let expected = record(model, job).expect("the model");
+        if let Some(difference) = difference(&expected, &found) {
+            panic!("{level} is not {model}: {difference}\n program {:?}", job.program);
+        }
+    }
+}
+
+/// A job for a random program: time for whatever the generators make.
+pub fn job<'a>(build: &'a Build, program: &'a Program) -> Job<'a> {
+    Job { max_clocks: 50_000, ..Job::new(build, program, 0) }
+}
+
+/// The edges of a golden case, seen on the pins of the axis that ran it.
+pub fn edges_on_the_pins(build: &Build, record: &Record, axis: usize) -> Vec<Edge> {
+    let time = &build.timebase;
+    let outcome = record.outcome.as_ref().expect("the run ended");
+    let zero = outcome.origin.expect("the program started") + time.latency_clocks();
+    let (tick, phase) = (u64::from(time.clocks_per_tick()), u64::from(time.clocks_per_phase()));
+    let mut before = false;
+    let mut edges = Vec::new();
+    for (cycle, outputs) in &record.changes {
+        let step = outputs.step >> axis & 1 == 1;
+        if step && !before {
+            let since = cycle - zero;
+            assert_eq!(since % tick % phase, 0, "an edge off its phase");
+            let backward = outputs.dir >> axis & 1 == 1;
+            edges.push((since / tick + 1, (since % tick / phase) as u32, if backward { -1 } else { 1 }));
+        }
+        before = step;
+    }
+    edges
+}
+
+/// A build for random programs: the fewest clocks per tick, axes with very different pins, so that
+/// overruns, waiting for set-up and waiting for hold all happen.
+pub fn tight_build(phases: u32, phase: StartPhase) -> Build {
+    let pins = |width, gap, setup, hold| PinTiming { width, gap, setup, hold };
+    let pins: [PinTiming; AXES] = [
+        PinTiming::SHORTEST,
+        pins(2, 3, 1, 1),
+        pins(8, 8, 20, 1),
+        pins(1, 37, 3, 40),
+        pins(19, 1, 1, 2),
+        pins(5, 5, 33, 21),
+    ];
+    Build { pins, ..quick_build(phases, phase) }
+}
+
+/// The fewest clocks per tick, and pins that delay nothing.
+pub fn quick_build(phases: u32, phase: StartPhase) -> Build {
+    let timebase = Timebase::new(16_000_000, 1000, phases).expect("a fine timebase");
+    Build { timebase, phase, pins: [PinTiming::SHORTEST; AXES] }
+}

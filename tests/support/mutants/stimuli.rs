@@ -1,0 +1,61 @@
+//! What the mutants are run against: the model's recordings of the shipped machine at work, and of all that stops it.
+
+mod stops;
+mod work;
+
+use crate::moves::root;
+use carrystep_core::{EngineBuild, Program};
+use carrystep_files::Machine;
+use carrystep_simulators::engine::Events;
+use carrystep_simulators::engine::replay::Recording;
+use proptest::strategy::{Strategy, ValueTree as _};
+use proptest::test_runner::{Config, RngSeed, TestRunner};
+
+/// Random programs are drawn from this: every run has the same.
+const SEED: u64 = 2009;
+
+/// More than any program takes.
+const MOST_CLOCKS: u64 = 20_000_000;
+
+/// A recording and what it is of.
+#[derive(Clone)]
+pub struct Stimulus {
+    /// For a person.
+    pub name: String,
+    /// The model's.
+    pub recording: Recording,
+    /// The modules whose mutants are run against it; none: all. Of the long ones, so that a survivor takes seconds.
+    modules: &'static [&'static str],
+}
+
+/// The build that `hdl-out/core/carrystep_engine.v` is made from.
+pub fn build() -> EngineBuild {
+    Machine::load(&root().join("sim/engine.toml")).expect("the shipped machine").engine()
+}
+
+/// All recordings in the order in which they are tried: what finds much in few clocks first.
+pub fn all(build: &EngineBuild) -> Vec<Stimulus> {
+    [work::all(build), stops::all(build)].concat()
+}
+
+impl Stimulus {
+    fn new(build: &EngineBuild, name: impl Into<String>, program: &Program, events: &Events) -> Self {
+        Self { name: name.into(), recording: Recording::new(build, program, events, MOST_CLOCKS), modules: &[] }
+    }
+
+    fn only_for(self, modules: &'static [&'static str]) -> Self {
+        Self { modules, ..self }
+    }
+
+    /// Whether the mutants of a module are run against it.
+    pub fn is_for(&self, module: &str) -> bool {
+        self.modules.is_empty() || self.modules.contains(&module)
+    }
+}
+
+/// So many programs, each from the same seed.
+fn drawn<T>(strategy: &impl Strategy<Value = T>, count: usize) -> Vec<T> {
+    let config = Config { rng_seed: RngSeed::Fixed(SEED), failure_persistence: None, ..Config::default() };
+    let mut runner = TestRunner::new(config);
+    (0..count).map(|_| strategy.new_tree(&mut runner).expect("a program").current()).collect()
+}

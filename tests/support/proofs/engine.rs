@@ -1,0 +1,65 @@
+//! The engine's proof: the whole exported file.
+
+use super::builds::{axes, beat, beat_name, shipped_engine, small_engine};
+use super::{Bug, Case, Promises, Proof};
+use carrystep_core::engine::{EngineBuild, Limits};
+
+const BUGS: &[Bug] = &[
+    Bug {
+        breaks: "promise_5_every_axis_frozen",
+        text: ".clock(clock),\n        .frozen(stops_frozen),",
+        becomes: ".clock(clock),\n        .frozen(stops_ramp),",
+    },
+    Bug {
+        breaks: "promise_6_taken_in_its_turn",
+        text: "turn_beat[7] & (turn_axis",
+        becomes: "turn_beat[6] & (turn_axis",
+    },
+    Bug { breaks: "promise_6_nothing_taken_in_a_fault", text: "put_ready = !stops_fault &", becomes: "put_ready =" },
+    Bug { breaks: "promise_6_no_such_axis_is_told", text: "((put_valid & nobody) | broken)", becomes: "broken" },
+    Bug {
+        breaks: "promise_6_something_to_start",
+        text: "unfed <= unfed | (masked & queue_empty);",
+        becomes: "unfed <= unfed;",
+    },
+    Bug {
+        breaks: "promise_6_a_start_is_kept",
+        text: "if (go | stops_fault) begin",
+        becomes: "if (turn_beat[3]) begin",
+    },
+    Bug { breaks: "promise_8_idle", text: "rest_2 & !waits & !pins_busy", becomes: "rest_2 & !pins_busy" },
+    Bug { breaks: "promise_8_idle_is_empty", text: "rest_2 <= !active & rest_1;", becomes: "rest_2 <= 1'b1;" },
+    Bug {
+        breaks: "promise_12_own_requests",
+        text: ".request(wheel_events & wheel_phase_start)",
+        becomes: ".request(wheel_events)",
+    },
+    Bug { breaks: "promise_12_starts_who_is_asked_to", text: ".starts(going & masked)", becomes: ".starts(going)" },
+    Bug { breaks: "promise_12_a_limit_slows_its_own_axis", text: "stops_ramp | homes_slows", becomes: "stops_ramp" },
+    Bug {
+        breaks: "promise_12_a_limit_waited_for_stops_no_other",
+        text: "limits_hit & !homes_waits & !homes_slows",
+        becomes: "limits_hit & !homes_slows",
+    },
+    Bug { breaks: "promise_13_inactive", text: "rest_2 = 1'b1;", becomes: "rest_2 = 1'b0;" },
+    Bug { breaks: "promise_14_start_only_warm", text: "enable & watch_warm", becomes: "enable" },
+];
+
+pub(super) fn proof() -> Proof {
+    let sizes = [(1, 16, 4), (6, 80, 16)];
+    let builds = sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, Limits::Pair));
+    let case = |(build, verilog): (EngineBuild, _)| Case {
+        name: format!("{} axes, {}", build.axes(), beat_name(&build.timebase)),
+        dut: "carrystep_engine".into(),
+        verilog,
+        numbers: [vec![axes(&build)], beat(&build.timebase)].concat(),
+    };
+    Proof {
+        module: "engine",
+        promises: Promises { text: include_str!("../../../crates/hdl/src/engine/promises.sv") },
+        cases: builds.into_iter().chain([shipped_engine()]).map(case).collect(),
+        depth: 1,
+        reach: 200,
+        bugs: BUGS,
+    }
+}

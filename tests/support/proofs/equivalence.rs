@@ -1,0 +1,181 @@
+//! The engine against the parallel axes, both as exported, in one miter (`crates/hdl/src/engine/equals_axes.sv`):
+//! the same pins from the first word to the last step of a move, for any numbers in its segments.
+//!
+//! Bounded: ticks, and so clocks, are counted out. The move is unrolled whole, from configuration on, and what both
+//! sides share is found by sweeping it (`&fraig` of ABC): their sums are the same sums, and so are those of the two
+//! bisections, complemented or not. They are equal where nothing is left of the miter. A planted bug goes the same way.
+
+use super::builds::{small, small_engine};
+use super::solver::{LIMIT, ProofError, reached, run};
+use super::{Bug, Case, Promises};
+use carrystep_core::engine::Limits;
+use carrystep_core::{AXES, Build, PinTiming};
+use carrystep_tools::programs::{YOSYS, YOSYS_ABC};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+/// To gates; a port that the miter does not name stands at 0, a register without a value at configuration is any.
+const TO_GATES: &str = "opt_clean -purge\nmemory_map\nopt_clean\ntechmap\ndffunmap\nsetundef -undriven -zero\n\
+     aigmap\nwrite_aiger -zinit promises.aig\n";
+
+/// What is said of the two, and covers.
+pub const EQUAL: Promises = Promises { text: include_str!("../../../crates/hdl/src/engine/equals_axes.sv") };
+
+/// A move of two segments on engine and axes.
+pub struct Move {
+    /// The engine, and what the miter takes from outside.
+    pub engine: Case,
+    /// The parallel axes.
+    pub axes: Arc<str>,
+    /// Clocks from configuration until the pins have done all.
+    pub clocks: u32,
+}
+
+/// What is asked of a move.
+#[derive(Debug, Clone, Copy)]
+pub enum Asked {
+    /// They are equal, for any numbers.
+    Equal,
+    /// Every cover is reached.
+    Covers,
+    /// They differ, and this assertion says so.
+    Differ(&'static str),
+}
+
+/// Bits of V, A and J that are any.
+const ALL: u64 = u64::MAX;
+/// The top, and those around the seam of the halves.
+const SEAM: u64 = 0xff00_000f_c000_0000;
+
+/// Every move that is compared: the shortest ticks that one and two axes fit in, and that 16 phases fit in.
+pub fn moves() -> Vec<Move> {
+    vec![new_move(2, 32, 16, [2, 2], SEAM), new_move(1, 32, 16, [2, 3], SEAM), new_move(1, 16, 4, [2, 2], ALL)]
+}
+
+/// The move that bugs are looked for in: all four bits of the phase count. Covers are in the last of [`moves`].
+pub fn move_with_bugs() -> Move {
+    new_move(1, 32, 16, [2, 2], SEAM)
+}
+
+/// What must not go unnoticed: the module, and the bug in it.
+pub const BUGS: &[(&str, Bug)] = &[
+    ("adder", Bug { breaks: "equal_step", text: "beat[10]) & carry_2)", becomes: "beat[10]) & carry_1)" }),
+    ("adder", Bug { breaks: "equal_step", text: "if (!crosses_now) begin", becomes: "if (!top) begin" }),
+    ("store", Bug { breaks: "equal_step", text: "read_word = A_HIGH;", becomes: "read_word = A_LOW;" }),
+    (
+        "wheel",
+        Bug { breaks: "equal_step", text: "now = when + ONE_TICK;", becomes: "now = when + ONE_TICK + ONE_TICK;" },
+    ),
+    ("wheel", Bug { breaks: "equal_dir", text: "SIGN_KIND | LAST_PHASE;", becomes: "SIGN_KIND;" }),
+    ("queue", Bug { breaks: "equal_faults", text: "lasts_write_data = SET;", becomes: "lasts_write_data = UNSET;" }),
+    ("queue", Bug { breaks: "equal_stops", text: "(word[7] | least)", becomes: "word[7]" }),
+    ("engine", Bug { breaks: "equal_start", text: "decides & !unfed", becomes: "decides & watch_tick_0 & !unfed" }),
+];
+
+fn new_move(axes: usize, clocks: u32, phases: u32, ticks: [u32; 2], free: u64) -> Move {
+    let (build, engine) = small_engine(axes, clocks, phases, Limits::Pair);
+    let mut pins = [PinTiming::SHORTEST; AXES];
+    pins[..axes].copy_from_slice(&build.pins);
+    let parallel = Build { timebase: build.timebase, pins, ..small(phases).0 };
+    let numbers = [
+        ("AXES", axes.to_string()),
+        ("CLOCKS", clocks.to_string()),
+        ("PHASES", phases.to_string()),
+        ("TICKS_1", ticks[0].to_string()),
+        ("TICKS_2", ticks[1].to_string()),
+        ("FREE", format!("64'h{free:x}")),
+    ];
+    Move {
+        engine: Case {
+            name: format!("{axes} axes, {clocks} clocks, {phases} phases, {ticks:?} ticks, bits {free:x}"),
+            dut: "carrystep_engine".into(),
+            verilog: engine,
+            numbers: numbers.into(),
+        },
+        axes: carrystep_verilog::six_axis_verilog(&parallel, "a proof").expect("the axes").into(),
+        // A tick in which nothing is worked out, 16 for the words, 2 until the start, 2 until the pins, one for what
+        // they are late.
+        clocks: clocks * (1 + 16 + 2 + ticks[0] + ticks[1] + 3),
+    }
+}
+
+impl Move {
+    /// The same with a bug planted in a module of the engine.
+    pub fn with(&self, module: &str, bug: &Bug) -> Self {
+        let module = Case { dut: format!("carrystep_{module}"), ..self.engine.clone() };
+        Self { engine: Case { dut: self.engine.dut.clone(), ..module.with(bug) }, axes: self.axes.clone(), ..*self }
+    }
+}
+
+/// Asks one question about one move; `Ok` where the answer is the one that is wanted.
+pub fn compare(pair: &Move, asked: Asked) -> Result<(), ProofError> {
+    let dir = tempfile::tempdir()?;
+    let text = match asked {
+        Asked::Covers => EQUAL.covers_as_assertions(),
+        _ => EQUAL.text.to_owned(),
+    };
+    let files = [("engine.v", &*pair.engine.verilog), ("axes.v", &*pair.axes), ("promises.sv", &*text)];
+    for (name, text) in files {
+        fs::write(dir.path().join(name), text)?;
+    }
+    fs::write(dir.path().join("miter.ys"), script(pair, asked))?;
+    let (fine, said) = run(dir.path(), YOSYS, &["-q", "miter.ys"])?;
+    if !fine {
+        return Err(ProofError::Tool { tool: "yosys", said });
+    }
+    let (wanted, said) = match asked {
+        Asked::Equal => swept(dir.path(), pair.clocks, EQUAL.labels().len(), true)?,
+        Asked::Covers => reached(dir.path(), pair.clocks, EQUAL.covers().len())?,
+        Asked::Differ(_) => swept(dir.path(), pair.clocks, 1, false)?,
+    };
+    if wanted { Ok(()) } else { Err(ProofError::Refuted(said)) }
+}
+
+/// Whether the unrolled miter, swept, is nothing any more (or something: a run in which an assertion fails), and all
+/// that was said.
+fn swept(dir: &Path, clocks: u32, assertions: usize, equal: bool) -> Result<(bool, String), ProofError> {
+    // The head counts what is asked: aig, variables, inputs, latches, outputs, gates, assertions.
+    let file = fs::read(dir.join("promises.aig"))?;
+    let head = String::from_utf8_lossy(file.split(|byte| *byte == b'\n').next().unwrap_or_default()).into_owned();
+    if head.split(' ').nth(6) != Some(&*assertions.to_string()) {
+        return Ok((false, format!("not {assertions} assertions: {head}")));
+    }
+    let unrolled = format!("read_aiger promises.aig; scleanup; frames -i -F {clocks}; orpos; cleanup");
+    let sweep = format!("{unrolled}; &get; &fraig -y; &put; dprove -T {LIMIT}");
+    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &sweep])?;
+    let answer = said.lines().find(|line| line.contains("SATISFIABLE")).map(|line| line.starts_with("UN"));
+    Ok((fine && answer == Some(equal), said))
+}
+
+/// The steps of yosys: each core flat and by itself, for both have modules of one name; then the miter of both.
+fn script(pair: &Move, asked: Asked) -> String {
+    let cores = ["engine", "six_axis"];
+    let mut text = String::new();
+    for (core, file) in cores.into_iter().zip(["engine.v", "axes.v"]) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "read_verilog -sv {file}\nhierarchy -check -top carrystep_{core}\nproc\nflatten\ndesign -stash {core}"
+        );
+    }
+    for core in cores {
+        let _ = writeln!(text, "design -copy-from {core} -as carrystep_{core} carrystep_{core}");
+    }
+    text.push_str("read_verilog -formal -sv");
+    for (name, number) in &pair.engine.numbers {
+        let _ = write!(text, " -D {name}={number}");
+    }
+    let keep = match asked {
+        Asked::Equal => "c:equal_*",
+        Asked::Covers => "c:cover_*",
+        Asked::Differ(label) => &format!("c:{label}"),
+    };
+    let _ = writeln!(
+        text,
+        " promises.sv\nhierarchy -check -top promises\nproc\nflatten\nsetattr -set keep 1 t:$assert t:$cover\n\
+         prep -nordff -top promises\ndelete t:$cover\ndelete t:$assert {keep} %d"
+    );
+    text + TO_GATES
+}

@@ -1,0 +1,186 @@
+//! Yosys makes a transition system of Verilog and promises. What holds for ever, yosys-smtbmc and z3 are asked;
+//! runs that reach something (covers, bugs) are looked for by yosys-abc, bit by bit, which is a hundred times faster.
+
+use super::{Case, Promises};
+use carrystep_tools::programs::{Tool, YOSYS, YOSYS_ABC, YOSYS_SMTBMC, Z3};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use thiserror::Error;
+
+/// Seconds for one question; the slowest takes a tenth of it on an idle machine.
+pub(super) const LIMIT: &str = "300";
+
+/// A word of a memory that lies in the exported module: `look #("\\dut.words", ABITS, WIDTH) name (1'b0, 1'b1, address, word);`.
+const LOOK: &str = r#"
+(* blackbox *)
+module look #(parameter MEMID = "", ABITS = 1, WIDTH = 1)
+    (input wire CLK, input wire EN, input wire [ABITS-1:0] ADDR, output wire [WIDTH-1:0] DATA);
+endmodule
+"#;
+
+/// After `flatten` the memory is there under its name, and a look becomes one more port of it, which only reads.
+const LOOKS_ARE_READ_PORTS: &str = "setparam -set CLK_ENABLE 0 -set CLK_POLARITY 0 -set TRANSPARENT 0 t:look\n\
+     chtype -set $memrd t:look\n";
+
+/// The system in gates; flip-flops without a value at configuration may have any.
+const TO_GATES: &str = "opt_clean -purge\nmemory_map\nopt -full\ntechmap\nopt -full\ndffunmap\n\
+     setundef -undriven -anyseq\nabc -g AND -fast\nopt_clean\nwrite_aiger -zinit promises.aig\n";
+
+/// Why there is no answer, or not the one that was wanted.
+#[derive(Debug, Error)]
+pub enum ProofError {
+    /// A tool is not there.
+    #[error("{} is not installed: {} installs it", .0.name, .0.ways())]
+    Missing(Tool),
+    /// A tool stopped.
+    #[error("{tool} failed: {said}")]
+    Tool {
+        /// Its name.
+        tool: &'static str,
+        /// What it printed.
+        said: String,
+    },
+    /// An assertion of the file is not in what the solver was given.
+    #[error("{0} was lost on the way to the solver")]
+    Lost(&'static str),
+    /// The solver does not say what it should.
+    #[error("the solver does not agree:\n{0}")]
+    Refuted(String),
+    /// Files.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+}
+
+/// What the solver is asked.
+#[derive(Debug, Clone, Copy)]
+pub enum Question {
+    /// All holds in the first clocks.
+    Base(u32),
+    /// Where all held for k clocks, it holds in the next.
+    Induction(u32),
+    /// Every cover is reached within so many clocks.
+    Covers(u32),
+    /// This promise, by itself, fails within so many clocks.
+    Fails(&'static str, u32),
+    /// Any of the promises fails within so many clocks.
+    Broken(u32),
+}
+
+/// Fails where a tool is missing.
+pub fn tools() -> Result<(), ProofError> {
+    for tool in [YOSYS, YOSYS_SMTBMC, YOSYS_ABC, Z3] {
+        let started = Command::new(tool.name).arg("--help").stdout(Stdio::null()).stderr(Stdio::null()).status();
+        started.map_err(|_| ProofError::Missing(tool))?;
+    }
+    Ok(())
+}
+
+/// Asks one question about one case; `Ok` where the answer is the one that is wanted.
+pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), ProofError> {
+    let dir = tempfile::tempdir()?;
+    fs::write(dir.path().join("exported.v"), case.verilog.as_bytes())?;
+    let text = match question {
+        Question::Covers(_) => promises.covers_as_assertions(),
+        _ => promises.text.to_owned(),
+    };
+    fs::write(dir.path().join("promises.sv"), text)?;
+    fs::write(dir.path().join("look.sv"), LOOK)?;
+    fs::write(dir.path().join("prove.ys"), script(promises, case, question))?;
+    let (fine, said) = run(dir.path(), YOSYS, &["-q", "prove.ys"])?;
+    if !fine {
+        return Err(ProofError::Tool { tool: "yosys", said });
+    }
+    let (wanted, said) = match question {
+        Question::Base(clocks) => holds(promises, dir.path(), &["-t", &clocks.to_string()])?,
+        Question::Induction(depth) => holds(promises, dir.path(), &["-i", "-t", &depth.to_string()])?,
+        Question::Covers(clocks) => reached(dir.path(), clocks, promises.covers().len())?,
+        Question::Fails(_, clocks) => reached(dir.path(), clocks, 1)?,
+        Question::Broken(clocks) => any_reached(dir.path(), clocks)?,
+    };
+    if wanted { Ok(()) } else { Err(ProofError::Refuted(said)) }
+}
+
+/// Whether z3 says that all assertions hold, and all that was said.
+fn holds(promises: &Promises, dir: &Path, question: &[&str]) -> Result<(bool, String), ProofError> {
+    nothing_lost(promises, &fs::read_to_string(dir.join("promises.smt2"))?)?;
+    // One equation a clock, without the solver's functions over states: minutes become seconds.
+    let mut arguments = vec!["-s", "z3", "--unroll", "--noprogress", "--timeout", LIMIT];
+    arguments.extend(question);
+    arguments.push("promises.smt2");
+    let (fine, said) = run(dir, YOSYS_SMTBMC, &arguments)?;
+    let trouble = ["ERROR", "UNKNOWN", "unknown"].into_iter().any(|what| said.contains(what));
+    Ok((fine && said.contains("Status: PASSED") && !trouble, said))
+}
+
+/// Whether so many assertions, which are all, fail within so many clocks, and all that was said.
+pub(super) fn reached(dir: &Path, clocks: u32, count: usize) -> Result<(bool, String), ProofError> {
+    // One after the other: asked for all at once, bmc3 of ABC 1.01 may crash.
+    let ask = |output| format!("read_aiger promises.aig; fold; cone -s -O {output}; bmc3 -F {clocks} -T {LIMIT}");
+    let commands: Vec<String> = (0..count).map(ask).collect();
+    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &commands.join("; ")])?;
+    Ok((fine && count > 0 && said.matches("was asserted in frame").count() == count, said))
+}
+
+/// Whether any assertion fails within so many clocks.
+fn any_reached(dir: &Path, clocks: u32) -> Result<(bool, String), ProofError> {
+    let ask = format!("read_aiger promises.aig; fold; orpos; bmc3 -F {clocks} -T {LIMIT}");
+    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &ask])?;
+    Ok((fine && said.contains("was asserted in frame"), said))
+}
+
+/// The steps of yosys: the exported text as it is, the promises, and names for what they see inside.
+fn script(promises: &Promises, case: &Case, question: Question) -> String {
+    let mut text = format!("read_verilog -sv exported.v look.sv\nread_verilog -formal -sv -D DUT={}", case.dut);
+    for (name, number) in &case.numbers {
+        // Writing to a string cannot fail.
+        let _ = write!(text, " -D {name}={number}");
+    }
+    if matches!(question, Question::Base(_) | Question::Induction(_)) {
+        text.push_str(" -D INVARIANTS");
+    }
+    text.push_str(" promises.sv\nhierarchy -check -top promises\nproc\nflatten\n");
+    for (name, signal) in promises.inside(case.axes()) {
+        let _ = writeln!(text, "connect -set {name} {signal}");
+    }
+    text.push_str(LOOKS_ARE_READ_PORTS);
+    for signal in promises.free() {
+        let _ = writeln!(text, "cutpoint w:{signal}");
+    }
+    // Two that are both plain by now would be merged, and one label lost.
+    text.push_str("setattr -set keep 1 t:$assert t:$cover\n");
+    // Nothing may hang free: a free wire is any value, and a proof about it says nothing.
+    // The register behind a memory stays one: a port of its own would be free where it reads what is being written.
+    text.push_str("check -assert\nprep -nordff -top promises\n");
+    // What is not asked goes, and with it the part of the module that only it looks at.
+    text.push_str(&match question {
+        Question::Covers(_) => "delete t:$assert c:cover_* %d\n".to_owned(),
+        Question::Fails(label, _) => format!("delete t:$cover\ndelete t:$assert c:{label} %d\n"),
+        Question::Base(_) | Question::Induction(_) | Question::Broken(_) => "delete t:$cover\n".to_owned(),
+    });
+    text.push_str(match question {
+        Question::Base(_) | Question::Induction(_) => "opt_clean -purge\nwrite_smt2 promises.smt2\n",
+        Question::Covers(_) | Question::Fails(..) | Question::Broken(_) => TO_GATES,
+    });
+    text
+}
+
+/// Every label of the file is in the transition system.
+fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
+    let there = |label: &&str| {
+        system.lines().any(|line| line.starts_with("; yosys-smt2-assert ") && line.ends_with(&format!(" {label}")))
+    };
+    match promises.labels().into_iter().find(|label| !there(label)) {
+        Some(label) => Err(ProofError::Lost(label)),
+        None => Ok(()),
+    }
+}
+
+/// Whether it ended well, and all that it printed.
+pub(super) fn run(dir: &Path, tool: Tool, arguments: &[&str]) -> Result<(bool, String), ProofError> {
+    let output = Command::new(tool.name).args(arguments).current_dir(dir).output();
+    let output = output.map_err(|_| ProofError::Missing(tool))?;
+    let said = [output.stdout, output.stderr].concat();
+    Ok((output.status.success(), String::from_utf8_lossy(&said).into_owned()))
+}

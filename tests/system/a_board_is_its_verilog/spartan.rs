@@ -1,0 +1,67 @@
+//! Spartans: the Verilog, and the cells that yosys makes of it, in the EDIF that the shipped build script hands to ISE, read back. Cells
+//! are yosys' models; DCM and MMCM are one model of the bench at both stages, and block RAMs are models of ours.
+
+use carrystep_boards::{Toolchain, board};
+use carrystep_tests::board_session::Session;
+use carrystep_tests::{effort, jobs};
+use carrystep_tools::xilinx;
+
+/// One board of each family, Spartan-3, 3E, 6 and 7.
+const BOARDS: [&str; 4] = ["s3board", "nexys2", "papilio-pro", "arty-s7"];
+
+/// The EDIF with one bit of the link's first instruction flipped.
+fn with_a_flipped_bit(edif: &str) -> String {
+    let program = edif.find("\"link.machine.instructions.words.0.0\"").expect("the program");
+    let begin = program + edif[program..].find("(property INIT_00 (string \"").expect("its first words");
+    let at = begin + edif[begin..].find("\"))").expect("the last digit") - 1;
+    let digit = u8::from_str_radix(&edif[at..=at], 16).expect("a digit");
+    format!("{}{:x}{}", &edif[..at], digit ^ 1, &edif[at + 1..])
+}
+
+/// A name of the constraints of which the EDIF has no net. The build script has put the bits of a bus into the brackets of yosys.
+fn unknown_pin<'a>(ucf: &'a str, edif: &str) -> Option<&'a str> {
+    let names = ucf.lines().filter_map(|line| line.strip_prefix("NET \"")?.split('"').next());
+    let is_there = |name: &str| {
+        let bit = name.replace('<', "[").replace('>', "]");
+        edif.contains(&format!("\"{bit}\")")) || edif.contains(&format!("(net {bit} "))
+    };
+    { names }.find(|name| !is_there(name))
+}
+
+fn from_verilog_to_edif(name: &str) {
+    let board = board(name).expect("a board");
+    let session = Session::of(board);
+    let compare = |verilog: &str| session.difference(&xilinx::simulated(verilog).expect("models of its cells"));
+    let (family, top) = (board.family.yosys().expect("a Spartan"), session.gateware.top());
+    let edif = |verilog: &str| xilinx::to_edif(verilog, &top, family).expect("EDIF");
+    let cells = |edif: &str| xilinx::from_edif(edif).expect("EDIF");
+
+    let written = edif(&session.verilog);
+    if board.family.toolchain() == Toolchain::Ise {
+        let script = xilinx::script_for_ise(family, &top);
+        assert!(session.file("build.sh").contains(&script), "{name}: the build script does not say {script}");
+        assert_eq!(unknown_pin(&session.file(".ucf"), &written), None, "{name}");
+    }
+    assert_eq!(compare(&cells(&written)), None, "{name}: the EDIF");
+    if effort::is_every_board() {
+        assert_eq!(compare(&session.verilog), None, "{name}: the Verilog");
+        let flipped = cells(&with_a_flipped_bit(&written));
+        assert!(compare(&flipped).is_some(), "{name}: a flipped bit of a block RAM is not seen");
+        for (fault, verilog) in session.crossed() {
+            assert!(compare(&cells(&edif(&verilog))).is_some(), "{name}: {fault} is not seen");
+        }
+    }
+    effort::say(&format!("{name}: {} cycles on every pin", session.cycles()));
+}
+
+#[test]
+fn netlists() {
+    if !effort::is_every_board() {
+        return from_verilog_to_edif("papilio-pro");
+    }
+    jobs::each(&BOARDS, |name| from_verilog_to_edif(name));
+    effort::figures(&format!(
+        "{} Spartan boards, one of each family, from Verilog to the EDIF of its cells, two crossed wires and a flipped bit seen on each",
+        BOARDS.len()
+    ));
+}

@@ -1,0 +1,152 @@
+//! An axis that waits for its limit meets it, slows down alone and says where it was; the others go on as if nothing
+//! had been; the exported Verilog does the same in every clock, and bugs that are planted in it are caught.
+
+use carrystep_core::engine::{Cause, Guard, Limits};
+use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_hdl::EngineSim;
+use carrystep_model::Engine;
+use carrystep_simulators::Level;
+use carrystep_simulators::engine::replay::{self, Recording};
+use carrystep_simulators::engine::{EngineCore, EngineHost, Event, Events};
+use carrystep_tests::planted;
+
+/// When the limit is met: all axes have cruised for some hundred ticks.
+const THEN: u64 = 30_000;
+
+/// The axis that goes home, backward.
+const HOMING: usize = 1;
+
+fn build(limits: Limits) -> EngineBuild {
+    let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
+    let pins = [PinTiming { width: 5, gap: 5, setup: 3, hold: 3 }; AXES];
+    let build = EngineBuild::minimal(&Build { timebase, phase: StartPhase::Half, pins }, 1 << 53);
+    EngineBuild { guard: Guard { round: 2, debounce: 3, enable: 2, limits, ..build.guard }, ..build }
+}
+
+/// All axes at a sixteenth of a step a tick, the odd ones backward, three segments each.
+fn cruise() -> Program {
+    let segment = |axis: u8, ticks, last| {
+        let v = if axis.is_multiple_of(2) { 1 << 60 } else { -(1 << 60) };
+        Command::Segment { axis, segment: Segment { ticks, v, a: 0, j: 0, last } }
+    };
+    let rows = [(400, false), (100, false), (400, true)];
+    let mut program: Program =
+        rows.iter().flat_map(|&(ticks, last)| (0..6).map(move |axis| segment(axis, ticks, last))).collect();
+    program.push(Command::Start { mask: 0x3f });
+    program
+}
+
+/// The axis waits from the start; its limit is there from `then` on for some ticks.
+fn events(then: u64) -> Events {
+    let limit = 1 << HOMING;
+    vec![(100, Event::Home(limit)), (then, Event::LimitMin(limit)), (then + 3_000, Event::LimitMin(0))]
+}
+
+fn run(limits: Limits, program: &Program, events: &Events) -> Recording {
+    Recording::new(&build(limits), program, events, 300_000)
+}
+
+/// Cycles of the rising edges of an axis.
+fn edges(recording: &Recording, axis: usize) -> Vec<u64> {
+    let level = |mask: u8| mask >> axis & 1 == 1;
+    let pairs = recording.outputs.windows(2);
+    pairs.filter(|pair| !level(pair[0].1.step) && level(pair[1].1.step)).map(|pair| pair[1].0).collect()
+}
+
+#[test]
+fn one_axis_slows_down_and_the_others_go_on() {
+    for limits in [Limits::Pair, Limits::Each] {
+        let free = run(limits, &cruise(), &Events::new());
+        let homed = run(limits, &cruise(), &events(THEN));
+        assert!(homed.outputs.iter().all(|(_, out)| out.fault.is_none()), "{limits:?}: nothing is called");
+        for axis in (0..AXES).filter(|axis| *axis != HOMING) {
+            assert_eq!(edges(&free, axis), edges(&homed, axis), "{limits:?}, axis {axis}");
+        }
+        let (all, fewer) = (edges(&free, HOMING), edges(&homed, HOMING));
+        let met =
+            homed.outputs.iter().find(|(cycle, out)| *cycle > 200 && out.homing == 0).expect("it meets its limit").0;
+        // 128 ticks of ramp, and two until steps are on the pins.
+        let last = *fewer.last().expect("it has moved");
+        assert!(met > THEN && last > met + 20 * 80 && last < met + 131 * 80, "{limits:?}: {met}, {last}");
+        assert!(fewer.len() + 20 < all.len(), "{limits:?}: {} of {} steps", fewer.len(), all.len());
+        assert!(homed.outputs.last().is_some_and(|(_, out)| out.idle), "{limits:?}: its queue is empty");
+    }
+}
+
+#[test]
+fn other_limits_stop_all_axes() {
+    let other =
+        vec![(100, Event::Home(1 << HOMING)), (THEN, Event::LimitMin(1 << 3)), (THEN + 3_000, Event::LimitMin(0))];
+    let recording = run(Limits::Pair, &cruise(), &other);
+    assert_eq!(recording.outputs.iter().find_map(|(_, out)| out.fault), Some((Cause::Limit, 1 << 3)));
+}
+
+#[test]
+fn a_start_that_waits_for_a_homing_axis_finds_it_unfed() {
+    let program = [cruise(), vec![Command::Start { mask: 1 << HOMING }]].concat();
+    let recording = run(Limits::Pair, &program, &events(THEN));
+    assert_eq!(recording.outputs.iter().find_map(|(_, out)| out.fault), Some((Cause::Protocol, 0)));
+}
+
+#[test]
+fn it_says_where_it_met_its_limit() {
+    let build = build(Limits::Pair);
+    let (mut model, mut engine) = (Engine::new(&build), EngineSim::new(&build).expect("a fine build"));
+    let mut host = EngineHost::new(&build.guard, &cruise(), &events(THEN));
+    let (mut told, mut met) = (None, None);
+    while met.is_none() {
+        let inputs = host.inputs(false);
+        let found = engine.settle(&inputs);
+        if found.latch.is_some() {
+            assert_eq!(found.latch, Some(HOMING as u8));
+            let says = engine.latched().cast_signed();
+            let is = model.shaper(HOMING).position;
+            // A pulse is counted in the axis' next turn but one.
+            assert!((0..=1).contains(&(says - is)), "says {says}, is {is}");
+            told = Some(says);
+        }
+        met = (told.is_some() && found.homing == 0).then(|| model.shaper(HOMING).position);
+        host.advance(&found);
+        EngineCore::clock(&mut model, &inputs);
+        EngineCore::clock(&mut engine, &inputs);
+    }
+    let (told, met) = (told.expect("a position"), met.expect("the end"));
+    assert!((0..=1).contains(&(told - met)) && met < -10, "told {told}, met {met}");
+}
+
+/// Runs in which the limit is met in every part of a tick, with segments still coming, and a start that waits.
+fn recordings() -> Vec<Recording> {
+    let late =
+        |ticks| Command::Segment { axis: HOMING as u8, segment: Segment { ticks, v: 0, a: 0, j: 0, last: true } };
+    let busy = [cruise(), (1..12).map(late).collect()].concat();
+    let waiting = [cruise(), vec![Command::Start { mask: 1 << HOMING }]].concat();
+    let mut all: Vec<_> = (0..12).map(|k| run(Limits::Pair, &busy, &events(THEN + 371 * k))).collect();
+    all.extend((0..3).map(|k| run(Limits::Pair, &waiting, &events(THEN + 601 * k))));
+    all
+}
+
+/// Whether the Verilog, changed, is any other than the model.
+fn caught(change: impl Fn(String) -> String) -> bool {
+    let verilog = change(carrystep_verilog::engine_verilog(&build(Limits::Pair), "a test").expect("a fine build"));
+    let differs =
+        |recording: &Recording| replay::difference(Level::Verilator, &verilog, recording).expect("the tools").is_some();
+    recordings().iter().any(differs)
+}
+
+#[test]
+fn the_verilog_goes_home_in_the_same_clock() {
+    assert!(!caught(|verilog| verilog));
+}
+
+const BUGS: [planted::Bug; 5] = [
+    ("a limit that is waited for stops all", "limits_hit & !homes_waits &", "limits_hit &"),
+    ("the limit is met once more on the way", "& !homes_slows", ""),
+    ("all axes slow down", "mine_slows <= (slowing & lane_next)", "mine_slows <= (slowing)"),
+    ("the queue keeps what waits", "next_live = newest;", "next_live = live_now;"),
+    ("a start does not wait for an axis that slows", "queue_goes_on | homes_slows", "queue_goes_on"),
+];
+
+#[test]
+fn bugs_in_homing_are_caught() {
+    planted::assert_all_caught(&BUGS, |plant| caught(plant));
+}
