@@ -21,8 +21,8 @@ fn speed(segment: &Segment, k: i128) -> i128 {
     v + k * a + k * (k - 1) / 2 * j
 }
 
-/// The first tick in which V is not 0, counted from 0. A segment that starts at V = 0 moves from its
-/// second tick on if A is not 0, and from its third tick on if only J is not 0.
+/// The first tick in which V is not 0, counted from 0. A segment that starts at V = 0 moves from
+/// its second tick on if A is not 0, and from its third tick on if only J is not 0.
 pub(crate) fn first_motion(segments: &[Segment]) -> u64 {
     let mut before = 0;
     for segment in segments {
