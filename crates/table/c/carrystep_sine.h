@@ -1,6 +1,6 @@
 /* Computes a sine ramp (acceleration 1 - cos) of any length and duration on the controller, from
- * one small table of u = t / T against the fourth root of the travelled fraction of the distance. Each
- * step takes two integer roots and a division: call it before a move, not in an interrupt. */
+ * one small table of u = t / T against the fourth root of the travelled fraction of the distance.
+ * Each step takes two integer roots and a division: call it before a move, not in an interrupt. */
 #ifndef CARRYSTEP_SINE_H
 #define CARRYSTEP_SINE_H
 
