@@ -40,7 +40,7 @@ pub fn fast(moves: &Moves) -> Result<(f64, Consumer), String> {
 }
 
 /// Returns how many times faster than real time the fast model runs an engine of 80 MHz. It is an
-/// error if the engine makes other pulses than the core did.
+/// error if the engine has a fault, or counts other pulses or reversals than the core (`heard`).
 pub fn engine(moves: &Moves, heard: &Consumer) -> Result<f64, String> {
     let job = EngineJob::new(&moves.engine, &moves.program, moves.plan.total_ticks());
     let (seconds, result) = stopwatch::least(BUDGET, || {

@@ -30,8 +30,8 @@ pub const DENSITIES: [Density; 3] = [
 /// difference of the two gives the cost of an edge and that of a load.
 pub const STEADY: Density = Density { name: "steady", what: "all axes at 10 000 steps/s, few loads", wanted: 0.0 };
 
-/// The least clock, Hz, at which an engine of six axes finishes the time slots of all axes in a
-/// tick of 1 us.
+/// A clock, Hz, at which an engine of six axes finishes the time slots of all axes within a tick of
+/// 1 us.
 const ENGINE_HZ: u64 = 80_000_000;
 
 /// A planned move, ready to run.

@@ -1,5 +1,8 @@
 //! Writes the limits of a stretch as rows of its linear programme. V, A, J and the speed jumps at
 //! the start and the end of a move are linear in the three unknowns.
+//!
+//! `HELD` may be tuned: the exact check refuses a plan that exceeds a limit between these
+//! positions.
 
 use crate::corridor::steps;
 use crate::exchange::Row;

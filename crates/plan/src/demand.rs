@@ -1,4 +1,6 @@
 //! Determines how long a move takes, and the profile of each axis in that time.
+//!
+//! A new kind of profile is added to `least_time` and `profile` in this file.
 
 use crate::error::PlanError;
 use crate::limits::float_limits;

@@ -4,6 +4,9 @@
 //! tick with V = -r, in the old direction, and then r ticks with V = 1 unit in the new direction.
 //! At phase zero a forward move cannot do so and borrows one unit from its own distance (see
 //! [`borrows`]).
+//!
+//! The rule for DIR is that of the gateware (docs/clock-by-clock.md, "shaper"); both may change
+//! only together.
 
 use carrystep_spec::{PinTiming, Segment, StartPhase, Timebase};
 

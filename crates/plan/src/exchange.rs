@@ -5,6 +5,9 @@
 //! for the point with the greatest error until none is greater. With four points and bounds among
 //! them this is the dual simplex method. It starts from an alternation, so that no first solution
 //! has to be searched.
+//!
+//! The constants may be tuned: the caller judges the rounded integers, not the level that is found
+//! here.
 
 /// One linear constraint on the three unknowns x and the level: `at` x - `error` level <= `most`.
 ///

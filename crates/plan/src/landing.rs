@@ -4,6 +4,8 @@
 //! One unit more in V moves the end of a segment by as many units as the segment has ticks. If the
 //! lengths of two segments have no common divisor, Bezout's identity reaches any distance with such
 //! changes. Between the two segments the axis deviates by at most the product of their lengths.
+//!
+//! A greater `MOST_OFF` saves segments and allows a greater deviation.
 
 /// The greatest product of the two lengths. It is the greatest deviation in units of 2^-64 step,
 /// which is half a nanosecond at one step a second.

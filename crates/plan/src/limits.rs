@@ -1,4 +1,7 @@
 //! The limits of an axis, exactly in the gateware's units and as floats for the profiles.
+//!
+//! The directions of rounding ensure that a checked plan does not exceed a limit; they may not
+//! change.
 
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
 use carrystep_profile::{Limits, Real};

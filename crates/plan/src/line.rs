@@ -3,6 +3,8 @@
 //! Every profile scales with its limits. It is therefore enough to give each axis the limits of the
 //! line in its own steps. A limit of the line is, for each kind of limit, the least quotient of an
 //! axis' limit and the axis' steps.
+//!
+//! A new kind of limit has to be added to [`share_limits`] and to `value`.
 
 use carrystep_profile::{Limit, Limits, Real, Refusal};
 use carrystep_spec::ProfileKind;

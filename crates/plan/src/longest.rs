@@ -1,4 +1,6 @@
 //! Finds the longest time that works for a move whose given time is too long.
+//!
+//! The result appears only in an error message, so its precision (`CLOSE`) may change.
 
 use bigdecimal::{BigDecimal, ToPrimitive};
 use carrystep_spec::Timebase;
@@ -6,8 +8,8 @@ use carrystep_spec::Timebase;
 /// The search ends when the interval of the longest time is narrower than this factor.
 const CLOSE: f64 = 1.003;
 
-/// Searches, by bisection on a logarithmic scale, the longest time for which `works` is true,
-/// between `shortest` seconds, which works, and `longest` seconds, which does not.
+/// Searches, by bisection on a logarithmic scale, for the longest time for which `works` is true. It
+/// lies between `shortest` seconds, which works, and `longest` seconds, which does not.
 ///
 /// Candidates have three significant digits and are whole ticks, so that a user can copy the
 /// result. The result itself has been tried; `None` means that no candidate worked.

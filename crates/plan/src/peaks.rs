@@ -1,4 +1,6 @@
 //! The greatest values that a plan reaches, exactly, in the gateware's units.
+//!
+//! `check.rs` computes the values; this file only converts their units.
 
 use carrystep_spec::Timebase;
 

@@ -5,6 +5,8 @@
 //! step slowly, and takes the step in one tick whose speed the bisection divides without a
 //! remainder: Q m units of 2^-32 step, where Q is the number of phases and m a whole number. The
 //! edge then falls exactly into the phase in which the profile crosses the step.
+//!
+//! This follows from the arithmetic of the gateware's bisection; both may change only together.
 
 use crate::bend::Bend;
 use crate::error::Broken;

@@ -1,14 +1,12 @@
 //! Pulses that are so slow that the gateware's 32-bit bisection becomes visible, and what the
 //! planner does about them.
 //!
-//! The bisection uses the top 32 bits of P and V (docs/clock-by-clock.md, "axis"). Each of
-//! its additions loses a part of 2^-32 step. At a speed v this takes the time 2^-32 step / v: 0.2
-//! ns at one step a second, 23 ns at a hundredth of a step a second. The loss makes P smaller: a
-//! forward edge then comes late, and a backward edge comes early.
-//!
-//! - Below [`LEAST`], the step of each pulse gets a tick of its own (`placed.rs`).
-//! - Backward and below about one step a second, the axis is kept behind its profile by as much as
-//!   the bisection may lose.
+//! The bisection uses the top 32 bits of P and V (docs/clock-by-clock.md, "axis"). Each of its
+//! additions loses up to 2^-32 step. At a speed v this takes the time 2^-32 step / v: 0.2 ns at one
+//! step a second, 23 ns at a hundredth of a step a second. The loss makes P smaller: a forward edge
+//! comes late, and a backward edge comes early. Below [`LEAST`], the step of each pulse therefore
+//! gets a tick of its own (`placed.rs`). Backward and below about one step a second, the axis is
+//! kept behind its profile by as much as the bisection may lose. The constants follow from this.
 
 use crate::demand::{Clock, float};
 use crate::error::Broken;

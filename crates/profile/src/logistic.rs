@@ -2,6 +2,8 @@
 //!
 //! The source is M. Sorn (2019), Eqs. 1 to 5. docs/profiles.md lists its errors, which are
 //! corrected here.
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 use crate::bad_ramp::{BadRamp, in_range, positive, wide};
 use crate::curve::Curve;

@@ -1,4 +1,6 @@
 //! The interface of every profile.
+//!
+//! A new profile implements [`Profile`], and [`crate::Curve`] for its figures.
 
 use num_traits::Float;
 use std::fmt::Debug;

@@ -3,6 +3,8 @@
 //! The move is a triangle whenever possible, otherwise a trapezoid at the speed limit, otherwise it
 //! is refused. For an average speed below the start speed the article's formulas give a negative
 //! acceleration: such a move has constant speed here.
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 use crate::constant::Constant;
 use crate::curve::Curve;

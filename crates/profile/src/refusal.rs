@@ -1,4 +1,6 @@
 //! The limits of a motor, and the error for a move that exceeds them.
+//!
+//! The texts of [`Limit`] are the keys of the machine file and may not change.
 
 use crate::profile::{Real, real};
 use std::fmt;

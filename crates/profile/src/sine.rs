@@ -1,6 +1,8 @@
 //! The sinusoidal S-curve: the acceleration is (v / T) (1 - cos 2 pi u), with u = t / T.
 //!
 //! docs/profiles.md lists the errors of the published source that are corrected here.
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 use crate::bad_ramp::{BadRamp, positive};
 use crate::curve::Curve;

@@ -4,6 +4,8 @@
 //! time of a move falls as its top speed rises, until the two ramps meet or the speed limit is
 //! reached: this gives the least time. In a longer time the ramps stay as steep, and the top speed
 //! is lower.
+//!
+//! A new curve only has to provide its ramps, as a [`Ramps`] function.
 
 use crate::curve::Curve;
 use crate::profile::Real;

@@ -1,4 +1,6 @@
 //! The trapezoid from rest to rest at the acceleration limit, in a given time.
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 use crate::profile::{Real, real};
 use crate::ramp::Ramp;

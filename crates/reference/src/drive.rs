@@ -1,4 +1,6 @@
 //! Converts steps of a motor to degrees, turns and millimetres.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use crate::error::ReferenceError;
 use crate::quantity::Length;

@@ -30,8 +30,8 @@ impl Length {
     }
 }
 
-/// A value in its own unit: a length over a power of seconds, or over one minute. The power (0 to
-/// 3) depends on the use.
+/// A value in its own unit: a length over a power of seconds, or over one minute. The power
+/// depends on the use and is 0 to 3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
     value: f64,

@@ -1,4 +1,6 @@
 //! The request of a user, which is checked and converted to steps here.
+//!
+//! A new kind of profile is added to `ramp` and `whole` in this file.
 
 use crate::drive::Drive;
 use crate::error::{ReferenceError, in_words, rounded, up};

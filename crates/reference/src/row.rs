@@ -1,4 +1,6 @@
 //! The rows of a list, and the choice of what is listed.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use carrystep_spec::StartPhase;
 use schemars::JsonSchema;

@@ -1,4 +1,6 @@
 //! A part of a sweep, for one of several machines.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -6,6 +6,8 @@
 //! exactly 2 Gamma(3/4) / Gamma(1/4). Its solution c_n = F / sqrt(2 a) Gamma(n + 3/4) / Gamma(n +
 //! 5/4) holds for any n, so that a ramp may also begin at a speed. A deceleration uses the same
 //! values in reverse: c_(m-1) = c_m (4 m + 1) / (4 m - 1).
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 /// The factor 2 Gamma(3/4) / Gamma(1/4), which AVR446 prints as 0.676.
 pub const FIRST_DELAY: f64 = 0.675_978_240_067_284_7;

@@ -1,4 +1,6 @@
 //! The figures of a table that a user needs to judge it.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use crate::groups::Group;
 use crate::request::TableRequest;

@@ -1,4 +1,6 @@
 //! Writes a table as a C header, from `templates/table.h`.
+//!
+//! Transcripts in tests/ quote the generated text.
 
 use crate::error::TableError;
 use crate::request::{Arithmetic, Kind, Pulses, Speed, TableRequest};

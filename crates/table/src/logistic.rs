@@ -3,6 +3,8 @@
 //! f_i = f0 + (f1 - f0) / (1 + e^(-Fle (i - m) / m)), with i from 0. The formula of the source is
 //! missing from its text; this is the form that its references use. It is logistic over the index
 //! and not over time, and therefore a different curve from that of M. Sorn (2019).
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 /// The curve of one ramp.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,6 +4,8 @@
 //! The distance is T (v0 u + (v1 - v0) S(u)), with S(u) = u^2/2 + (cos(2 pi u) - 1) / 4 pi^2 and
 //! S(1) = 1/2. Near rest S grows with u^4: the first step takes as long as the next dozen steps,
 //! and the printed form of S loses all digits to cancellation. A series is used there.
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 use std::f64::consts::PI;
 

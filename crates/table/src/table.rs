@@ -1,4 +1,6 @@
 //! Converts a request to compare values.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use crate::austin::{ConstantAcceleration, FloatRecurrence, IntegerRecurrence};
 use crate::error::TableError;

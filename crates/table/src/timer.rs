@@ -1,4 +1,6 @@
 //! The timer: its counts, its longest and shortest wait, and the choice of the prescaler.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use crate::error::TableError;
 use schemars::JsonSchema;

@@ -1,4 +1,6 @@
 //! Checks one axis edge by edge, in constant memory.
+//!
+//! Transcripts in tests/ quote the messages.
 
 use crate::edge::{Pin, PinChange};
 use crate::ideal::{NS, PS, curvature_ps, due_ps, lateness_ps, moment, phase_ps, tick_ps};

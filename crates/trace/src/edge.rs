@@ -1,4 +1,6 @@
 //! The interface between captures and their consumers: pin changes in order of time.
+//!
+//! The texts of [`Pin`] are names of signals in captures and may not change.
 
 use crate::error::TraceError;
 use schemars::JsonSchema;

@@ -44,11 +44,11 @@ pub struct AxisReport {
     pub axis: String,
     /// Whether there is no failure.
     pub passed: bool,
-    /// Number of pulses in the move.
+    /// Number of pulses that the moves require.
     pub pulses_expected: u64,
     /// Number of rising edges of STEP.
     pub pulses_found: u64,
-    /// Steps forward minus steps backward in the move.
+    /// Steps forward minus steps backward that the moves require.
     pub position_expected: i64,
     /// Steps forward minus steps backward on the pins.
     pub position_found: i64,

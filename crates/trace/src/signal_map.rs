@@ -1,4 +1,6 @@
 //! Finds the signal of a capture for each pin.
+//!
+//! The names of carrystep's own signals are those that `waves.rs` writes.
 
 use crate::edge::Pin;
 use crate::error::ReadError;

@@ -1,4 +1,6 @@
 //! Computes V of one axis' accumulator at any tick, exactly, from its segments.
+//!
+//! This repeats the arithmetic of the gateware in closed form; both may change only together.
 
 use carrystep_spec::Segment;
 use std::fmt;

@@ -1,4 +1,6 @@
 //! Writes a VCD of pins and positions only, for a board whose moves are not known to the writer.
+//!
+//! The names of the signals are those of `waves.rs`.
 
 use crate::edge::{Pin, PinChange, PinSink};
 use crate::error::TraceError;

@@ -3,6 +3,8 @@
 //! Integers are values of the gateware, and reals those of the profile, so that a viewer can draw
 //! one over the other. All times are those of the pins: V is shown by the latency L later than in
 //! the register, directly above the edges that it causes.
+//!
+//! The names of the signals may not change: signal maps and save files refer to them.
 
 use crate::edge::{Pin, PinChange, PinSink};
 use crate::error::TraceError;

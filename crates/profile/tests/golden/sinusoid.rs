@@ -94,9 +94,8 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The golden numbers of this test have 16 digits, and an error of 10^-7 is a difference of numbers
-/// near
-/// 1. The tolerance is therefore 10^-9.
+/// The golden numbers of this test have 16 digits, and an error of 10^-7 is the difference of two
+/// numbers near 1, so that the tolerance is 10^-9.
 #[test]
 fn interpolation_error_of_a_small_table_equals_the_golden_numbers() {
     let (golden, ramp) = example();

@@ -1,4 +1,6 @@
 //! Draws the four panels of the picture.
+//!
+//! The look may change freely.
 
 use super::sampled::{Point, Sampled};
 use super::{Area, Clock, GREY, GRID, INK, PictureError, colour, failed, label, number, px, right_label, stroke};

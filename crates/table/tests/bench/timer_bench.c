@@ -1,8 +1,8 @@
 /* Plays moves on a simulated compare timer, which counts one clock at a time.
  *
  * timer_bench LATENCY MOVE...   Each MOVE is STEPS or STEPS:STOP; the bench stops the latter at
- * pulse STOP. For each move it prints the clock of every pulse and then "end". The interrupt handler runs
- * LATENCY counts after its match. */
+ * pulse STOP. For each move it prints the clock of every pulse and then "end". The interrupt
+ * handler runs LATENCY counts after its match. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
