@@ -8,8 +8,8 @@ use carrystep_spec::Timebase;
 /// The search ends when the interval of the longest time is narrower than this factor.
 const CLOSE: f64 = 1.003;
 
-/// Searches, by bisection on a logarithmic scale, for the longest time for which `works` is true. It
-/// lies between `shortest` seconds, which works, and `longest` seconds, which does not.
+/// Searches, by bisection on a logarithmic scale, for the longest time for which `works` is true.
+/// It lies between `shortest` seconds, which works, and `longest` seconds, which does not.
 ///
 /// Candidates have three significant digits and are whole ticks, so that a user can copy the
 /// result. The result itself has been tried; `None` means that no candidate worked.
