@@ -164,9 +164,9 @@ impl<F: Real> Corridor<'_, F> {
         Samples { start: alternating([0, 2, 4, 6]), standing: 0 }
     }
 
-    /// Bounds the error at the end of a stretch, where the next one starts with it. The bound holds
-    /// at the speed of the next edge, which may come before the next stretch has reached its own
-    /// speed.
+    /// Bounds the error at the end of a stretch, because the next stretch starts with it. The bound
+    /// is the distance that the axis travels in the fraction [`JOINT`] of the tolerance, at the
+    /// speed there or at the next edge, whichever is greater. At rest it is [`AT_REST`] steps.
     fn joint(&self, rows: &mut Vec<Row>, stretch: Stretch, until: u64) {
         let Stretch { first, ticks, done } = stretch;
         let n = ticks as f64;
