@@ -1,4 +1,6 @@
-//! The check of one axis, edge by edge, in constant memory.
+//! Checks one axis edge by edge, in constant memory.
+//!
+//! Transcripts in tests/ quote the messages.
 
 use crate::edge::{Pin, PinChange};
 use crate::ideal::{NS, PS, curvature_ps, due_ps, lateness_ps, moment, phase_ps, tick_ps};
@@ -10,30 +12,32 @@ use carrystep_core::{StartPhase, Timebase};
 use carrystep_files::Unit;
 use carrystep_profile::{Crossing, Timeline};
 
-/// What one axis is checked against.
+/// The values against which one axis is checked.
 #[derive(Debug, Clone, Copy)]
 pub struct AxisSetup<'a> {
-    /// Its name, for the report.
+    /// The name of the axis in the report.
     pub name: &'a str,
-    /// What it is measured in, for people; without it they read steps.
+    /// The unit of the axis in messages; `None`: steps.
     pub unit: Option<&'a Unit>,
     /// The float profile of all moves.
     pub timeline: &'a Timeline,
-    /// What the driver asks for, ns: width, gap, set-up, hold.
+    /// The required pin times of the driver, ns: width, gap, set-up, hold.
     pub pins_ns: [u64; 4],
-    /// Pulses that all moves together take.
+    /// Number of pulses of all moves together.
     pub expected_pulses: u64,
-    /// Steps forward less steps back after all moves.
+    /// Steps forward minus steps backward after all moves.
     pub expected_position: i64,
 }
 
-/// Times are rounded to ps and P to 32 bits; neither can add up to this, in ps.
+/// Allowance for rounding, ps. Times are rounded to ps and P to 32 bits; together both stay below
+/// it.
 const ROUNDING_PS: f64 = 2000.0;
 
-/// Failures of single pulses that are spelled out for each axis; the rest is counted.
+/// The number of failures of single pulses that get a message for each axis. The others are only
+/// counted.
 const SPELLED_OUT: usize = 8;
 
-/// A pulse that has found its crossing.
+/// A pulse that has been paired with its crossing.
 #[derive(Clone, Copy)]
 struct Paired {
     ps: u64,
@@ -46,17 +50,17 @@ fn greater(old: Option<f64>, new: f64) -> Option<f64> {
     Some(old.map_or(new, |old| old.max(new)))
 }
 
-/// The state of one axis' check.
+/// The state of the check of one axis.
 pub(crate) struct AxisCheck<'a> {
     setup: AxisSetup<'a>,
     timebase: Timebase,
     slack_ps: f64,
-    /// The greatest tolerance of a fit.
+    /// The greatest tolerance of a fit, ps.
     fit_ps: f64,
     crossings: Box<dyn Iterator<Item = Crossing> + 'a>,
-    /// The next two crossings: a missing pulse shows by the edge being nearer to the second.
+    /// The next two crossings. If an edge is nearer to the second one, a pulse is missing.
     next: [Option<Crossing>; 2],
-    /// Number of the crossing in `next[0]`, from 1.
+    /// Number of the crossing in `next[0]`, counted from 1.
     number: u64,
     watch: PinWatch,
     position: i64,
@@ -67,10 +71,10 @@ pub(crate) struct AxisCheck<'a> {
     jitter_ps: Option<f64>,
     ripple: Option<f64>,
     shortest_ideal_ps: f64,
-    /// What single pulses did wrong, as far as it is spelled out.
+    /// Messages about single pulses, at most [`SPELLED_OUT`].
     pulse_failures: Vec<String>,
     omitted: u64,
-    /// What is wrong as a whole: a handful at most.
+    /// Messages about the axis as a whole; there are only a few.
     failures: Vec<String>,
 }
 
@@ -119,7 +123,7 @@ impl<'a> AxisCheck<'a> {
         self.number += 1;
     }
 
-    /// The origin that would put an edge at `ps` exactly on this axis' first crossing.
+    /// The origin for which an edge at `ps` would be exactly at the first crossing of this axis.
     pub(crate) fn origin_for(&self, ps: u64) -> Option<i64> {
         let first = self.next[0].filter(|_| self.number == 1)?;
         i64::try_from(i128::from(ps) - due_ps(0, &first, tick_ps(&self.timebase))).ok()
@@ -132,8 +136,8 @@ impl<'a> AxisCheck<'a> {
         }
     }
 
-    /// Takes a change, and tells whether it is a pulse; `origin_ps` may still be an estimate, the same for all axes,
-    /// `sure` tells.
+    /// Takes a change, and returns whether it is a pulse. `origin_ps` is the same for all axes;
+    /// unless `sure`, it is only an estimate.
     pub(crate) fn change(&mut self, change: PinChange, origin_ps: i64, sure: bool) -> bool {
         let pulse = self.watch.change(change);
         if pulse {
@@ -173,7 +177,8 @@ impl<'a> AxisCheck<'a> {
         self.advance();
     }
 
-    /// Time since the last paired pulse on the pins, and what each of the next two crossings would make of it.
+    /// The time since the last paired pulse on the pins, and the period that the profile has up to
+    /// each of the next two crossings, all in ps.
     fn period(&self, ps: u64, origin_ps: i64, sure: bool) -> Option<(f64, [Option<f64>; 2])> {
         let tick = tick_ps(&self.timebase);
         let (since, lateness) = match self.last {
@@ -181,12 +186,13 @@ impl<'a> AxisCheck<'a> {
             None if sure => ((i128::from(ps) - i128::from(origin_ps)) as f64, 0.0),
             None => return None,
         };
-        // the period of the profile is the period on the pins less the change of lateness
+        // The period of the profile is the period on the pins minus the change of the lateness.
         let ideal = |c: Crossing| since - (lateness_ps(ps, origin_ps, &c, tick) - lateness);
         Some((since, self.next.map(|c| c.map(ideal))))
     }
 
-    /// A period may be off by this much before its edge is taken for another, ps: fitted, each of its two edges.
+    /// The allowed deviation of a period, ps, before its edge counts as an extra or a missing
+    /// pulse. A fit may shift both edges of the period.
     fn tolerance_ps(&self) -> f64 {
         phase_ps(&self.timebase) + self.slack_ps + 2.0 * self.fit_ps
     }
@@ -206,7 +212,7 @@ impl<'a> AxisCheck<'a> {
         }
     }
 
-    /// The next crossing has no pulse.
+    /// Records that the next crossing has no pulse.
     fn miss(&mut self, origin_ps: i64) {
         if let Some(crossing) = self.next[0] {
             let due = due_ps(origin_ps, &crossing, tick_ps(&self.timebase));
@@ -215,7 +221,7 @@ impl<'a> AxisCheck<'a> {
         }
     }
 
-    /// The capture is over, the profile is not.
+    /// Records the crossings that are left when the capture ends.
     fn miss_rest(&mut self, origin_ps: i64) {
         match self.next {
             [Some(first), Some(_)] => {
@@ -244,17 +250,17 @@ impl<'a> AxisCheck<'a> {
         self.last = Some(Paired { ps, lateness_ps, backward, crossing });
     }
 
-    /// Least and greatest lateness so far, in ps.
+    /// Least and greatest lateness so far, ps.
     pub(crate) fn range_ps(&self) -> Option<(f64, f64)> {
         Some((self.errors.min()?.value, self.errors.max()?.value))
     }
 
-    /// How late or early an edge may be, in ps.
+    /// The greatest allowed deviation of an edge from the profile, ps.
     pub(crate) fn bound_ps(&self) -> f64 {
         phase_ps(&self.timebase) + self.curvature_ps + self.fit_ps + ROUNDING_PS + self.slack_ps
     }
 
-    /// Judges; `origin_ps` is what all changes were given, `shift_ps` is added to it.
+    /// Judges the axis. All changes were taken with `origin_ps`; `shift_ps` is added to it now.
     pub(crate) fn finish(mut self, origin_ps: i64, shift_ps: i64, line: Option<Off>) -> AxisReport {
         if self.watch.step() {
             self.fail("STEP is still high when the capture ends");

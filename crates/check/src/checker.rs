@@ -1,9 +1,9 @@
-//! The pulse-train checker: it knows the float profile and sees pin edges, nothing else.
+//! The checker of pulse trains. It knows the float profile and the pin edges, and nothing else.
 //!
-//! For the k-th rising STEP of an axis, e = m - t, where m is the time of the edge less the origin and
-//! t the time at which the profile crosses the k-th step. Everything is judged from a stream, in
-//! constant memory; a pulse that is missing or one too many is named where it happens, and the pulses
-//! behind it are still compared with the crossings they belong to.
+//! For the k-th rising edge of STEP of an axis, e = m - t, where m is the time of the edge minus
+//! the origin, and t the time at which the profile crosses the k-th step. The capture is judged as
+//! a stream, in constant memory. A missing or extra pulse is reported where it occurs, and the
+//! pulses after it are still compared with the crossings to which they belong.
 
 use crate::axis_check::{AxisCheck, AxisSetup};
 use crate::edge::{PinChange, PinSink};
@@ -14,47 +14,49 @@ use carrystep_core::{StartPhase, Timebase};
 use carrystep_profile::Line;
 use std::fmt;
 
-/// Where the times of a capture are counted from.
+/// The time of a capture from which all times are counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
-    /// Our own capture: the load of the first move plus the latency L, in ps of the capture.
+    /// The origin of a capture by carrystep: the load of the first move plus the latency L.
     Known {
-        /// ps of the capture.
+        /// Time of the origin, ps of the capture.
         ps: i64,
     },
-    /// A foreign capture: one offset for all axes, the midpoint of least and greatest error.
-    /// An offset for each axis would hide a late axis.
+    /// The origin of a foreign capture: one offset for all axes, chosen as the midpoint of the
+    /// least and the greatest error. An offset for each axis would hide an axis that is late.
     Midpoint,
-    /// As the user says.
+    /// An origin that the user gives.
     Fixed {
-        /// ps of the capture.
+        /// Time of the origin, ps of the capture.
         ps: i64,
     },
 }
 
-/// What a capture is checked against.
+/// The values against which a capture is checked.
 #[derive(Debug, Clone)]
 pub struct Setup<'a> {
     /// Clock, tick and phases of the gateware.
     pub timebase: Timebase,
-    /// Where in a step the moves start.
+    /// The position in a step at which the moves start.
     pub phase: StartPhase,
     /// The axes, in the order of their numbers.
     pub axes: Vec<AxisSetup<'a>>,
     /// The moves in which the axes keep to a straight line.
     pub lines: Vec<Line>,
-    /// Where times are counted from.
+    /// The time from which times are counted.
     pub origin: Origin,
-    /// Uncertainty of the capture's times in ps (a logic analyser's sample period); 0 for a simulator.
+    /// Uncertainty of the capture's times, ps: the sample period of a logic analyser, or 0 for a
+    /// simulator.
     pub slack_ps: u64,
 }
 
-/// Checks a capture as it streams by.
+/// Checks a capture from a stream of pin changes.
 pub struct Checker<'a> {
     axes: Vec<AxisCheck<'a>>,
     lines: LinesCheck,
     origin: Origin,
-    /// The origin that errors are counted from meanwhile; a foreign capture's comes with its first pulse.
+    /// The origin of all errors until the end of the capture, ps. For a foreign capture it is
+    /// estimated from the first pulse.
     base_ps: Option<i64>,
     slack_ps: u64,
     phase_ns: f64,
@@ -67,7 +69,7 @@ impl fmt::Debug for Checker<'_> {
 }
 
 impl<'a> Checker<'a> {
-    /// A checker that has seen nothing yet.
+    /// A checker that has not seen any change.
     pub fn new(setup: Setup<'a>) -> Self {
         let Setup { timebase, phase, axes, lines, origin, slack_ps } = setup;
         let lines = LinesCheck::new(lines, phase, axes.len());
@@ -80,7 +82,7 @@ impl<'a> Checker<'a> {
         Self { axes, lines, origin, base_ps, slack_ps, phase_ns }
     }
 
-    /// The verdict: the capture is over.
+    /// Ends the check and returns the report.
     pub fn finish(self) -> Report {
         let base = self.base_ps.unwrap_or(0);
         let kind = match self.origin {
@@ -103,7 +105,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The middle of least and greatest lateness over all axes, in whole ps.
+/// The midpoint of the least and the greatest lateness over all axes, in whole ps.
 fn midpoint(axes: &[AxisCheck<'_>]) -> i64 {
     let ranges = axes.iter().filter_map(AxisCheck::range_ps);
     let whole = ranges.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));

@@ -1,4 +1,6 @@
-//! Time and speed of every pulse, as the article's program prints them.
+//! Writes time and speed of every pulse as CSV, like the program of the article.
+//!
+//! The names of the columns are part of the command's interface.
 
 use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
@@ -10,11 +12,12 @@ use std::io::Write;
 
 const HEAD: [&str; 6] = ["axis", "pulse", "time_s", "speed_steps_per_s", "direction", "error_ns"];
 
-/// Writes a line for every rising STEP:
+/// Writes a line for every rising edge of STEP, with the columns
 /// `axis,pulse,time_s,speed_steps_per_s,direction,error_ns`.
 ///
-/// Times count from the origin. The speed is that of the period which the pulse ends, without sign;
-/// it is empty for the first pulse of a direction. The error is empty beyond the profile's last pulse.
+/// Times count from the origin. The speed is that of the period which the pulse ends, without a
+/// sign; it is empty for the first pulse of a direction. The error is empty beyond the profile's
+/// last pulse.
 pub struct CsvWriter<'a, W: Write> {
     out: csv::Writer<W>,
     origin_ps: i64,
@@ -29,7 +32,8 @@ impl<W: Write> fmt::Debug for CsvWriter<'_, W> {
 }
 
 impl<'a, W: Write> CsvWriter<'a, W> {
-    /// A writer for these axes, by name and profile; `origin_ps` is the load of the first move plus L.
+    /// A writer for these axes, by name and profile. `origin_ps` is the load of the first move plus
+    /// the latency L, ps of the capture.
     pub fn new(
         out: W,
         timebase: &Timebase,
@@ -64,7 +68,7 @@ impl<'a, W: Write> CsvWriter<'a, W> {
     }
 }
 
-/// Exact: no float between ps and the text.
+/// Formats ps as seconds exactly, without a float.
 fn seconds(ps: i128) -> String {
     const SECOND: u128 = 1_000_000_000_000;
     let sign = if ps < 0 { "-" } else { "" };
@@ -100,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn seconds_are_exact() {
+    fn seconds_are_formatted_exactly() {
         assert_eq!(seconds(1), "0.000000000001");
         assert_eq!(seconds(3_600_000_000_000_001), "3600.000000000001");
         assert_eq!(seconds(-1_500_000_000_000), "-1.500000000000");

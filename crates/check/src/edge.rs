@@ -1,4 +1,6 @@
-//! What every consumer of a capture sees: pins that change, in time order.
+//! The interface between captures and their consumers: pin changes in order of time.
+//!
+//! The texts of [`Pin`] are names of signals in captures and may not change.
 
 use crate::error::TraceError;
 use schemars::JsonSchema;
@@ -9,9 +11,9 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pin {
-    /// A rising edge is one step.
+    /// STEP: a rising edge is one step.
     Step,
-    /// Low is forward, high is backward.
+    /// DIR: low is forward, high is backward.
     Dir,
 }
 
@@ -24,43 +26,44 @@ impl fmt::Display for Pin {
     }
 }
 
-/// One pin takes a new level.
+/// The change of one pin to a new level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PinChange {
-    /// When, in ps from the start of the capture.
+    /// Time of the change, ps from the start of the capture.
     pub ps: u64,
-    /// Axis number, from 0.
+    /// Number of the axis, counted from 0.
     pub axis: u8,
-    /// Which pin.
+    /// The pin that changes.
     pub pin: Pin,
-    /// The level from now on.
+    /// The new level.
     pub level: bool,
 }
 
-/// A consumer of pin changes; memory stays bounded however long the capture is.
+/// A consumer of pin changes. Its memory stays bounded, however long the capture is.
 ///
-/// Calls come in this order: any number of [`initial`](Self::initial), any number of
-/// [`change`](Self::change) with `ps` never falling, one [`end`](Self::end).
+/// The calls come in this order: any number of [`initial`](Self::initial), any number of
+/// [`change`](Self::change) in which `ps` never falls, and one [`end`](Self::end).
 pub trait PinSink {
-    /// The level that a pin has when the capture begins. It is no edge; a pin not named is low.
+    /// Sets the level of a pin at the start of the capture. This is not an edge; a pin without such
+    /// a call is low.
     ///
     /// # Errors
-    /// The sink cannot write.
+    /// A [`TraceError`] if the sink cannot write.
     fn initial(&mut self, level: PinChange) -> Result<(), TraceError> {
         let _ = level;
         Ok(())
     }
 
-    /// A pin changes its level.
+    /// Takes the change of a pin.
     ///
     /// # Errors
-    /// The sink cannot write.
+    /// A [`TraceError`] if the sink cannot write.
     fn change(&mut self, change: PinChange) -> Result<(), TraceError>;
 
-    /// The capture is over at `ps`.
+    /// Ends the capture at `ps`.
     ///
     /// # Errors
-    /// The sink cannot write.
+    /// A [`TraceError`] if the sink cannot write.
     fn end(&mut self, ps: u64) -> Result<(), TraceError> {
         let _ = ps;
         Ok(())
@@ -81,7 +84,7 @@ impl<S: PinSink + ?Sized> PinSink for &mut S {
     }
 }
 
-/// Keeps every change: for tests and short captures.
+/// Keeps every change in memory, for tests and short captures.
 impl PinSink for Vec<PinChange> {
     fn change(&mut self, change: PinChange) -> Result<(), TraceError> {
         self.push(change);
@@ -96,12 +99,12 @@ pub struct Tee<'a> {
 }
 
 impl<'a> Tee<'a> {
-    /// A tee without branches; everything it hears is lost.
+    /// A tee without sinks, which discards everything.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// One branch more.
+    /// Adds a sink.
     pub fn add(&mut self, sink: &'a mut dyn PinSink) {
         self.sinks.push(sink);
     }

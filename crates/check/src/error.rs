@@ -1,4 +1,6 @@
-//! What can go wrong with a capture or with what is written about it.
+//! The errors of reading captures and of writing outputs.
+//!
+//! The messages are part of the command's interface: transcripts in tests/ quote them.
 
 use std::io;
 use thiserror::Error;
@@ -13,15 +15,15 @@ pub enum TraceError {
     /// A file cannot be written.
     #[error("cannot write {what}: {source}")]
     Write {
-        /// VCD, CSV, ...
+        /// The kind of file: VCD, CSV and so on.
         what: &'static str,
-        /// Why.
+        /// The error of the system.
         source: io::Error,
     },
     /// A picture cannot be drawn.
     #[error("cannot draw the plot: {0}")]
     Plot(String),
-    /// A save file cannot be made from its template.
+    /// A save file cannot be rendered from its template.
     #[error("cannot make the GTKWave save file: {0}")]
     Template(#[from] minijinja::Error),
 }
@@ -39,91 +41,91 @@ pub enum ReadError {
     /// The file itself cannot be read.
     #[error("cannot read the capture: {0}")]
     Io(#[source] io::Error),
-    /// It is not VCD.
+    /// The file is not a VCD.
     #[error("line {line} of the capture: {message}")]
     Syntax {
-        /// Line, from 1.
+        /// Line, counted from 1.
         line: u64,
-        /// What is wrong.
+        /// What is wrong, in words.
         message: String,
     },
-    /// It ends too early.
+    /// The file ends too early.
     #[error("the capture is cut off at line {line}: {missing}")]
     Truncated {
-        /// Line, from 1.
+        /// Line, counted from 1.
         line: u64,
-        /// What should have come.
+        /// The part that is missing, in words.
         missing: &'static str,
     },
-    /// There is no `$timescale`.
+    /// The file has no `$timescale`.
     #[error("the capture has no $timescale: its unit of time is unknown")]
     NoTimescale,
-    /// A unit of time that VCD does not have.
+    /// The `$timescale` has a number that VCD does not allow.
     #[error("line {line} of the capture: a $timescale of {quantity}; VCD has 1, 10 and 100")]
     Timescale {
-        /// Line, from 1.
+        /// Line, counted from 1.
         line: u64,
-        /// So many ps, ns, ...
+        /// The number in front of the unit.
         quantity: u32,
     },
-    /// A signal that is no pin, or a vector that is not one pin an axis.
+    /// A signal is too wide for a pin, or a vector does not have one pin per axis.
     #[error("the signal {signal} of the capture has {bits} bits, {wanted}; name a bit of it with --map")]
     Width {
-        /// Its path.
+        /// The path of the signal.
         signal: String,
-        /// As the capture declares it.
+        /// Its width in the capture, bits.
         bits: u32,
-        /// What it should have.
+        /// The required width, in words.
         wanted: String,
     },
-    /// A time before the one that came last.
+    /// A time is before the previous one.
     #[error("line {line} of the capture: time goes back from {from} to {to}")]
     TimeBackwards {
-        /// Line, from 1.
+        /// Line, counted from 1.
         line: u64,
-        /// The time that was reached, in the file's unit.
+        /// The previous time, in the file's unit.
         from: u64,
-        /// The time that follows it.
+        /// The time that follows it, in the file's unit.
         to: u64,
     },
-    /// A time that does not fit into 64 bits of ps.
+    /// A time does not fit into 64 bits of ps.
     #[error("line {line} of the capture: time {time} is more than half a year")]
     TimeRange {
-        /// Line, from 1.
+        /// Line, counted from 1.
         line: u64,
         /// The time, in the file's unit.
         time: u64,
     },
-    /// A signal that was asked for is not there.
+    /// A required signal is missing.
     #[error("the capture has no signal {wanted}; {}", candidates(.found))]
     NoSignal {
-        /// What was looked for.
+        /// The signal that is missing.
         wanted: String,
-        /// Some of what is there.
+        /// Some of the signals in the capture.
         found: Vec<String>,
     },
-    /// Several signals fit.
+    /// Several signals match.
     #[error("several signals of the capture could be {wanted}: {}; name one", .found.join(", "))]
     Ambiguous {
-        /// What was looked for.
+        /// The signal that was searched.
         wanted: String,
-        /// What fits.
+        /// The signals that match.
         found: Vec<String>,
     },
-    /// A `$scope` that never ends, or one too deep to be real.
+    /// Scopes are nested too deeply; a `$scope` may lack its end.
     #[error("line {line} of the capture: scopes nested deeper than {limit}")]
     Depth {
-        /// Line, from 1.
+        /// Line, counted from 1.
         line: u64,
-        /// The greatest depth.
+        /// The greatest permitted depth.
         limit: usize,
     },
-    /// A line of an explicit map of signals that cannot be understood.
+    /// An entry of the signal map cannot be understood.
     #[error("signal map '{entry}': {message}")]
     Map {
-        /// The line.
+        /// The entry.
         entry: String,
-        /// What is wrong with it.
+        /// What is wrong with it, in words.
         message: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Pulse after pulse of one axis beside the profile: what the waveform, the CSV and the plot show.
+//! Follows one axis pulse by pulse beside its profile, for the waveform, the CSV and the plot.
 
 use crate::edge::{Pin, PinChange};
 use crate::ideal::{lateness_ps, tick_ps};
@@ -6,25 +6,25 @@ use carrystep_core::{StartPhase, Timebase};
 use carrystep_profile::{Crossing, Timeline};
 use std::fmt;
 
-/// One pulse as the pins show it.
+/// One pulse on the pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pulse {
-    /// Its number on this axis, from 1.
+    /// Number of the pulse on this axis, counted from 1.
     pub number: u64,
-    /// When STEP rose, in ps of the capture.
+    /// Time of the rising edge of STEP, ps of the capture.
     pub ps: u64,
-    /// DIR at that time.
+    /// The level of DIR at that time; true is backward.
     pub backward: bool,
-    /// Steps forward less steps back, this one included.
+    /// Steps forward minus steps backward, with this pulse.
     pub position: i64,
-    /// How late it is against the profile, in ns; `None` beyond the profile's last pulse.
+    /// Lateness against the profile, ns; negative is early. `None` beyond the profile's last pulse.
     pub error_ns: Option<f64>,
-    /// Time since the pulse before in ps, where that went the same way.
+    /// Time since the previous pulse, ps; `None` for the first pulse and after a reversal.
     pub period_ps: Option<u64>,
 }
 
 impl Pulse {
-    /// Speed over the period that this pulse ends, in steps/s, negative backward.
+    /// Speed over the period that this pulse ends, steps/s; negative is backward.
     pub fn speed(&self) -> Option<f64> {
         let period = self.period_ps.filter(|&ps| ps > 0)?;
         let speed = 1e12 / period as f64;
@@ -49,13 +49,14 @@ impl fmt::Debug for Follower<'_> {
 }
 
 impl<'a> Follower<'a> {
-    /// Follows one axis; `origin_ps` is the load of the first move plus the latency L.
+    /// Follows one axis. `origin_ps` is the load of the first move plus the latency L, ps of the
+    /// capture.
     pub fn new(timeline: &'a Timeline, phase: StartPhase, timebase: &Timebase, origin_ps: i64) -> Self {
         let crossings = Box::new(timeline.crossings(phase));
         Self { crossings, origin_ps, tick_ps: tick_ps(timebase), step: false, dir: false, last: None }
     }
 
-    /// The level that a pin has when the capture begins.
+    /// Sets the level of a pin at the start of the capture.
     pub fn initial(&mut self, pin: Pin, level: bool) {
         match pin {
             Pin::Step => self.step = level,
@@ -63,7 +64,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Takes a change of this axis; the pulse, where STEP rises.
+    /// Takes a change of this axis. Returns the pulse if STEP rises.
     pub fn change(&mut self, change: PinChange) -> Option<Pulse> {
         let rises = change.pin == Pin::Step && change.level && !self.step;
         self.initial(change.pin, change.level);

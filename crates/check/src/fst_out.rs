@@ -1,4 +1,6 @@
-//! The waveform as FST, which GTKWave opens at once however long it is.
+//! Writes the waveform as FST, which GTKWave opens quickly however long it is.
+//!
+//! `waves.rs` decides what is written and when; this file only holds the file format.
 
 use crate::vcd_own::OwnCapture;
 use crate::waves::{Format, SCOPE, SIGNALS, VERSION, WaveWriter, Waves};
@@ -8,30 +10,30 @@ use fst_writer::{
 };
 use std::io::{self, Seek, Write};
 
-/// Changes are kept in memory up to so many bytes, then written as a block.
+/// Changes are kept in memory up to this many bytes and then written as a block.
 const BLOCK: usize = 1 << 20;
 
-/// An FST that is being written.
+/// An FST file that is being written.
 pub struct FstFormat<W: Write + Seek>(State<W>);
 
 enum State<W: Write + Seek> {
     New(W),
     Body(Box<FstBodyWriter<W>>),
-    /// Whole, or broken off.
+    /// The file is complete, or writing has failed.
     Over,
 }
 
-/// Writes an FST as pin changes stream by.
+/// Writes an FST from a stream of pin changes.
 pub type FstWriter<'a, W> = WaveWriter<'a, FstFormat<W>>;
 
 impl<'a, W: Write + Seek> FstWriter<'a, W> {
-    /// A writer that has written nothing yet: the header follows with the first change.
+    /// A writer that has not written anything. It writes the header with the first change.
     pub fn new(out: W, waves: Waves<'a>) -> Self {
         Self::of(FstFormat(State::New(out)), waves)
     }
 }
 
-/// What the system says, where it was asked.
+/// Converts an error of the library; an error of the system is passed on unchanged.
 fn told(error: FstWriteError) -> io::Error {
     match error {
         FstWriteError::Io(error) => error,
@@ -60,7 +62,8 @@ impl<W: Write + Seek> Format for FstFormat<W> {
             start_time: 0,
             timescale_exponent: -12,
             version: format!("{VERSION}: {own}"),
-            date: String::new(), // the same run is the same file
+            // The date is left empty, so that the same run gives the same file.
+            date: String::new(),
             file_type: FstFileType::Verilog,
         };
         let mut header = FstHeaderWriter::new(out, &info).map_err(told)?;
@@ -82,14 +85,14 @@ impl<W: Write + Seek> Format for FstFormat<W> {
         }
         header.up_scope().map_err(told)?;
         let mut body = header.finish().map_err(told)?;
-        // A viewer that interpolates needs both ends of a level.
+        // A viewer that interpolates needs both ends of a level, so repeated values are kept.
         body.set_deduplicate(false);
         self.0 = State::Body(Box::new(body));
         Ok(all)
     }
 
     fn initial(&mut self, values: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()> {
-        // What comes before the first time is what a block begins with.
+        // A block begins with the values that are written before its first time.
         values(self)?;
         self.time(0)
     }

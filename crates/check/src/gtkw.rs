@@ -1,7 +1,7 @@
-//! A GTKWave save file for the VCD that [`VcdWriter`](crate::VcdWriter) writes.
+//! Writes a GTKWave save file for the VCD that [`VcdWriter`](crate::VcdWriter) writes.
 //!
-//! GTKWave drops a name that does not match without a word, so every name comes from the writer's own
-//! table, range included.
+//! GTKWave ignores a name that is not in the VCD, without a message. Every name therefore comes
+//! from the writer's own table, with its range.
 
 use crate::error::TraceError;
 use crate::waves::{SCOPE, SIGNALS};
@@ -12,9 +12,11 @@ const TEMPLATE: &str = include_str!("../templates/gtkwave.gtkw");
 /// Width of the wave area in the window of the template, in GTKWave's frames of 200 pixels.
 const FRAMES: f64 = 4.7;
 
-/// How a signal is drawn: the flags of a `@` line, a colour, and blank rows that give it height.
+/// How a signal is drawn: the flags of a `@` line, a colour, and the blank rows that give it
+/// height.
 fn trace(axis: &str, name: &str, bits: u32) -> Value {
-    // 28 binary, 88420 signed analog step, 90020 real analog interpolated, both scaled to all data
+    // 28 is binary, 88420 a signed analog step, and 90020 a real that is interpolated. The latter
+    // two are scaled to all data.
     let (flags, colour, rows) = match name {
         "step" => ("28", 2, 0),
         "dir" => ("28", 3, 0),
@@ -27,16 +29,17 @@ fn trace(axis: &str, name: &str, bits: u32) -> Value {
     context! { name => format!("{SCOPE}.{axis}.{name}{range}"), flags, colour, rows }
 }
 
-/// The save file: a group for each axis, zoomed so that `end_ps` is in sight.
+/// Returns the text of the save file. It has a group for each axis, and its zoom shows the time up
+/// to `end_ps`.
 ///
-/// `vcd` is the VCD's name as it is seen from the save file's folder.
+/// `vcd` is the name of the VCD, relative to the folder of the save file.
 ///
 /// # Errors
-/// The template cannot be rendered.
+/// [`TraceError::Template`] if the template cannot be rendered.
 pub fn save_file(vcd: &str, axes: &[&str], end_ps: u64) -> Result<String, TraceError> {
     let traces = |axis| SIGNALS.iter().map(|&(name, bits)| trace(axis, name, bits)).collect::<Vec<Value>>();
     let groups: Vec<Value> = axes.iter().map(|&axis| context! { name => axis, traces => traces(axis) }).collect();
-    // GTKWave draws 2^-zoom units of time in a frame
+    // GTKWave draws 2^-zoom units of time in a frame.
     let zoom = -(end_ps.max(1) as f64 / FRAMES).log2();
     let text = Environment::new()
         .render_str(TEMPLATE, context! { vcd, groups, scope => SCOPE, zoom => format!("{zoom:.6}") })?;

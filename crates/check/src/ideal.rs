@@ -1,4 +1,4 @@
-//! Where the float profile would have each edge, measured against the edge that is there.
+//! Computes the times at which the float profile crosses each step, and compares edges with them.
 
 use carrystep_core::Timebase;
 use carrystep_profile::Crossing;
@@ -9,47 +9,49 @@ pub(crate) const PS: f64 = 1e12;
 /// Picoseconds in a nanosecond.
 pub(crate) const NS: f64 = 1e3;
 
-/// A tick in ps.
+/// Length of a tick, ps.
 pub(crate) const fn tick_ps(timebase: &Timebase) -> u64 {
     timebase.tick_ns() * 1000
 }
 
-/// A phase, h/Q, in ps.
+/// Length of a phase, h/Q, ps.
 pub(crate) fn phase_ps(timebase: &Timebase) -> f64 {
     tick_ps(timebase) as f64 / f64::from(timebase.phases())
 }
 
-/// Whole ps, and the rest that is less than half of one, from the move's load to the crossing.
+/// The time from the load of the move to the crossing: whole ps, and a rest of at most half a ps.
 fn due(crossing: &Crossing, tick_ps: u64) -> (i128, f64) {
     let whole = (crossing.seconds * PS).round();
     let rest = crossing.seconds.mul_add(PS, -whole);
-    // 64 bits hold 106 days; beyond them a cast stops at its ends.
+    // 64 bits hold 106 days in ps. A longer time saturates in the cast.
     (i128::from(crossing.start_tick) * i128::from(tick_ps) + i128::from(whole as i64), rest)
 }
 
-/// e = m - t in ps: how late a rising edge is. Integers are subtracted first, floats last.
+/// The lateness e = m - t of a rising edge, ps; negative is early. Integers are subtracted first
+/// and floats last, so that the result is exact to a fraction of a ps.
 pub(crate) fn lateness_ps(rise_ps: u64, origin_ps: i64, crossing: &Crossing, tick_ps: u64) -> f64 {
     let (whole, rest) = due(crossing, tick_ps);
     let late = i128::from(rise_ps) - i128::from(origin_ps) - whole;
-    // Nearly always 64 bits do, and are quicker.
+    // The difference nearly always fits into 64 bits, whose conversion to a float is faster.
     i64::try_from(late).map_or_else(|_| late as f64, |late| late as f64) - rest
 }
 
-/// The time in the capture, in whole ps, at which a crossing is due.
+/// The time at which a crossing is due, in whole ps of the capture.
 pub(crate) fn due_ps(origin_ps: i64, crossing: &Crossing, tick_ps: u64) -> i128 {
     i128::from(origin_ps) + due(crossing, tick_ps).0
 }
 
-/// How far, in ps, the straight line through one tick can move an edge off the parabola:
-/// h^2 |a| / (8 v), and never out of its tick.
+/// The greatest shift of an edge, ps, because the gateware interpolates linearly within a tick and
+/// the profile is a parabola: h^2 |a| / (8 v), but at most one tick.
 pub(crate) fn curvature_ps(crossing: &Crossing, timebase: &Timebase) -> f64 {
     let tick = timebase.tick_seconds();
     let shift = tick * tick * crossing.acceleration.abs() / (8.0 * crossing.speed);
-    // 0 / 0, a crossing at rest without acceleration, cannot be in a profile that moves
+    // The quotient 0 / 0 would be a crossing at rest without acceleration, which a moving profile
+    // does not have.
     if shift.is_nan() { tick * PS } else { shift.min(tick) * PS }
 }
 
-/// A time of the capture for a sentence.
+/// Formats a time of the capture for a message.
 pub(crate) fn moment(ps: impl Into<i128>) -> String {
     let ps = ps.into() as f64;
     match ps.abs() {
@@ -69,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picosecond_counts_after_an_hour() {
+    fn lateness_is_exact_to_a_picosecond_after_an_hour() {
         let (tick, hour) = (1_000_000_u64, 3_600_000_000_u64);
         for late in [-1_i64, 0, 1, 12_345] {
             let rise = (hour * tick + 123_456_789).strict_add_signed(late) + 7;
@@ -80,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn the_curvature_never_leaves_its_tick() {
+    fn curvature_is_at_most_one_tick() {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         let cases = [(100.0, 8e6, 1e4), (0.0, 1.0, 1e6), (0.0, 0.0, 1e6), (10.0, 0.0, 0.0)];
         for (speed, acceleration, ps) in cases {
@@ -90,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn moments_read_well() {
+    fn times_are_formatted_in_suitable_units() {
         let texts = [12_345, 12_345_678, 12_345_678_901, 1_234_567_890_123].map(|ps: u64| moment(ps));
         assert_eq!(texts, ["12.345 ns", "12.345678 us", "12.345678901 ms", "1.234567890 s"]);
     }

@@ -1,7 +1,8 @@
-//! Waveforms in and out, the pulse-train checker and its pictures.
+//! Reads and writes waveforms, checks pulse trains, and draws the result.
 //!
-//! Pin changes stream, in time order, from a simulator or a [`VcdReader`] into any number of
-//! [`PinSink`]s: the [`Checker`], the [`VcdWriter`] or [`FstWriter`], the CSV, the plot.
+//! A simulator or a [`VcdReader`] sends pin changes, in order of time, to any number of
+//! [`PinSink`]s: the [`Checker`], the [`VcdWriter`] or [`FstWriter`], the [`CsvWriter`] and the
+//! [`Plot`]. The modules are private; the public items are listed below.
 
 mod axis_check;
 mod checker;

@@ -1,18 +1,20 @@
-//! How far off their common line axes are, from nothing but how many pulses each of them has made.
+//! Checks how far the axes are off their common line, only from the number of pulses of each axis.
 //!
-//! An axis that has made c of its n steps is where the line is at c / n, give or take half a step and what it travels
-//! while its edges are late or early. There is a point of the line that near to all axes if there is one for each two
-//! of them, and that is asked after every pulse, in whole numbers.
+//! An axis that has made c of its n steps is where the line is at c / n, within half a step and the
+//! distance that it travels while its edges are late or early. A point of the line is that near to
+//! all axes if there is such a point for each pair of axes. The pairs are compared after every
+//! pulse, in whole numbers.
 
 use carrystep_core::StartPhase;
 use carrystep_profile::Line;
 
-/// An axis at its worst on one line.
+/// The greatest deviation of an axis on one line.
 #[derive(Debug, Clone, Copy)]
 struct Worst {
-    /// Part of the line beyond half a step of either axis: negative if they are nearer.
+    /// Deviation beyond half a step of both axes, as a fraction of the line; negative if they are
+    /// nearer.
     beyond: f64,
-    /// Its pulse, or that of the other axis.
+    /// Number of the pulse of this axis or of the other one after which it occurred.
     pulse: u64,
 }
 
@@ -23,14 +25,14 @@ struct LineCheck {
     worst: Vec<Option<Worst>>,
 }
 
-/// How far off the line an axis has been.
+/// How far an axis was off its line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Off {
-    /// Steps, at its worst.
+    /// The greatest deviation, steps.
     pub steps: f64,
-    /// Steps that it may be off.
+    /// The allowed deviation, steps.
     pub bound: f64,
-    /// The number of the pulse, on any axis, after which that was so.
+    /// Number of the pulse, on any axis, after which the greatest deviation occurred.
     pub pulse: u64,
 }
 
@@ -59,7 +61,8 @@ impl LinesCheck {
         }
     }
 
-    /// Where an axis has come nearest to its bound, edges being off by up to `seconds`; `None` if it is in no line.
+    /// The deviation of an axis that came nearest to its bound, if edges may be off by up to
+    /// `seconds`; `None` if the axis is not part of any line.
     pub(crate) fn off(&self, axis: usize, seconds: f64) -> Option<Off> {
         let offs = self.lines.iter().filter_map(|LineCheck { line, worst }| {
             let Worst { beyond, pulse } = worst[axis]?;
@@ -71,7 +74,7 @@ impl LinesCheck {
 }
 
 impl LineCheck {
-    /// Compares the axis that has stepped with every other.
+    /// Compares the axis that has stepped with every other axis.
     fn measure(&mut self, axis: usize, pulses: &[u64], phase: StartPhase) {
         let (here, n) = self.place(axis, pulses, phase);
         for other in (0..pulses.len()).filter(|&other| other != axis && self.line.steps[other] != 0) {
@@ -86,12 +89,14 @@ impl LineCheck {
         }
     }
 
-    /// Half steps to where an axis stands in the middle, and its steps.
+    /// The middle of an axis' current place on the line, in half steps, and the number of its
+    /// steps.
     fn place(&self, axis: usize, pulses: &[u64], phase: StartPhase) -> (i128, i128) {
         let steps = self.line.steps[axis];
         let n = i128::from(steps.unsigned_abs());
         let done = i128::from(pulses[axis].saturating_sub(self.line.before[axis])).min(n);
-        // A pulse is due in the middle of its step, or at its end, which backward is its start.
+        // A pulse is due in the middle of its step, or at phase zero at its end, which is the start
+        // of the step for a backward move.
         let middle = match phase {
             StartPhase::Half => 0,
             StartPhase::Zero => i128::from(steps.signum()),
@@ -112,14 +117,16 @@ mod tests {
     }
 
     #[test]
-    fn a_line_in_its_order_is_within_half_a_step() {
-        // Pulses are due at 1/8, 3/8, 5/8, 7/8 and at 1/4, 3/4 of the line.
+    fn axes_in_the_order_of_the_line_stay_within_half_a_step() {
+        // Pulses are due at 1/8, 3/8, 5/8 and 7/8 of the line for the first axis, and at 1/4 and
+        // 3/4 for the second.
         assert!(check(&[0, 1, 0, 0, 1, 0]).steps <= 0.5);
     }
 
     #[test]
-    fn a_pulse_in_the_wrong_place_is_off() {
-        // The second axis a quarter of the line late: due at 1/4, it comes after the pulse at 3/8.
+    fn late_pulse_of_one_axis_is_off_the_line() {
+        // The second axis is a quarter of the line late: its pulse is due at 1/4, and comes after
+        // the pulse at 3/8 of the first axis.
         let late = check(&[0, 0, 1, 0, 1, 0]);
         assert!((late.steps - 0.75).abs() < 1e-12, "{late:?}");
         assert!((late.bound - 0.54).abs() < 1e-12, "{late:?}");

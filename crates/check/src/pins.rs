@@ -1,8 +1,9 @@
-//! Pin timings of one axis: the shortest high, low, set-up and hold that a capture shows.
+//! Measures the pin timing of one axis: the shortest high time, low time, set-up and hold in a
+//! capture.
 
 use crate::edge::{Pin, PinChange};
 
-/// What a driver asks for, or what a capture shows at its shortest, in ps.
+/// The shortest times that a capture shows, in ps; `None` if a time has not occurred.
 ///
 /// ```text
 /// DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
@@ -16,20 +17,20 @@ pub struct Shortest {
     pub high: Option<Stretch>,
     /// STEP low between two pulses.
     pub low: Option<Stretch>,
-    /// DIR stable before a rising STEP.
+    /// DIR stable before a rising edge of STEP.
     pub setup: Option<Stretch>,
-    /// DIR stable after a rising STEP.
+    /// DIR stable after a rising edge of STEP.
     pub hold: Option<Stretch>,
 }
 
-/// A measured time, and where it ends.
+/// A measured time, and the place at which it ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stretch {
-    /// Its length in ps.
+    /// Its length, ps.
     pub ps: u64,
-    /// The pulse that it belongs to, from 1.
+    /// The pulse to which it belongs, counted from 1.
     pub pulse: u64,
-    /// When it ends, in ps of the capture.
+    /// The time at which it ends, ps of the capture.
     pub end: u64,
 }
 
@@ -54,7 +55,7 @@ fn shorten(slot: &mut Option<Stretch>, from: Option<u64>, end: u64, pulse: u64) 
 }
 
 impl PinWatch {
-    /// The level that a pin has when the capture begins.
+    /// Sets the level of a pin at the start of the capture.
     pub fn initial(&mut self, pin: Pin, level: bool) {
         match pin {
             Pin::Step => self.step = level,
@@ -62,7 +63,7 @@ impl PinWatch {
         }
     }
 
-    /// Takes a change of either pin; true where it is a rising STEP.
+    /// Takes a change of either pin. Returns true for a rising edge of STEP.
     pub fn change(&mut self, change: PinChange) -> bool {
         let PinChange { ps, level, .. } = change;
         match (change.pin, level) {
@@ -81,7 +82,7 @@ impl PinWatch {
             }
             (Pin::Step, false) if self.step => {
                 self.step = false;
-                // a pulse that was high when the capture began has no known width
+                // The width of a pulse that was high when the capture began is unknown.
                 shorten(&mut self.shortest.high, self.rise, ps, self.pulses);
                 self.fall = Some(ps);
             }
@@ -90,22 +91,22 @@ impl PinWatch {
         false
     }
 
-    /// Level of STEP.
+    /// The level of STEP.
     pub fn step(&self) -> bool {
         self.step
     }
 
-    /// Level of DIR: true is backward.
+    /// The level of DIR; true is backward.
     pub fn backward(&self) -> bool {
         self.dir
     }
 
-    /// Rising edges so far.
+    /// Number of rising edges of STEP so far.
     pub fn pulses(&self) -> u64 {
         self.pulses
     }
 
-    /// The shortest of each so far.
+    /// The shortest times so far.
     pub fn shortest(&self) -> Shortest {
         self.shortest
     }
@@ -116,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_shortest_of_each_is_kept() {
+    fn shortest_time_of_each_kind_is_kept() {
         let mut watch = PinWatch::default();
         let mut at = |ps, pin, level| watch.change(PinChange { ps, axis: 0, pin, level });
         assert!(!at(100, Pin::Dir, true));
@@ -131,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_in_flight_at_the_start_has_no_width() {
+    fn pulse_that_is_high_at_the_start_has_no_width() {
         let mut watch = PinWatch::default();
         watch.initial(Pin::Step, true);
         watch.change(PinChange { ps: 5, axis: 0, pin: Pin::Step, level: false });

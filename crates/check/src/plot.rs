@@ -1,4 +1,6 @@
-//! Speed and error of every axis against time, as an SVG.
+//! Draws speed and error of every axis against time, as an SVG.
+//!
+//! This file collects the points; `plot/draw.rs` draws them.
 
 use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
@@ -12,21 +14,21 @@ use std::fmt;
 
 mod draw;
 
-/// Stretches that pulses are thinned out to; each keeps two points.
+/// Number of stretches of time to which the pulses are thinned out. Each keeps two points.
 const STRETCHES: usize = 400;
 
-/// What is drawn, beside the pulses.
+/// The values that the plot shows beside the pulses.
 #[derive(Debug, Clone)]
 pub struct PlotSetup<'a> {
     /// The heading.
     pub title: &'a str,
     /// Clock, tick and phases of the gateware.
     pub timebase: Timebase,
-    /// Where in a step the moves start.
+    /// The position in a step at which the moves start.
     pub phase: StartPhase,
-    /// The load of the first move plus the latency L, in ps of the capture.
+    /// The load of the first move plus the latency L, ps of the capture.
     pub origin_ps: i64,
-    /// Length of all moves together.
+    /// Length of all moves together, ticks.
     pub total_ticks: u64,
     /// The axes, in the order of their numbers.
     pub axes: Vec<PlotAxis<'a>>,
@@ -35,13 +37,13 @@ pub struct PlotSetup<'a> {
 /// One axis of a plot.
 #[derive(Debug, Clone, Copy)]
 pub struct PlotAxis<'a> {
-    /// Its name.
+    /// The name of the axis.
     pub name: &'a str,
-    /// The float profile, drawn as a line.
+    /// The float profile, which is drawn as a line.
     pub timeline: &'a Timeline,
 }
 
-/// Collects what the picture shows, thinned out, as pin changes stream by.
+/// Collects and thins out the points of the picture from a stream of pin changes.
 pub struct Plot<'a> {
     title: &'a str,
     origin_ps: i64,
@@ -54,9 +56,9 @@ pub struct Plot<'a> {
 struct Curves<'a> {
     axis: PlotAxis<'a>,
     follower: Follower<'a>,
-    /// Steps/s, signed, in the middle of each period.
+    /// Signed speed of each period, steps/s, at the middle of the period.
     speed: Thin,
-    /// ns at each pulse.
+    /// Error of each pulse, ns.
     error: Thin,
 }
 
@@ -67,7 +69,7 @@ impl fmt::Debug for Plot<'_> {
 }
 
 impl<'a> Plot<'a> {
-    /// A plot that has seen no pulse yet.
+    /// A plot that has not seen any pulse.
     pub fn new(setup: PlotSetup<'a>) -> Self {
         let PlotSetup { title, timebase, phase, origin_ps, total_ticks, axes } = setup;
         let span_s = total_ticks as f64 * tick_ps(&timebase) as f64 / PS;
@@ -81,10 +83,10 @@ impl<'a> Plot<'a> {
         Self { title, origin_ps, tick_seconds: timebase.tick_seconds(), span_s, axes }
     }
 
-    /// The picture; the bounds come from the report of the same capture.
+    /// Draws the picture. The bounds come from the report of the same capture.
     ///
     /// # Errors
-    /// The drawing library fails.
+    /// [`TraceError::Plot`] if the drawing library fails.
     pub fn svg(&self, report: &Report) -> Result<String, TraceError> {
         draw::svg(self, report)
     }

@@ -1,19 +1,22 @@
-//! What the checker found: figures with stable names, sentences, and a table for a terminal.
+//! The report of the checker: figures with stable names, messages, and a table for a terminal.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use carrystep_files::Unit;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
-/// Where the times of a capture are counted from.
+/// The time of a capture from which all times are counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum OriginKind {
-    /// Our own capture: the load of the first move plus the latency L.
+    /// A capture by carrystep: the load of the first move plus the latency L.
     Known,
-    /// A foreign capture: one offset for all axes, the midpoint of least and greatest error.
+    /// A foreign capture: one offset for all axes, the midpoint of the least and the greatest
+    /// error.
     Midpoint,
-    /// Given by the user.
+    /// An origin that the user gives.
     Fixed,
 }
 
@@ -22,83 +25,86 @@ pub enum OriginKind {
 pub struct Report {
     /// Whether every axis passed.
     pub passed: bool,
-    /// How the origin was found.
+    /// How the origin was determined.
     pub origin: OriginKind,
-    /// Time zero of the profile, in ps of the capture.
+    /// Time zero of the profile, ps of the capture.
     pub origin_ps: i64,
-    /// Uncertainty of the capture's times, ns: widens every bound.
+    /// Uncertainty of the capture's times, ns. It widens every bound.
     pub slack_ns: f64,
-    /// The grid that edges stand on, h/Q, ns.
+    /// Length of a phase, h/Q, ns. Edges are placed on this grid.
     pub phase_ns: f64,
-    /// One entry an axis, in the machine's order.
+    /// One entry per axis, in the order of the machine file.
     pub axes: Vec<AxisReport>,
 }
 
 /// The check of one axis.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct AxisReport {
-    /// The axis' name.
+    /// The name of the axis.
     pub axis: String,
     /// Whether there is no failure.
     pub passed: bool,
-    /// Pulses that the move asks for.
+    /// Number of pulses that the moves require.
     pub pulses_expected: u64,
-    /// Rising edges of STEP.
+    /// Number of rising edges of STEP.
     pub pulses_found: u64,
-    /// Steps forward less steps back that the move asks for.
+    /// Steps forward minus steps backward that the moves require.
     pub position_expected: i64,
-    /// Steps forward less steps back on the pins.
+    /// Steps forward minus steps backward on the pins.
     pub position_found: i64,
-    /// Pulses with DIR the other way than the profile goes.
+    /// Number of pulses for which DIR and the profile have different directions.
     pub pulses_wrong_direction: u64,
-    /// Least e = edge less profile: negative is early.
+    /// Least error e = edge - profile, ns; negative is early.
     pub error_min_ns: Option<f64>,
-    /// Greatest e.
+    /// Greatest error e, ns.
     pub error_max_ns: Option<f64>,
-    /// Root mean square of e.
+    /// Root mean square of e, ns.
     pub error_rms_ns: Option<f64>,
-    /// Standard deviation of e about its mean.
+    /// Standard deviation of e about its mean, ns.
     pub error_std_ns: Option<f64>,
-    /// What rounding down to the phase grid alone gives: h/Q / sqrt(12).
+    /// Standard deviation that results from rounding down to the phase grid alone, h/Q / sqrt(12),
+    /// ns.
     pub error_std_theory_ns: f64,
-    /// The part of the bound that a fit may take: the greatest tolerance of the axis' moves.
+    /// The part of the bound that a fit may use, ns: the greatest tolerance of the axis' moves.
     pub error_fit_ns: f64,
-    /// h/Q + h^2 max(|a| / (8 v)) + fit + 2 ns + slack: |e| must not exceed it.
+    /// The bound of |e|, ns: h/Q + h^2 max(|a| / (8 v)) + fit + 2 ns + slack.
     pub error_bound_ns: f64,
-    /// Shortest STEP high.
+    /// Shortest high time of STEP, ns.
     pub high_min_ns: Option<f64>,
-    /// What the driver asks for.
+    /// High time that the driver requires, ns.
     pub high_required_ns: f64,
-    /// Shortest STEP low between pulses.
+    /// Shortest low time of STEP between pulses, ns.
     pub low_min_ns: Option<f64>,
-    /// What the driver asks for.
+    /// Low time that the driver requires, ns.
     pub low_required_ns: f64,
-    /// Shortest time from a DIR change to the next rising STEP.
+    /// Shortest time from a change of DIR to the next rising edge of STEP, ns.
     pub setup_min_ns: Option<f64>,
-    /// What the driver asks for.
+    /// Set-up time that the driver requires, ns.
     pub setup_required_ns: f64,
-    /// Shortest time from a rising STEP to the next DIR change.
+    /// Shortest time from a rising edge of STEP to the next change of DIR, ns.
     pub hold_min_ns: Option<f64>,
-    /// What the driver asks for.
+    /// Hold time that the driver requires, ns.
     pub hold_required_ns: f64,
-    /// Greatest |period on the pins - period of the profile|.
+    /// Greatest |period on the pins - period of the profile|, ns.
     pub period_jitter_max_ns: Option<f64>,
-    /// At constant speed one phase at most; beside it twice the curvature term.
+    /// The jitter that theory allows, ns: one phase, and twice the curvature term where the speed
+    /// changes.
     pub period_jitter_theory_ns: f64,
-    /// Greatest relative error of the speed that one period shows, percent.
+    /// Greatest relative error of the speed of one period, percent.
     pub speed_ripple_max_percent: Option<f64>,
-    /// One phase in the shortest period of the profile, percent.
+    /// The ripple that theory allows: one phase in the shortest period of the profile, percent.
     pub speed_ripple_theory_percent: f64,
-    /// Where a move is to be straight: how far the axis has been off the line, at its worst.
+    /// Greatest distance of the axis from the line, steps; only for moves along a straight line.
     pub line_off_max_steps: Option<f64>,
-    /// Half a step, and what the axis travels in the time by which edges may be late: it must not be off further.
+    /// The bound of this distance, steps: half a step, and the distance that the axis travels in
+    /// the time by which edges may be late.
     pub line_off_bound_steps: Option<f64>,
-    /// What the axis is measured in, for [`fmt::Display`].
+    /// The unit of the axis, for [`fmt::Display`].
     #[serde(skip)]
     pub unit: Option<Unit>,
-    /// What is wrong, in sentences.
+    /// The failures, as messages.
     pub failures: Vec<String>,
-    /// Failures beyond those that are spelled out.
+    /// Number of failures without a message.
     pub failures_omitted: u64,
 }
 
@@ -108,7 +114,7 @@ impl Report {
         self.passed
     }
 
-    /// All failures that are spelled out, axis after axis.
+    /// All messages, axis after axis.
     pub fn failures(&self) -> impl Iterator<Item = &str> {
         self.axes.iter().flat_map(|axis| axis.failures.iter().map(String::as_str))
     }
@@ -119,19 +125,19 @@ fn against(found: &impl fmt::Display, expected: &impl fmt::Display) -> String {
     format!("{found}/{expected}")
 }
 
-/// A tenth of a ns is shown; adding zero makes minus zero plus.
+/// Formats ns with one decimal. Adding zero turns minus zero into plus zero.
 fn figure(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), |x| format!("{:.1}", (x * 10.0).round() / 10.0 + 0.0))
 }
 
-/// A minimum beside what the driver asks for; the latter is whole ns.
+/// Formats a minimum beside the value that the driver requires, which is in whole ns.
 fn minimum(found: Option<f64>, required: f64) -> String {
     let found = found.map_or_else(|| "-".to_owned(), |ns| format!("{ns:.0}"));
     against(&found, &required)
 }
 
 impl AxisReport {
-    /// What its pulses are: counts and errors.
+    /// The row of the pulses: counts and errors.
     fn pulses(&self) -> [String; 8] {
         [
             self.axis.clone(),
@@ -145,7 +151,7 @@ impl AxisReport {
         ]
     }
 
-    /// What its pins keep to.
+    /// The row of the pin times.
     fn pins(&self) -> [String; 5] {
         [
             self.axis.clone(),
@@ -160,7 +166,8 @@ impl AxisReport {
 const PULSES: [&str; 8] = ["axis", "pulses", "position", "e min", "e max", "e rms", "bound", ""];
 const PINS: [&str; 5] = ["axis", "high", "low", "set-up", "hold"];
 
-/// Rows under their heads: names to the left, numbers to the right, and what has no head to the left.
+/// Writes rows below their headings. Names and columns without a heading are aligned to the left,
+/// numbers to the right.
 fn table<const N: usize>(f: &mut fmt::Formatter<'_>, head: [&str; N], rows: &[[String; N]]) -> fmt::Result {
     let mut widths = head.map(str::len);
     for row in rows {

@@ -1,4 +1,6 @@
-//! Which signal of a capture is which pin.
+//! Finds the signal of a capture for each pin.
+//!
+//! The names of carrystep's own signals are those that `waves.rs` writes.
 
 use crate::edge::Pin;
 use crate::error::ReadError;
@@ -6,10 +8,10 @@ use carrystep_core::AXES;
 use carrystep_core::engine::MAX_AXES;
 use vcd::{IdCode, ReferenceIndex};
 
-/// Names of a foreign capture's signals: `x.step=top.la.D0`, `y.dir=bench.pins[3]`.
+/// The signals of a foreign capture: `x.step=top.la.D0`, `y.dir=bench.pins[3]`.
 ///
-/// A pin that the map does not name is looked for under our own names: `<axis>.step` and `<axis>.dir`
-/// in any scope, or the vectors `step` and `dir`, whose bit i is axis i.
+/// A pin that the map does not contain is searched under the names of carrystep: `<axis>.step` and
+/// `<axis>.dir` in any scope, or the vectors `step` and `dir`, whose bit i is axis i.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SignalMap {
     entries: Vec<Entry>,
@@ -23,10 +25,10 @@ struct Entry {
 }
 
 impl SignalMap {
-    /// A map from lines `<axis>.<step|dir>=<path of the signal>`.
+    /// Reads a map from lines `<axis>.<step|dir>=<path of the signal>`.
     ///
     /// # Errors
-    /// [`ReadError::Map`] says what is wrong with a line.
+    /// [`ReadError::Map`] names the line and what is wrong with it.
     pub fn parse<S: AsRef<str>>(lines: impl IntoIterator<Item = S>) -> Result<Self, ReadError> {
         let mut map = Self::default();
         for line in lines {
@@ -69,7 +71,7 @@ pub(crate) struct Signal {
 
 impl Signal {
     pub(crate) fn new(scopes: &[String], name: &str, index: Option<ReferenceIndex>, code: IdCode, bits: u32) -> Self {
-        // some simulators glue the range to the name
+        // Some simulators append the range to the name without a space.
         let glued = name.find('[').filter(|&at| at > 0 && !name.starts_with('\\'));
         let (name, tail) = name.split_at(glued.unwrap_or(name.len()));
         let mut path = scopes.join(".");
@@ -80,7 +82,7 @@ impl Signal {
         let range = match index.or_else(|| tail.parse().ok()) {
             Some(ReferenceIndex::Range(high, low)) => (i64::from(high), i64::from(low)),
             Some(ReferenceIndex::BitSelect(bit)) => {
-                // one bit of a vector that was taken apart keeps its index in its name
+                // A single bit of a vector keeps its index in its name.
                 path.push_str(&format!("[{bit}]"));
                 (0, 0)
             }
@@ -89,7 +91,7 @@ impl Signal {
         Self { path, code, bits, range }
     }
 
-    /// Place of the bit with this index, counted from the least significant.
+    /// The place of the bit with this index, counted from the least significant.
     fn place(&self, index: i64) -> Option<u32> {
         let (high, low) = self.range;
         let place = if high >= low { index - low } else { low - index };
@@ -100,21 +102,21 @@ impl Signal {
         self.path.matches('.').count()
     }
 
-    /// Whether the path is `tail`, or ends with it behind a scope.
+    /// Whether the path is `tail`, or ends with `tail` after a scope.
     fn ends_with(&self, tail: &str) -> bool {
         self.path.strip_suffix(tail).is_some_and(|scopes| scopes.is_empty() || scopes.ends_with('.'))
     }
 }
 
-/// Where the level of a pin is found.
+/// The signal and the bit that hold the level of a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Source {
     pub(crate) code: IdCode,
-    /// Bit, counted from the least significant.
+    /// The bit, counted from the least significant.
     pub(crate) place: u32,
 }
 
-/// How many names an error suggests.
+/// The number of names that an error suggests.
 const CANDIDATES: usize = 8;
 
 fn missing(signals: &[Signal], wanted: String) -> ReadError {
@@ -124,7 +126,8 @@ fn missing(signals: &[Signal], wanted: String) -> ReadError {
     ReadError::NoSignal { wanted, found: found.chain(more).collect() }
 }
 
-/// The only signal nearest to the top among those that fit.
+/// The signal nearest to the top among those that match. It is an error if several are equally
+/// near.
 fn topmost<'a>(fit: impl Iterator<Item = &'a Signal>, wanted: &str) -> Result<Option<&'a Signal>, ReadError> {
     let fit: Vec<&Signal> = fit.collect();
     let Some(top) = fit.iter().map(|s| s.depth()).min() else { return Ok(None) };
@@ -174,7 +177,8 @@ fn explicit(signals: &[Signal], path: &str, axis: &str, pin: Pin) -> Result<Sour
     source.ok_or_else(|| missing(signals, wanted()))
 }
 
-/// Axis `index` of so many.
+/// Finds a pin of axis `index` by the names of carrystep. `axes` is the number of axes of the
+/// machine.
 fn by_name(signals: &[Signal], (index, axes): (usize, usize), axis: &str, pin: Pin) -> Result<Source, ReadError> {
     let own = format!("{axis}.{pin}");
     let width = |signal: &Signal, wanted: &str| ReadError::Width {
@@ -193,7 +197,7 @@ fn by_name(signals: &[Signal], (index, axes): (usize, usize), axis: &str, pin: P
     let bit = index as i64;
     let vectors = signals.iter().filter(|s| s.bits > 1 && s.ends_with(&name) && s.place(bit).is_some());
     if let Some(signal) = topmost(vectors, &format!("{name}[{index}]"))? {
-        // The gateware's own vectors may be wider than the machine.
+        // The vectors of the gateware may be wider than the machine.
         if ![axes, AXES, MAX_AXES].contains(&(signal.bits as usize)) {
             return Err(width(signal, &format!("the machine has {axes} axes")));
         }

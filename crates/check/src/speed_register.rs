@@ -1,16 +1,18 @@
-//! V of one axis' accumulator at any tick, from its segments, exactly.
+//! Computes V of one axis' accumulator at any tick, exactly, from its segments.
+//!
+//! This repeats the arithmetic of the gateware in closed form; both may change only together.
 
 use carrystep_core::Segment;
 use std::fmt;
 
 type Segments<'a> = Box<dyn Iterator<Item = (u64, Segment)> + 'a>;
 
-/// Walks forward through segments that are given with their first ticks.
+/// Goes forward through segments that are given with their first ticks.
 pub(crate) struct SpeedRegister<'a> {
     segments: Segments<'a>,
-    /// The segment that comes next, with its first tick.
+    /// The next segment, with its first tick.
     next: Option<(u64, Segment)>,
-    /// The segment that runs, with its first tick.
+    /// The running segment, with its first tick.
     running: Option<(u64, Segment)>,
 }
 
@@ -26,14 +28,15 @@ impl<'a> SpeedRegister<'a> {
         Self { segments, next, running: None }
     }
 
-    /// The tick at which the next segment starts, or the last one is over.
+    /// The tick at which the next segment starts or the running one ends, whichever is earlier.
     pub(crate) fn next_change(&self) -> Option<u64> {
         let over = self.running.map(|(start, segment)| start.saturating_add(segment.ticks.into()));
         let starts = self.next.map(|(start, _)| start);
         starts.into_iter().chain(over).min()
     }
 
-    /// V in 2^-64 step per tick during tick `tick` (from 0); ticks must not fall from call to call.
+    /// V in 2^-64 step per tick during tick `tick`, counted from 0. Ticks must not decrease from
+    /// call to call.
     pub(crate) fn at(&mut self, tick: u64) -> i64 {
         while let Some(next) = self.next.filter(|&(start, _)| start <= tick) {
             self.running = Some(next);
@@ -46,7 +49,7 @@ impl<'a> SpeedRegister<'a> {
             return 0;
         }
         let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
-        // A and J wrap as the registers do
+        // A and J wrap, as the registers do.
         (v + n * a).wrapping_add((n * (n - 1) / 2).wrapping_mul(j)) as i64
     }
 }
@@ -56,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn v_is_what_adding_tick_by_tick_gives() {
+    fn v_equals_the_sum_of_additions_tick_by_tick() {
         let segments = [
             (2, Segment { ticks: 5, v: -9_000_000_000, a: 77_777, j: -13, last: false }),
             (7, Segment { ticks: 3, v: 40, a: -1, j: 2, last: true }),
@@ -77,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn changes_are_announced() {
+    fn next_change_is_the_start_and_then_the_end_of_a_segment() {
         let segments = [(0, Segment { ticks: 4, v: 1, a: 0, j: 0, last: true })];
         let mut register = SpeedRegister::new(Box::new(segments.into_iter()));
         assert_eq!(register.next_change(), Some(0));

@@ -1,6 +1,6 @@
-//! Least, greatest, mean and spread of a stream of figures, in constant memory.
+//! Least, greatest, mean and standard deviation of a stream of values, in constant memory.
 
-/// An extreme value, and the pulse that has it.
+/// An extreme value, and the pulse at which it occurred.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Extreme {
     pub(crate) value: f64,
@@ -8,7 +8,8 @@ pub(crate) struct Extreme {
     pub(crate) ps: u64,
 }
 
-/// Welford's running moments: no cancellation, however far from zero the values are.
+/// The running moments of B. P. Welford (1962), which do not cancel however far the values are from
+/// zero.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Spread {
     count: u64,
@@ -33,7 +34,7 @@ impl Spread {
         }
     }
 
-    /// The same with a constant added to every value.
+    /// The same spread with a constant added to every value.
     pub(crate) fn shifted(mut self, by: f64) -> Self {
         self.mean += by;
         for extreme in [&mut self.least, &mut self.greatest].into_iter().flatten() {
@@ -55,7 +56,7 @@ impl Spread {
         (self.count > 0).then(|| (self.mean * self.mean + self.squares / self.count as f64).sqrt())
     }
 
-    /// Root mean square about the mean.
+    /// Root mean square about the mean, which is the standard deviation.
     pub(crate) fn deviation(&self) -> Option<f64> {
         (self.count > 0).then(|| (self.squares / self.count as f64).sqrt())
     }
@@ -66,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moments_do_not_depend_on_the_origin() {
+    fn spread_does_not_depend_on_the_origin_of_the_values() {
         let mut far = Spread::default();
         let values = [1.0, 2.0, 4.0, 7.0];
         for (k, value) in values.into_iter().enumerate() {

@@ -1,9 +1,9 @@
-//! A curve thinned out for a picture: the least and the greatest value of each of many short stretches.
+//! Thins out a curve for a picture: keeps the least and the greatest value of many short stretches.
 
 /// A point of a curve: time in s, and a value.
 pub(crate) type Point = (f64, f64);
 
-/// Keeps two points a stretch, however many are put in; what sticks out stays.
+/// Keeps two points for each stretch of time, however many are added. Extreme values are kept.
 #[derive(Debug, Clone)]
 pub(crate) struct Thin {
     stretch_s: f64,
@@ -11,13 +11,13 @@ pub(crate) struct Thin {
 }
 
 impl Thin {
-    /// For times from 0 to `span_s`, in `count` stretches.
+    /// Divides the times from 0 to `span_s` seconds into `count` stretches.
     pub(crate) fn new(span_s: f64, count: usize) -> Self {
         Self { stretch_s: span_s.max(f64::MIN_POSITIVE) / count as f64, stretches: vec![None; count] }
     }
 
     pub(crate) fn add(&mut self, point: Point) {
-        // a cast to usize stops at its ends: early and late points go to the first and the last stretch
+        // A cast to usize saturates: earlier and later points go to the first and the last stretch.
         let index = ((point.0 / self.stretch_s) as usize).min(self.stretches.len() - 1);
         match &mut self.stretches[index] {
             None => self.stretches[index] = Some([point, point]),
@@ -32,7 +32,7 @@ impl Thin {
         }
     }
 
-    /// What is left, in order of time but for the two points of a stretch.
+    /// The points that were kept, in order of time except for the two points of one stretch.
     pub(crate) fn points(&self) -> impl Iterator<Item = Point> + '_ {
         self.stretches.iter().flatten().flat_map(|&[least, greatest]| {
             let second = (least != greatest).then_some(greatest);
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn extremes_survive() {
+    fn extreme_values_are_kept() {
         let mut thin = Thin::new(1.0, 10);
         for k in 0..10_000 {
             let t = f64::from(k) / 10_000.0;

@@ -1,4 +1,4 @@
-//! Reads pin changes from any VCD: our own, another simulator's, a logic analyser's.
+//! Reads pin changes from any VCD: from carrystep, another simulator or a logic analyser.
 
 use crate::edge::{Pin, PinChange, PinSink};
 use crate::error::{ReadError, TraceError};
@@ -9,7 +9,7 @@ use std::fmt;
 use std::io::{self, BufRead, Chain};
 use vcd::{Command, IdCode, ParseError, Parser, TimescaleUnit, Value, Vector};
 
-/// Deeper scopes than any design has.
+/// The greatest depth of nested scopes; no real design is nested more deeply.
 const MAX_DEPTH: usize = 256;
 
 /// A VCD whose header has been read and whose pins have been found.
@@ -17,23 +17,25 @@ pub struct VcdReader<R> {
     parser: Parser<Blanked<R>>,
     unit: Unit,
     own: Option<OwnCapture>,
-    /// The pins that a signal carries, each with its bit from the least significant.
+    /// The pins that each signal carries: the bit, counted from the least significant, and the
+    /// pin's slot (2 x axis for STEP, 2 x axis + 1 for DIR).
     pins: HashMap<IdCode, Vec<(u32, usize)>>,
     count: usize,
 }
 
-/// What was read, beside the pin changes themselves.
+/// Figures of a capture that has been played into a sink.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Played {
     /// The last time in the file, ps.
     pub end_ps: u64,
-    /// Pin changes.
+    /// Number of pin changes.
     pub changes: u64,
-    /// Times a pin became unknown or floating (x, z) after its first level; it was taken to stay as it was.
+    /// How often a pin became unknown or floating (x, z) after its first level. The reader keeps
+    /// the old level in this case.
     pub unknown: u64,
 }
 
-/// A file's unit of time as a fraction of ps.
+/// The file's unit of time as a fraction of ps.
 #[derive(Debug, Clone, Copy)]
 struct Unit {
     numerator: u128,
@@ -53,7 +55,7 @@ impl Unit {
         Self { numerator: numerator * u128::from(quantity), denominator }
     }
 
-    /// The nearest ps.
+    /// A time of the file in ps, rounded to the nearest; `None` if it does not fit into 64 bits.
     fn ps(self, time: u64) -> Option<u64> {
         let exact = u128::from(time).checked_mul(self.numerator)?;
         u64::try_from((exact + self.denominator / 2) / self.denominator).ok()
@@ -66,11 +68,12 @@ impl<R> fmt::Debug for VcdReader<R> {
     }
 }
 
-/// A capture and the blank behind its end: not every program ends its last line, and a token that the end
-/// of the file ends is whole.
+/// A capture with a blank appended. Not every program ends its last line, and a token that is ended
+/// by the end of the file is complete.
 type Blanked<R> = Chain<R, &'static [u8]>;
 
-/// The parser's errors, sorted. A broken token right at the end of the file is one that was cut off.
+/// Converts the parser's errors. A broken token at the very end of the file means that the file was
+/// cut off.
 fn sorted<R: BufRead>(error: io::Error, parser: &mut Parser<Blanked<R>>, missing: &'static str) -> ReadError {
     let line = parser.line();
     let Some(parse) = error.get_ref().and_then(|inner| inner.downcast_ref::<ParseError>()) else {
@@ -83,7 +86,7 @@ fn sorted<R: BufRead>(error: io::Error, parser: &mut Parser<Blanked<R>>, missing
     ReadError::Syntax { line: parse.line(), message: parse.kind().to_string() }
 }
 
-/// Whether the last token reached to the very end of the file.
+/// Whether the last token reached the very end of the file.
 fn at_end<R: BufRead>(parser: &mut Parser<Blanked<R>>) -> bool {
     parser.reader().fill_buf().is_ok_and(<[u8]>::is_empty)
 }
@@ -92,7 +95,8 @@ impl<R: BufRead> VcdReader<R> {
     /// Reads the header and finds STEP and DIR of every axis.
     ///
     /// # Errors
-    /// The file is no VCD, ends in its header, has no unit of time, or lacks a signal.
+    /// A [`ReadError`] if the file is not a VCD, ends in its header, has no unit of time, or lacks
+    /// a signal.
     pub fn new(reader: R, axes: &[&str], map: &SignalMap) -> Result<Self, ReadError> {
         const MISSING: &str = "the header has no end";
         let mut parser = Parser::new(reader.chain(&b" "[..]));
@@ -141,17 +145,19 @@ impl<R: BufRead> VcdReader<R> {
         Ok(Self { parser, unit, own, pins, count: 2 * axes.len() })
     }
 
-    /// What a capture of our own says about itself; `None` for a foreign one.
+    /// The header of a capture by carrystep; `None` for a foreign capture.
     pub fn own(&self) -> Option<OwnCapture> {
         self.own
     }
 
     /// Plays the whole capture into a sink.
     ///
-    /// The values of the first moment are initial levels, not edges. A pin without one is low.
+    /// The values at the first time are initial levels and not edges. A pin without an initial
+    /// level is low.
     ///
     /// # Errors
-    /// The file is broken, cut off or runs back in time; or the sink cannot write.
+    /// [`TraceError::Read`] if the file is broken, cut off or goes back in time; any other
+    /// [`TraceError`] if the sink cannot write.
     pub fn play(mut self, sink: &mut dyn PinSink) -> Result<Played, TraceError> {
         const MISSING: &str = "a value or a time is incomplete";
         let mut player = Player::new(sink, self.count);
@@ -195,7 +201,8 @@ impl<R: BufRead> VcdReader<R> {
     }
 }
 
-/// A bit counted from the least significant; what a short vector leaves out is 0, or x or z as its first bit.
+/// The bit of a vector at a place counted from the least significant. The bits that a short vector
+/// omits are 0, or x or z if its first bit is.
 fn bit(vector: &Vector, place: u32) -> Value {
     let place = place as usize;
     match vector.len().checked_sub(place + 1) {
@@ -204,12 +211,12 @@ fn bit(vector: &Vector, place: u32) -> Value {
     }
 }
 
-/// Turns values into levels and edges.
+/// Converts values of signals to levels and edges.
 struct Player<'s> {
     sink: &'s mut dyn PinSink,
     ps: Option<u64>,
     levels: Vec<Option<bool>>,
-    /// The first moment is over: values are changes from now on.
+    /// Whether the first time is over, so that values are changes.
     settled: bool,
     changes: u64,
     unknown: u64,
@@ -258,7 +265,7 @@ impl<'s> Player<'s> {
         let old = self.levels[slot].replace(level);
         if !self.settled {
             match old {
-                // two levels in the first moment: the second one is an edge
+                // Of two different levels at the first time, the second one is an edge.
                 Some(old) if old != level => {
                     self.levels[slot] = Some(old);
                     self.settle()?;

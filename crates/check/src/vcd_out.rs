@@ -1,18 +1,20 @@
-//! The waveform as VCD.
+//! Writes the waveform as VCD.
+//!
+//! `waves.rs` decides what is written and when; this file only holds the file format.
 
 use crate::vcd_own::{self, OwnCapture};
 use crate::waves::{Format, SCOPE, SIGNALS, VERSION, WaveWriter, Waves};
 use std::io::{self, Write};
 use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, VarType};
 
-/// A VCD that is being written.
+/// A VCD file that is being written.
 pub struct VcdFormat<W: Write>(vcd::Writer<W>);
 
-/// Writes a VCD as pin changes stream by.
+/// Writes a VCD from a stream of pin changes.
 pub type VcdWriter<'a, W> = WaveWriter<'a, VcdFormat<W>>;
 
 impl<'a, W: Write> VcdWriter<'a, W> {
-    /// A writer that has written nothing yet: the header follows with the first change.
+    /// A writer that has not written anything. It writes the header with the first change.
     pub fn new(out: W, waves: Waves<'a>) -> Self {
         Self::of(VcdFormat(vcd::Writer::new(out)), waves)
     }
@@ -36,7 +38,7 @@ impl<W: Write> Format for VcdFormat<W> {
                 *id = match bits {
                     0 => out.add_var(VarType::Real, 64, name, None)?,
                     1 => out.add_wire(1, name)?,
-                    // the range is a token of its own: no brackets in the name
+                    // The range is a token of its own: the name must not contain brackets.
                     _ => {
                         let range = ReferenceIndex::Range(i32::try_from(bits - 1).unwrap_or(0), 0);
                         out.add_var(VarType::Wire, bits, name, Some(range))?
@@ -66,10 +68,11 @@ impl<W: Write> Format for VcdFormat<W> {
         self.0.change_scalar(id, level)
     }
 
-    /// Without the zeros that every reader puts back.
+    /// Writes the value without its leading zeros, which every reader restores.
     fn vector(&mut self, id: IdCode, value: u64, _: u32) -> io::Result<()> {
         let shown = (u64::BITS - value.leading_zeros()).max(1) as usize;
-        // The library formats bit by bit, which takes most of the time that a waveform takes.
+        // The library formats a vector bit by bit, which took most of the time of writing a
+        // waveform.
         let mut text = [b'b'; 1 + u64::BITS as usize];
         for (bit, digit) in text[1..=shown].iter_mut().rev().enumerate() {
             *digit = b'0' + (value >> bit & 1) as u8;

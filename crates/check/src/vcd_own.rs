@@ -1,16 +1,19 @@
-//! The marks by which a capture of our own is known: where its time starts, and that it is whole.
+//! The marks of a capture that was written by carrystep: the start of its time in the header, and a
+//! last line that shows that the file is complete.
+//!
+//! Existing captures contain these texts, so they may not change.
 
 use carrystep_core::Timebase;
 use std::fmt;
 
-/// The last comment of a capture of our own; without it the file was cut off.
+/// The last comment of a capture by carrystep. A file without it was cut off.
 pub(crate) const END: &str = "carrystep end";
 
-/// What the header of our own captures says: a comment
-/// `carrystep origin_ps=... clock_hz=... tick_ns=... phases=...`.
+/// The header of a capture by carrystep: a comment `carrystep origin_ps=... clock_hz=...
+/// tick_ns=... phases=...`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OwnCapture {
-    /// The load of the first move plus the latency L, in ps of the capture.
+    /// The load of the first move plus the latency L, ps of the capture.
     pub origin_ps: i64,
     /// Clock, tick and phases of the gateware.
     pub timebase: Timebase,
@@ -30,7 +33,7 @@ impl fmt::Display for OwnCapture {
 }
 
 impl OwnCapture {
-    /// What a comment says; `None` where it is not one of ours.
+    /// Reads a comment. Returns `None` if it is not a comment by carrystep.
     pub fn from_comment(comment: &str) -> Option<Self> {
         let mut words = comment.split_whitespace();
         words.next().filter(|&first| first == "carrystep")?;
@@ -52,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_comment_reads_back() {
+    fn comment_reads_back_and_foreign_comments_are_ignored() {
         let own = OwnCapture { origin_ps: -5, timebase: Timebase::new(48_000_000, 1000, 16).unwrap() };
         assert_eq!(OwnCapture::from_comment(&own.to_string()), Some(own));
         for foreign in ["", "carrystep", "carrystep end", "carrystep origin_ps=1", "made by carrystep origin_ps=1"] {

@@ -1,4 +1,6 @@
-//! A VCD of pins and positions alone: of a board that nobody has told its moves.
+//! Writes a VCD of pins and positions only, for a board whose moves are not known to the writer.
+//!
+//! The names of the signals are those of `waves.rs`.
 
 use crate::edge::{Pin, PinChange, PinSink};
 use crate::error::TraceError;
@@ -8,10 +10,10 @@ use std::fmt;
 use std::io::{self, Write};
 use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, VarType, Writer};
 
-/// Bits of a position.
+/// Width of a position, bits.
 const BITS: u32 = 32;
 
-/// Writes pins as they change, with the names that [`VcdWriter`](crate::VcdWriter) gives them.
+/// Writes pins as they change, under the same names as [`VcdWriter`](crate::VcdWriter).
 pub struct PinsVcd<W: Write> {
     out: Writer<W>,
     axes: Vec<Axis>,
@@ -33,10 +35,11 @@ impl<W: Write> fmt::Debug for PinsVcd<W> {
 }
 
 impl<W: Write> PinsVcd<W> {
-    /// Begins a capture of these axes, in the order of their numbers; all pins are low, all positions 0.
+    /// Begins a capture of these axes, in the order of their numbers. All pins are low and all
+    /// positions 0.
     ///
     /// # Errors
-    /// [`TraceError::Write`].
+    /// [`TraceError::Write`] if the file cannot be written.
     pub fn new<'n>(out: W, own: OwnCapture, names: impl Iterator<Item = &'n str>) -> Result<Self, TraceError> {
         Self::begin(Writer::new(out), own, names).map_err(failed)
     }

@@ -1,8 +1,10 @@
-//! The waveform: pins, registers and the float profile beside them, in any [`Format`].
+//! Writes the waveform: pins, registers and the float profile beside them, in any [`Format`].
 //!
-//! Integers are what the gateware has, reals what the profile wants, so that a viewer lays one over the
-//! other. All times are those of the pins: V is shown the latency L later than the register has it,
-//! right above the edges that it makes.
+//! Integers are values of the gateware, and reals those of the profile, so that a viewer can draw
+//! one over the other. All times are those of the pins: V is shown by the latency L later than in
+//! the register, directly above the edges that it causes.
+//!
+//! The names of the signals may not change: signal maps and save files refer to them.
 
 use crate::edge::{Pin, PinChange, PinSink};
 use crate::error::TraceError;
@@ -15,10 +17,11 @@ use carrystep_profile::Timeline;
 use std::fmt;
 use std::io;
 
-/// Samples of the slow signals over a run, beside those at edges and segment boundaries.
+/// Number of samples of the slow signals over a run, in addition to those at edges and segment
+/// boundaries.
 const SAMPLES: u64 = 500;
 
-/// The signals of one axis, in order: name and bits, 0 for a real.
+/// The signals of one axis, in order: name and bits, with 0 bits for a real.
 pub(crate) const SIGNALS: [(&str, u32); 7] = [
     ("step", 1),
     ("dir", 1),
@@ -29,97 +32,97 @@ pub(crate) const SIGNALS: [(&str, u32); 7] = [
     ("error_ns", 0),
 ];
 
-/// The scope that holds a scope for each axis.
+/// The scope that contains a scope for each axis.
 pub(crate) const SCOPE: &str = "carrystep";
 
-/// Who made it.
+/// The program that wrote the file, with its version.
 pub(crate) const VERSION: &str = concat!("carrystep ", env!("CARGO_PKG_VERSION"));
 
-/// A file format of waveforms, in ps.
+/// A file format of waveforms, with times in ps.
 pub trait Format {
-    /// What stands for a signal.
+    /// The identifier of a signal.
     type Id: Copy;
-    /// What an error calls it.
+    /// The name of the format in error messages.
     const NAME: &'static str;
 
-    /// Declares the signals of each axis, the scopes named after them.
+    /// Declares the signals of each axis, in scopes with the names of the axes.
     ///
     /// # Errors
-    /// The file cannot be written; so it is below.
+    /// The error of the system if the file cannot be written.
     fn declare(&mut self, own: &OwnCapture, axes: &[&str]) -> io::Result<Vec<[Self::Id; SIGNALS.len()]>>;
 
-    /// What holds at time 0.
+    /// Writes the values at time 0.
     ///
     /// # Errors
-    /// As above.
+    /// The error of the system if the file cannot be written.
     fn initial(&mut self, values: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()>;
 
-    /// All that follows happens at this time, later than before.
+    /// Sets the time of the changes that follow, ps. It must be later than the previous time.
     ///
     /// # Errors
-    /// As above.
+    /// The error of the system if the file cannot be written.
     fn time(&mut self, ps: u64) -> io::Result<()>;
 
-    /// A pin.
+    /// Writes the level of a pin.
     ///
     /// # Errors
-    /// As above.
+    /// The error of the system if the file cannot be written.
     fn bit(&mut self, id: Self::Id, level: bool) -> io::Result<()>;
 
-    /// Two's complement of `bits` bits.
+    /// Writes a number of `bits` bits in two's complement.
     ///
     /// # Errors
-    /// As above.
+    /// The error of the system if the file cannot be written.
     fn vector(&mut self, id: Self::Id, value: u64, bits: u32) -> io::Result<()>;
 
-    /// A number.
+    /// Writes a real number.
     ///
     /// # Errors
-    /// As above.
+    /// The error of the system if the file cannot be written.
     fn real(&mut self, id: Self::Id, value: f64) -> io::Result<()>;
 
-    /// The file is whole.
+    /// Completes the file.
     ///
     /// # Errors
-    /// As above.
+    /// The error of the system if the file cannot be written.
     fn end(&mut self) -> io::Result<()>;
 }
 
-/// What the waveform shows beside the pins.
+/// The values that the waveform shows beside the pins.
 pub struct Waves<'a> {
     /// Clock, tick and phases of the gateware.
     pub timebase: Timebase,
-    /// Where in a step the moves start.
+    /// The position in a step at which the moves start.
     pub phase: StartPhase,
-    /// The load of the first move plus the latency L, in ps of the capture.
+    /// The load of the first move plus the latency L, ps of the capture.
     pub origin_ps: i64,
-    /// Length of all moves together.
+    /// Length of all moves together, ticks.
     pub total_ticks: u64,
     /// The axes, in the order of their numbers.
     pub axes: Vec<AxisWaves<'a>>,
 }
 
-/// What the waveform of one axis shows beside its pins.
+/// The values that the waveform of one axis shows beside its pins.
 pub struct AxisWaves<'a> {
-    /// Its name: the scope of its signals.
+    /// The name of the axis, which is the scope of its signals.
     pub name: &'a str,
     /// The float profile.
     pub timeline: &'a Timeline,
-    /// Its segments, each with its first tick from the origin, ascending.
+    /// The segments in order, each with its first tick from the origin.
     pub segments: Box<dyn Iterator<Item = (u64, Segment)> + 'a>,
 }
 
-/// Writes a waveform as pin changes stream by.
+/// Writes a waveform from a stream of pin changes.
 pub struct WaveWriter<'a, F: Format> {
     out: F,
     own: OwnCapture,
     total_ps: u64,
     axes: Vec<AxisWriter<'a>>,
-    /// The signals of each axis, once they are declared.
+    /// The signals of each axis, after they have been declared.
     ids: Vec<[F::Id; SIGNALS.len()]>,
     /// Index of the next sample of the regular grid.
     grid: u64,
-    /// The time that stands in the file last; `None` until the header is written.
+    /// The last time in the file, ps; `None` until the header is written.
     time: Option<u64>,
 }
 
@@ -139,7 +142,7 @@ impl<F: Format> fmt::Debug for WaveWriter<'_, F> {
 }
 
 impl<'a, F: Format> WaveWriter<'a, F> {
-    /// A writer that has written nothing yet: the header follows with the first change.
+    /// A writer that has not written anything. It writes the header with the first change.
     pub(crate) fn of(out: F, waves: Waves<'a>) -> Self {
         let Waves { timebase, phase, origin_ps, total_ticks, axes } = waves;
         let axes = axes.into_iter().map(|axis| AxisWriter {
@@ -179,7 +182,7 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         Ok(())
     }
 
-    /// Brings the file to `ps`, with all samples on the way.
+    /// Advances the file to `ps`, and writes all samples up to then.
     fn advance(&mut self, ps: u64) -> io::Result<()> {
         if self.time.is_none() {
             self.header()?;
@@ -206,7 +209,8 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         Ok(())
     }
 
-    /// ps of the capture, `ps` after the origin; never before the capture.
+    /// The time `ps` after the origin in ps of the capture, but not before the start of the
+    /// capture.
     fn after_origin(&self, ps: u128) -> Option<u64> {
         let at = i128::try_from(ps).ok()? + i128::from(self.own.origin_ps);
         u64::try_from(at.max(0)).ok()
@@ -217,7 +221,7 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         self.after_origin(exact).filter(|_| self.grid <= SAMPLES)
     }
 
-    /// When the axis' next segment starts.
+    /// The time at which the next segment of the axis starts or the running one ends.
     fn boundary(&self, index: usize) -> Option<u64> {
         let tick = self.axes.get(index)?.register.next_change()?;
         self.after_origin(u128::from(tick) * u128::from(tick_ps(&self.own.timebase)))
@@ -228,7 +232,7 @@ impl<'a, F: Format> WaveWriter<'a, F> {
         boundaries.chain(self.grid_time()).min()
     }
 
-    /// V and the profile at `ps`.
+    /// Writes V and the profile at `ps`.
     fn sample(&mut self, index: usize, ps: u64) -> io::Result<()> {
         let tick_ps = tick_ps(&self.own.timebase);
         let since = i128::from(ps) - i128::from(self.own.origin_ps);
@@ -239,7 +243,8 @@ impl<'a, F: Format> WaveWriter<'a, F> {
             axis.v = now;
             vector(&mut self.out, v, now, 64)?;
         }
-        // reals are repeated where they stay: a viewer that interpolates needs both ends of a level
+        // Reals are repeated even if they do not change: a viewer that interpolates needs both ends
+        // of a level.
         let tick = since as f64 / tick_ps as f64;
         real(&mut self.out, profile_position, axis.timeline.position_at(tick))?;
         real(&mut self.out, profile_speed, axis.timeline.speed_at(tick))
@@ -270,16 +275,17 @@ impl<'a, F: Format> WaveWriter<'a, F> {
     }
 }
 
-/// Two's complement of `bits` bits.
+/// Writes a signed value in two's complement of `bits` bits.
 fn vector<F: Format>(out: &mut F, id: F::Id, value: i64, bits: u32) -> io::Result<()> {
     out.vector(id, value.cast_unsigned() & (u64::MAX >> (u64::BITS - bits)), bits)
 }
 
-/// To six digits behind the point: files stay small, and VCD readers take 32 characters at most.
+/// Writes a real with six decimals. This keeps files small; VCD readers accept at most 32
+/// characters.
 fn real<F: Format>(out: &mut F, id: F::Id, value: f64) -> io::Result<()> {
     const DIGITS: f64 = 1e6;
     let short = (value * DIGITS).round() / DIGITS;
-    // no minus zero, nothing that is no number
+    // Minus zero and values that are not finite are written as 0.
     out.real(id, if short.is_finite() && short != 0.0 { short } else { 0.0 })
 }
 

@@ -1,6 +1,7 @@
-//! Captures of all kinds: our own, other simulators', logic analysers', and broken ones.
+//! Tests the reader with captures of all kinds: by carrystep, by other simulators, by logic
+//! analysers, and broken ones.
 
-#![allow(clippy::unwrap_used)] // a test may panic
+#![allow(clippy::unwrap_used)] // A test may panic.
 
 mod common;
 
@@ -23,7 +24,7 @@ fn at(ps: u64, axis: u8, pin: Pin, level: bool) -> PinChange {
 }
 
 #[test]
-fn a_logic_analyser_with_names_of_its_own() {
+fn logic_analyser_capture_is_read_through_a_signal_map() {
     let text = "$date today $end\n$version libsigrok $end\n$timescale 10 ns $end\n\
         $scope module la $end\n$var wire 1 ! D0 $end\n$var wire 1 \" D1 $end\n$upscope $end\n\
         $enddefinitions $end\n#0 1! 0\"\n#7 0!\n#12 1!\n#13 1\"\n#20\n";
@@ -35,7 +36,7 @@ fn a_logic_analyser_with_names_of_its_own() {
 }
 
 #[test]
-fn a_simulator_with_vectors_unknowns_and_its_own_scopes() {
+fn simulator_capture_with_vectors_and_unknown_values_is_read() {
     let text = "$timescale 1fs $end\n$scope module bench $end\n$var reg 6 s step [5:0] $end\n\
         $var wire 6 d dir[5:0] $end\n$scope module dut $end\n$var wire 6 s step [5:0] $end\n\
         $var wire 6 e dir [5:0] $end\n$upscope $end\n$upscope $end\n$enddefinitions $end\n\
@@ -54,7 +55,7 @@ fn a_simulator_with_vectors_unknowns_and_its_own_scopes() {
 }
 
 #[test]
-fn bits_of_buses_can_be_named() {
+fn signal_map_can_name_single_bits_of_vectors() {
     let text = "$timescale 1 us $end\n$scope module t $end\n$var wire 4 a up [0:3] $end\n\
         $var wire 1 b dn [2] $end\n$upscope $end\n$enddefinitions $end\n#0 b0000 a 0b\n#1 b0100 a 1b\n";
     let map = SignalMap::parse(["x.step=t.up[1]", "x.dir=t.dn[2]"]).unwrap();
@@ -63,7 +64,7 @@ fn bits_of_buses_can_be_named() {
 }
 
 #[test]
-fn errors_say_what_was_looked_for_and_what_is_there() {
+fn errors_name_the_missing_signal_and_those_that_exist() {
     let head =
         "$timescale 1 ns $end\n$scope module la $end\n$var wire 1 ! D0 $end\n$var wire 1 # D1 $end\n$upscope $end\n";
     let good = format!("{head}$enddefinitions $end\n#0 0!\n");
@@ -99,7 +100,7 @@ fn errors_say_what_was_looked_for_and_what_is_there() {
 }
 
 #[test]
-fn broken_time_and_broken_ends_are_errors() {
+fn broken_times_and_cut_files_are_errors() {
     let head = "$timescale 1 ns $end $var wire 1 ! x.step $end $var wire 1 # x.dir $end $enddefinitions $end\n";
     let fail = |body: &str| read_error(&format!("{head}{body}"), &["x"], &SignalMap::default());
     assert_eq!(fail("#5 1!\n#4 0!\n"), "line 3 of the capture: time goes back from 5 to 4");
@@ -112,7 +113,7 @@ fn broken_time_and_broken_ends_are_errors() {
 }
 
 #[test]
-fn a_foreign_capture_need_not_end_its_last_line() {
+fn foreign_capture_may_lack_the_end_of_its_last_line() {
     let head = "$timescale 1 ns $end $var wire 1 ! x.step $end $var wire 1 # x.dir $end $enddefinitions $end\n";
     for (body, end_ps, changes) in [("#0 0!\n#5 1!", 5000, 1), ("#0 0!\n#5 1!\n#12", 12_000, 1)] {
         let (_, played) = read(format!("{head}{body}").as_bytes(), &["x"], &SignalMap::default()).unwrap();
@@ -121,12 +122,12 @@ fn a_foreign_capture_need_not_end_its_last_line() {
 }
 
 #[test]
-fn a_cut_anywhere_in_our_own_capture_is_found() {
+fn carrystep_capture_that_is_cut_anywhere_is_refused() {
     let machine = Machine::there_and_back(1);
     let train = machine.train();
     let bytes = machine.vcd(&train[..40]);
     assert!(read(&bytes, &["x"], &SignalMap::default()).is_ok());
-    let end = bytes.len() - 1; // the last line may lack its end
+    let end = bytes.len() - 1; // The end of the last line may be missing.
     for cut in 0..end {
         let error = read(&bytes[..cut], &["x"], &SignalMap::default()).unwrap_err();
         let TraceError::Read(error) = error else { panic!("{error}") };
@@ -134,7 +135,7 @@ fn a_cut_anywhere_in_our_own_capture_is_found() {
     }
 }
 
-/// Random changes of two axes: each toggles a pin, at times that never fall.
+/// Random changes of two axes. Each change toggles a pin, at times that never decrease.
 fn trains() -> impl Strategy<Value = Vec<PinChange>> {
     proptest::collection::vec((0_u64..5_000_000_000, 0_u8..2, any::<bool>()), 0..60).prop_map(|steps| {
         let mut levels = [[false; 2]; 2];
@@ -153,7 +154,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn random_trains_read_back_identical(train in trains()) {
+    fn random_pulse_trains_read_back_unchanged(train in trains()) {
         let machine = Machine::there_and_back(2);
         let bytes = machine.vcd(&train);
         let (changes, played) = read(&bytes, machine.names(), &SignalMap::default()).unwrap();
@@ -180,7 +181,7 @@ proptest! {
             }
         }
         for text in [&bytes, &noise] {
-            // whatever comes of it, the sinks must bear it too
+            // Whatever the reader makes of the bytes, the sinks must accept it.
             let mut checker = Checker::new(machine.setup(Origin::Midpoint));
             let mut copy = Vec::new();
             let mut writer = VcdWriter::new(&mut copy, machine.waves());

@@ -1,6 +1,7 @@
-//! The checker passes a right pulse train, and names what is wrong with each kind of wrong one.
+//! Tests that the checker passes a correct pulse train, and names the error of each kind of wrong
+//! one.
 
-#![allow(clippy::unwrap_used)] // a test may panic
+#![allow(clippy::unwrap_used)] // A test may panic.
 
 mod common;
 
@@ -12,7 +13,7 @@ fn sorted(mut train: Vec<PinChange>) -> Vec<PinChange> {
     train
 }
 
-/// Breaks the train of a two-axis machine, and returns the failures; axis y must stay without one.
+/// Breaks the train of a two-axis machine and returns the failures. Axis y must not have any.
 fn failures(spoil: impl FnOnce(&mut Vec<PinChange>)) -> Vec<String> {
     let machine = Machine::there_and_back(2);
     let mut train = machine.train();
@@ -29,7 +30,7 @@ fn names(failures: &[String], wanted: &str) {
 }
 
 #[test]
-fn a_right_train_passes_with_the_figures_of_theory() {
+fn correct_train_passes_with_the_figures_of_theory() {
     let machine = Machine::there_and_back(6);
     let report = machine.check(&machine.train(), KNOWN);
     assert!(report.passed(), "{report}");
@@ -37,7 +38,7 @@ fn a_right_train_passes_with_the_figures_of_theory() {
         assert_eq!(axis.axis, name);
         assert_eq!(axis.pulses_found, axis.pulses_expected);
         assert_eq!(axis.position_found, 0);
-        // the generator rounds down to 62.5 ns
+        // The generator rounds down to 62.5 ns.
         let (least, greatest) = (axis.error_min_ns.unwrap(), axis.error_max_ns.unwrap());
         assert!((-62.501..-55.0).contains(&least) && (-5.0..=0.001).contains(&greatest), "{report}");
         assert!((axis.error_std_ns.unwrap() / axis.error_std_theory_ns - 1.0).abs() < 0.1, "{report}");
@@ -49,7 +50,7 @@ fn a_right_train_passes_with_the_figures_of_theory() {
 }
 
 #[test]
-fn jitter_at_constant_speed_is_one_phase_at_most() {
+fn jitter_at_constant_speed_is_at_most_one_phase() {
     for steps in [1, 997, 12_345, 100_003] {
         let machine = Machine::steady(steps);
         let report = machine.check(&machine.train(), KNOWN);
@@ -62,7 +63,7 @@ fn jitter_at_constant_speed_is_one_phase_at_most() {
 }
 
 #[test]
-fn a_foreign_capture_finds_one_origin_for_all_axes() {
+fn foreign_capture_gets_one_origin_for_all_axes() {
     let machine = Machine::there_and_back(3);
     let mut train = machine.train();
     for change in &mut train {
@@ -73,7 +74,7 @@ fn a_foreign_capture_finds_one_origin_for_all_axes() {
     let offset = report.origin_ps - (ORIGIN_PS + 7_000_000_000_123);
     assert!((-31_300..=-31_000).contains(&offset), "{offset}");
 
-    // a late axis is not hidden by an offset of its own
+    // An axis that is late is not hidden by an offset of its own.
     for change in train.iter_mut().filter(|change| change.axis == 1) {
         change.ps += 500_000;
     }
@@ -98,7 +99,7 @@ fn slack_widens_the_bounds_and_is_reported() {
 }
 
 #[test]
-fn a_dropped_pulse_is_named() {
+fn dropped_pulse_is_named() {
     for k in [1, 2, 500, 999, 1000, 1001, 1999, 2000] {
         let found = failures(|train| {
             let rise = rise(train, 0, k);
@@ -114,7 +115,7 @@ fn a_dropped_pulse_is_named() {
 }
 
 #[test]
-fn a_doubled_pulse_is_named() {
+fn doubled_pulse_is_named() {
     for k in [1, 2, 500, 999, 1000, 1001, 1999, 2000] {
         let found = failures(|train| {
             let rise = rise(train, 0, k);
@@ -131,7 +132,7 @@ fn a_doubled_pulse_is_named() {
 }
 
 #[test]
-fn a_pulse_late_by_two_phases_is_named() {
+fn pulse_late_or_early_by_two_phases_is_named() {
     let found = failures(|train| {
         let rise = rise(train, 0, 321);
         train[rise].ps += 125_000;
@@ -146,7 +147,7 @@ fn a_pulse_late_by_two_phases_is_named() {
 }
 
 #[test]
-fn dir_too_late_and_too_early_are_named() {
+fn short_direction_set_up_and_hold_are_named() {
     let found = failures(|train| {
         let (turn, rise) = (turn(train, 0, 1), rise(train, 0, 1001));
         train[turn].ps = train[rise].ps - 199_000;
@@ -163,7 +164,7 @@ fn dir_too_late_and_too_early_are_named() {
 }
 
 #[test]
-fn a_narrow_pulse_and_a_short_gap_are_named() {
+fn narrow_pulse_and_short_gap_are_named() {
     let found = failures(|train| {
         let rise = rise(train, 0, 700);
         let fall = fall(train, rise);
@@ -179,7 +180,7 @@ fn a_narrow_pulse_and_a_short_gap_are_named() {
 }
 
 #[test]
-fn step_left_high_is_named() {
+fn step_left_high_at_the_end_is_named() {
     let found = failures(|train| {
         let rise = rise(train, 0, 2000);
         let fall = fall(train, rise);
@@ -189,7 +190,7 @@ fn step_left_high_is_named() {
 }
 
 #[test]
-fn a_pulse_in_flight_at_the_start_is_named() {
+fn pulse_that_is_high_at_the_start_is_named() {
     let machine = Machine::there_and_back(1);
     let mut checker = Checker::new(machine.setup(KNOWN));
     checker.initial(PinChange { ps: 0, axis: 0, pin: Pin::Step, level: true }).unwrap();
@@ -201,9 +202,9 @@ fn a_pulse_in_flight_at_the_start_is_named() {
 }
 
 #[test]
-fn the_wrong_direction_is_named() {
+fn wrong_direction_is_named() {
     let found = failures(|train| {
-        // DIR never turns: the way back goes on forward
+        // DIR never changes, so that the way back goes forward.
         let turn = turn(train, 0, 1);
         train.remove(turn);
     });
@@ -213,7 +214,7 @@ fn the_wrong_direction_is_named() {
 }
 
 #[test]
-fn the_number_of_sentences_is_bounded() {
+fn number_of_failure_messages_is_bounded() {
     let machine = Machine::there_and_back(1);
     let nothing = &machine.check(&[], KNOWN).axes[0];
     assert_eq!(nothing.pulses_found, 0);
@@ -230,7 +231,7 @@ fn the_number_of_sentences_is_bounded() {
 }
 
 #[test]
-fn the_report_is_a_table() {
+fn report_is_printed_as_a_table() {
     let machine = Machine::there_and_back(2);
     let text = machine.check(&machine.train(), KNOWN).to_string();
     let lines: Vec<&str> = text.lines().collect();

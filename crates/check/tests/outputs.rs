@@ -1,6 +1,6 @@
-//! The CSV and the plot of a whole run.
+//! Tests the CSV and the plot of a whole run.
 
-#![allow(clippy::unwrap_used)] // a test may panic
+#![allow(clippy::unwrap_used)] // A test may panic.
 
 mod common;
 
@@ -9,7 +9,7 @@ use carrystep_core::StartPhase;
 use common::*;
 
 #[test]
-fn the_csv_has_a_line_for_every_pulse() {
+fn csv_has_a_line_for_every_pulse() {
     let machine = Machine::there_and_back(2);
     let mut bytes = Vec::new();
     let axes = machine.timelines.iter().zip(NAMES).map(|(timeline, name)| (name, timeline));
@@ -18,7 +18,8 @@ fn the_csv_has_a_line_for_every_pulse() {
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), 1 + 2000 + 1000);
     assert_eq!(lines[0], "axis,pulse,time_s,speed_steps_per_s,direction,error_ns");
-    // 64000 steps/s^2 for half a step: sqrt(1 / 64000) = 0.003952847075 s, rounded down to a phase
+    // 64000 steps/s^2 for half a step takes sqrt(1 / 64000) = 0.003952847075 s, rounded down to a
+    // phase.
     assert!(lines.contains(&"x,1,0.003952812500,,forward,-34.575"), "{}", lines[1]);
     let last: Vec<&str> = lines.iter().rfind(|line| line.starts_with("x,2000,")).unwrap().split(',').collect();
     assert_eq!(last[4], "backward");
@@ -27,7 +28,7 @@ fn the_csv_has_a_line_for_every_pulse() {
 }
 
 #[test]
-fn an_empty_run_has_a_head() {
+fn csv_of_an_empty_run_has_a_heading() {
     let machine = Machine::steady(1);
     let mut bytes = Vec::new();
     play(&[], &mut CsvWriter::new(&mut bytes, &machine.timebase, StartPhase::Half, 0, []));
@@ -35,7 +36,7 @@ fn an_empty_run_has_a_head() {
 }
 
 #[test]
-fn the_plot_stays_small_and_names_what_it_shows() {
+fn plot_stays_small_and_names_what_it_shows() {
     for axes in [1, 2, 6] {
         let machine = Machine::there_and_back(axes);
         let train = machine.train();
@@ -53,9 +54,9 @@ fn the_plot_stays_small_and_names_what_it_shows() {
     }
 }
 
-/// For the eye: `CARRYSTEP_PLOTS=folder` keeps a VCD and its save file there.
+/// Writes a VCD and its save file for inspection by eye, if `CARRYSTEP_PLOTS` names a folder.
 #[test]
-fn a_waveform_and_its_save_file_can_be_kept() {
+fn waveform_and_save_file_are_written_on_request() {
     let Some(folder) = std::env::var_os("CARRYSTEP_PLOTS") else { return };
     let machine = Machine::there_and_back(6);
     let folder = std::path::Path::new(&folder);

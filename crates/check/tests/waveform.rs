@@ -1,6 +1,7 @@
-//! An independent reader sees in our VCD what was put in, in our FST the same, and every name of the save file is there.
+//! Tests with an independent reader that the VCD contains the pins and values that were written,
+//! that the FST is equal to it, and that every name of the save file is in the VCD.
 
-#![allow(clippy::unwrap_used)] // a test may panic
+#![allow(clippy::unwrap_used)] // A test may panic.
 
 mod common;
 
@@ -12,7 +13,7 @@ use std::io::Cursor;
 use wellen::simple::Waveform;
 use wellen::{SignalRef, SignalValueRef};
 
-/// Full name with range -> signal.
+/// The signals by their full name with range.
 fn open(bytes: Vec<u8>) -> (Waveform, BTreeMap<String, SignalRef>) {
     let waveform = wellen::simple::read_from_reader(Cursor::new(bytes)).unwrap();
     let hierarchy = waveform.hierarchy();
@@ -67,7 +68,7 @@ fn another_reader_sees_the_same_edges_and_values() {
             assert!((error - pulse.error_ns.unwrap()).abs() < 1e-6 && (-62.5..0.1).contains(&error), "{error}");
         }
 
-        // the reader leaves out what stays the same
+        // The reader leaves out values that do not change.
         for (name, least) in [("profile_position", pulses.len() + 450), ("profile_speed", pulses.len() / 2 + 300)] {
             let samples = get(name);
             assert!(samples.len() > least, "{} {least}", samples.len());
@@ -80,7 +81,7 @@ fn another_reader_sees_the_same_edges_and_values() {
             }
         }
 
-        // V tick by tick, as the register adds
+        // V tick by tick, as the register adds.
         let mut register = Vec::new();
         for (_, segment) in machine.segments() {
             let (mut v, mut a) = (segment.v, segment.a);
@@ -100,9 +101,9 @@ fn another_reader_sees_the_same_edges_and_values() {
     }
 }
 
-/// Many blocks of it too.
+/// The second machine makes an FST of many blocks.
 #[test]
-fn the_fst_is_the_vcd() {
+fn fst_contains_the_same_changes_as_the_vcd() {
     for machine in [Machine::there_and_back(6), Machine::steady(60_000)] {
         let train = machine.train();
         let (vcd, fst) = (machine.vcd(&train), machine.fst(&train));
@@ -132,7 +133,7 @@ fn every_name_of_the_save_file_is_in_the_vcd() {
 }
 
 #[test]
-fn our_own_capture_is_known_and_passes() {
+fn carrystep_capture_is_recognised_and_passes() {
     let machine = Machine::there_and_back(6);
     let bytes = machine.vcd(&machine.train());
     let reader = VcdReader::new(bytes.as_slice(), machine.names(), &SignalMap::default()).unwrap();

@@ -1,4 +1,5 @@
-//! How long it takes to plan one move of six axes, fits included: `cargo bench -p carrystep-plan`.
+//! Benchmark: the time to plan one move of six axes, fits included. Run it with `cargo bench -p
+//! carrystep-plan`.
 
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
@@ -10,7 +11,7 @@ fn main() {
     divan::main();
 }
 
-/// Six axes, 20 000 steps and less, one tick of 1 us of tolerance.
+/// A move of six axes with up to 20 000 steps and a fit tolerance of one tick of 1 us.
 fn six_axes(profile: &str) -> MoveFile {
     let mut text = String::from("[machine]\n");
     for name in ["x", "y", "z", "a", "b", "c"] {

@@ -1,5 +1,8 @@
-//! A and J of one run in integers: rounded toward zero, and never such that V, which makes up for them,
-//! leaves its range.
+//! Rounds A and J of a run to integers, toward zero, such that V, which makes up for the rounding,
+//! stays in its range.
+//!
+//! A run is a sequence of ticks that follows one cubic; a unit is 2^-64 step. The exact check
+//! (`check.rs`) repeats every bound that is kept here.
 
 use crate::limits::ExactLimits;
 
@@ -10,26 +13,28 @@ pub(crate) struct Wanted {
     pub ticks: i128,
     /// Distance, 2^-64 step, 0 or more.
     pub distance: i128,
-    /// Twice the acceleration in the middle, units.
+    /// Twice the acceleration in the middle of the run, 2^-64 step per tick^2.
     pub doubled_middle: i128,
-    /// Jerk, units, rounded toward zero.
+    /// Jerk, 2^-64 step per tick^3, rounded toward zero.
     pub jerk: i128,
-    /// Whether the acceleration keeps its sign.
+    /// Whether the acceleration must keep its sign.
     pub one_way: bool,
-    /// Least V in the first tick, units: 1 where the first motion is to step at once.
+    /// Least V in the first tick, units per tick: 1 if the first motion has to step at once,
+    /// otherwise 0.
     pub least: i128,
-    /// Whether it is the first of a move: then the start speed is a limit.
+    /// Whether the run is the first of a move, to which the start speed limit applies.
     pub first: bool,
 }
 
-/// A, in the first tick, and J of a run; its distance then gives V.
+/// A in the first tick, and J of a run, in units per tick^2 and per tick^3. V follows from the
+/// distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Bend {
     pub a: i128,
     pub j: i128,
 }
 
-/// Bounds of A, both included.
+/// Bounds of A, both inclusive.
 #[derive(Debug, Clone, Copy)]
 struct Range {
     low: i128,
@@ -37,7 +42,7 @@ struct Range {
 }
 
 impl Range {
-    /// Keeps what has `slope` A + `rest` >= 0.
+    /// Restricts A to values with `slope` A + `rest` >= 0.
     fn keep(&mut self, slope: i128, rest: i128) {
         if slope > 0 {
             self.low = self.low.max(-rest.div_euclid(slope));
@@ -48,8 +53,9 @@ impl Range {
 }
 
 impl Wanted {
-    /// The registers nearest to what is wanted that keep V between zero and the speed limit at both ends, and A
-    /// and J within theirs. Without J, without A: one of the three is always possible.
+    /// Returns the registers nearest to the wanted ones that keep V between zero and the speed
+    /// limit at both ends of the run, and A and J within their limits. If there are none with J,
+    /// the run has J = 0; if there are none with A either, both are 0, which is always possible.
     pub fn within(self, limits: &ExactLimits) -> Bend {
         let most = limits.jerk.unwrap_or(i128::MAX);
         let with_jerk = self.accelerated(self.jerk.clamp(-most, most), limits);
@@ -66,12 +72,14 @@ impl Wanted {
         let last_tick = (n - 1) * j;
         let fastest = n * limits.fastest();
         let mut a = Range { low: -limits.acceleration, high: limits.acceleration };
-        // A is right a tick later than it is loaded: the run begins at A - J, ends at A + (n - 1) J.
+        // The continuous acceleration runs from A - J at the start of the run to A + (n - 1) J at
+        // its end.
         for end in [-j, last_tick] {
             a.keep(1, limits.acceleration + end);
             a.keep(-1, limits.acceleration - end);
         }
-        // n V is distance - pairs A - by_jerk in the first tick, distance + pairs A + 2 by_jerk in the last.
+        // n V is distance - pairs A - by_jerk in the first tick, and distance + pairs A + 2 by_jerk
+        // in the last.
         a.keep(-pairs, distance - by_jerk - n * self.least);
         a.keep(pairs, distance + 2 * by_jerk);
         a.keep(pairs, fastest - distance + by_jerk);
@@ -87,19 +95,20 @@ impl Wanted {
             return None;
         }
         if self.first {
-            // V - A/2 + J/3, the speed at the very start, times 6 n.
+            // 6 n times V - A/2 + J/3, the speed at the start of the first tick.
             let mut slow = a;
             let start = limits.start_speed + limits.tolerance;
             slow.keep(3 * n * n, 6 * (by_jerk - distance + n * start) - 2 * n * j);
             a.low = slow.low.min(a.high);
         }
-        // V changes by A + k J from tick k to the next: in the middle of these changes A + (n - 2)/2 J is right.
+        // V changes by A + k J from tick k to the next. In the middle of these changes this is A +
+        // (n - 2)/2 J, which should equal the wanted acceleration.
         let nearest = (self.doubled_middle - (n - 2) * j) / 2;
         Some(Bend { a: nearest.clamp(a.low, a.high), j })
     }
 }
 
-/// n(n-1)(n-2)/6 J, where that fits with room to spare.
+/// The distance n(n-1)(n-2)/6 J in units, or `None` if its magnitude is 2^120 or more.
 pub(crate) fn jerk_distance(n: i128, j: i128) -> Option<i128> {
     if j == 0 {
         return Some(0);
@@ -127,8 +136,9 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_fraction_of_jerk_never_turns_the_speed_round() {
-        // From and to rest with a jerk of 10.9 units: leaving out 0.9 alone would dip below zero.
+    fn rounding_of_jerk_never_reverses_the_speed() {
+        // The run starts or ends at rest with a jerk of 10.9 units. Leaving out only the 0.9 units
+        // would let V dip below zero.
         let n = 100_000;
         let distance = n * n * n / 6 * 109 / 10;
         for doubled_middle in [n * 109 / 10, -n * 109 / 10] {
@@ -140,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_bent_is_straight() {
+    fn run_without_valid_bend_has_constant_speed() {
         let wanted = Wanted {
             ticks: 1000,
             distance: 5,

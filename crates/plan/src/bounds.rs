@@ -1,13 +1,19 @@
-//! The limits of a stretch as rows of its linear programme: V, A, J and the jumps at rest are linear in them.
+//! Writes the limits of a stretch as rows of its linear programme. V, A, J and the speed jumps at
+//! the start and the end of a move are linear in the three unknowns.
+//!
+//! `HELD` may be tuned: the exact check refuses a plan that exceeds a limit between these
+//! positions.
 
 use crate::corridor::steps;
 use crate::exchange::Row;
 use crate::limits::ExactLimits;
 
-/// Where the sign of V and the speed limit are held; the exact check then sees every tick.
+/// Positions within a stretch, as fractions of its length, at which the rows bound V. The exact
+/// check later covers every tick.
 const HELD: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// Bounds for V n, A n^2 and J n^3, steps, over `n` ticks; `scale` makes one unit of excess worth one level.
+/// Appends the bounds for the unknowns V n, A n^2 and J n^3, in steps, over `n` ticks. `scale` is
+/// the weight of a row, chosen so that one unit of excess counts like one level.
 pub(crate) fn bounds(rows: &mut Vec<Row>, n: f64, limits: &ExactLimits, [first, last]: [bool; 2], scale: f64) {
     let mut hold = |at: [f64; 3], most: f64| {
         rows.push(Row { at: at.map(|b| b * scale), error: 0.0, most: most * scale });
@@ -37,7 +43,8 @@ pub(crate) fn bounds(rows: &mut Vec<Row>, n: f64, limits: &ExactLimits, [first, 
         hold([1.0, 1.0 - 0.5 / n, 0.5 - (1.0 - 1.0 / (3.0 * n)) / n], jump);
     }
     if jump == 0.0 {
-        // From V = 0 it can only rise, and to V = 0 only fall.
+        // A move that starts at V = 0 can only accelerate there, and one that ends at V = 0 only
+        // decelerate.
         if first {
             hold([0.0, -1.0, 0.0], 0.0);
         }

@@ -1,4 +1,7 @@
-//! The exact check: nothing leaves the planner that has not passed it.
+//! The exact check of a plan. Every plan has to pass it before the planner returns it.
+//!
+//! All computations here are in integers and independent of how the segments were found. The rules
+//! may change only together with [`Broken`].
 
 use crate::edges::travel;
 use crate::error::Broken;
@@ -6,7 +9,7 @@ use crate::limits::ExactLimits;
 use crate::peaks::Peaks;
 use carrystep_core::Segment;
 
-/// What the segments of one axis must do in one move, the rest before it left out.
+/// What the segments of one axis have to do in one move, without the rest before it.
 pub(crate) struct Duty {
     pub backward: bool,
     /// Signed distance, 2^-64 step.
@@ -14,7 +17,7 @@ pub(crate) struct Duty {
     pub ticks: u64,
 }
 
-/// Checks every segment at its ends and extrema, in integers.
+/// Checks every segment at its ends and extrema, in integers, and returns the greatest values.
 ///
 /// # Errors
 /// The first rule that is broken.
@@ -63,17 +66,20 @@ pub(crate) fn check(segments: &[Segment], duty: &Duty, limits: &ExactLimits) -> 
     })
 }
 
-/// V - A/2 + J/3 in the direction of travel, rounded up, at least 0.
+/// The speed at the start of the first tick, V - A/2 + J/3 in the direction of travel, rounded up,
+/// at least 0, in 2^-64 step per tick.
 pub(crate) fn start_speed(first: &Segment, backward: bool, limits: &ExactLimits) -> i128 {
     let sixfold = 6 * i128::from(first.v) - 3 * i128::from(first.a) + 2 * i128::from(first.j);
     let sixfold = if backward { -sixfold } else { sixfold };
-    // A tick of its own says only how far it goes, not how fast it began.
+    // A segment of one tick gives its distance but not the speed at its start. It may have
+    // accelerated within the tick by as much as the acceleration limit allows.
     let explained = if first.ticks == 1 { 3 * limits.acceleration } else { 0 };
     let sixfold = (sixfold - explained).max(0);
     (sixfold + 5) / 6
 }
 
-/// V in the first and last tick, and on either side of where A changes sign: its extremes are among them.
+/// V in the first and last tick, and on both sides of the zero of A. The extremes of V are among
+/// these values.
 pub(crate) fn speeds(segment: &Segment) -> impl Iterator<Item = i128> {
     let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
     let last = i128::from(segment.ticks) - 1;
@@ -101,15 +107,16 @@ mod tests {
     }
 
     #[test]
-    fn a_dip_inside_a_cubic_is_found() {
-        // V = 3, 1, 0, 0, 1, 3: touches zero. One less, and it dips below in the middle only.
+    fn check_finds_speed_that_changes_sign_inside_a_segment() {
+        // V = 3, 1, 0, 0, 1, 3 only touches zero. With V one less, it is negative in the middle
+        // only.
         assert!(checked(segment(6, 3, -2, 1), false).is_ok());
         assert_eq!(checked(segment(6, 2, -2, 1), false), Err(Broken::Sign));
         assert_eq!(checked(segment(6, -2, 2, -1), true), Err(Broken::Sign));
     }
 
     #[test]
-    fn each_limit_is_exact() {
+    fn check_accepts_each_limit_and_refuses_the_next_value() {
         assert!(checked(segment(10, 1050, 100, 0), false).is_ok());
         assert_eq!(checked(segment(10, 1052, 100, 0), false), Err(Broken::StartSpeed));
         assert_eq!(checked(segment(10, 1050, 102, 0), false), Err(Broken::Acceleration));
@@ -118,14 +125,14 @@ mod tests {
         assert_eq!(checked(segment(5, 1000, 10, 9), false), Err(Broken::Jerk));
         assert!(checked(segment(5, 1000, 10, 8), false).is_ok());
         assert_eq!(checked(segment(10, 1050, 100, 0), false).map(|p| p.start_speed), Ok(1000));
-        // From V = 0 it is the sign of the move that counts.
+        // From V = 0, the direction of the move decides the sign.
         let backward = checked(segment(10, 0, -100, 0), true);
         assert_eq!(backward.map(|p| p.start_speed), Ok(0));
         assert_eq!(checked(segment(1, 1051, 0, 0), false).map(|p| p.start_speed), Ok(1001));
     }
 
     #[test]
-    fn landing_is_exact() {
+    fn check_refuses_a_distance_that_is_one_unit_off() {
         let duty = Duty { backward: false, distance: 5001, ticks: 10 };
         assert_eq!(check(&[segment(10, 500, 0, 0)], &duty, &LIMITS), Err(Broken::Landing));
         let duty = Duty { distance: 5000, ..duty };

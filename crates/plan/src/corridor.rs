@@ -1,8 +1,11 @@
-//! Where a curve may run so that its edges keep within a tolerance of the profile's.
+//! The corridor of a fit: where a curve may run so that its edges stay within a tolerance of the
+//! profile's edges.
 //!
-//! With x(t) the profile and T the tolerance, an edge is not late if the curve has passed x(t) at t + T, and
-//! not early if it has not yet at t - T. Only edges count: where a stretch has few, each is a sample; where it
-//! has many, samples stand for them, closer together near the ends, as the zeros of Chebyshev's polynomials do.
+//! Let x(t) be the profile and T the tolerance. An edge is not late if the curve has reached x(t)
+//! at t + T, and not early if it has not yet reached x(t) at t - T. Only edges count. A stretch
+//! with few edges has one sample for each of them. In a stretch with many edges, samples stand for
+//! them; they are closer together near the ends, like the zeros of Chebyshev's polynomials. The
+//! constants below may be tuned; `judge` in `fit.rs` decides on the integers.
 
 use crate::demand::{Clock, float};
 use crate::exchange::Row;
@@ -11,19 +14,23 @@ use carrystep_core::StartPhase;
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_profile::{Profile, Real};
 
-/// Fewest edges of a stretch that samples may stand for, and the number of these samples.
+/// The number of sample intervals of a stretch, and the number of edges up to which every edge is a
+/// sample of its own.
 const SAMPLES: u32 = 16;
 
-/// How close to the profile, in steps, a curve is kept between edges that are far apart: it keeps to the next ones.
+/// How close to the profile, in steps, a curve is kept between edges that are far apart, so that it
+/// does not miss the edges that follow.
 const BETWEEN: f64 = 0.2;
 
-/// The part of the tolerance that may be lost to the chord of a tick unseen.
+/// The fraction of the tolerance below which the deviation of a tick's chord is ignored.
 const UNSEEN: f64 = 0.05;
 
-/// How close to the end of the move, in steps, a curve is kept before the integers land it.
+/// How close to the end of the move, in steps, a curve has to come before the integers land
+/// exactly.
 const AT_REST: f64 = 1e-3;
 
-/// The part of the tolerance that a stretch may leave at its end: the next one starts with that error.
+/// The fraction of the tolerance that a stretch may leave at its end, because the next stretch
+/// starts with that error.
 pub(crate) const JOINT: f64 = 0.8;
 
 /// The tolerance around one piece of a profile.
@@ -33,49 +40,52 @@ pub(crate) struct Corridor<'a, F> {
     pub clock: Clock<F>,
     pub phase: StartPhase,
     pub backward: bool,
-    /// Pulses of the whole move.
+    /// Number of pulses of the whole move.
     pub pulses: u64,
     pub piece: Piece,
     /// Whether the piece is slower at its start than at its end.
     pub rises: bool,
-    /// Ticks.
+    /// Tolerance of an edge, ticks.
     pub tolerance: f64,
     /// The acceleration limit, steps per tick^2.
     pub bend: f64,
 }
 
-/// Ticks within a piece, and where the axis is when they begin.
+/// A run of ticks within a piece, and the position of the axis when the run begins.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stretch {
-    /// First tick, from the start of the piece.
+    /// First tick, counted from the start of the piece.
     pub first: u64,
     pub ticks: u64,
     /// Distance from the start of the move, 2^-64 step.
     pub done: i128,
 }
 
-/// What the rows of a stretch are.
+/// Describes the rows that [`Corridor::rows`] has written.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Samples {
-    /// Four rows that alternate.
+    /// Indices of four rows that alternate in sign, to start the exchange from.
     pub start: [usize; 4],
-    /// How many rows come first that stand for others between them, two a sample.
+    /// Number of leading rows that stand for many edges, two rows for each sample; 0 if every edge
+    /// has rows of its own.
     pub standing: usize,
 }
 
-/// Units as steps.
+/// Converts units of 2^-64 step to steps.
 pub(crate) fn steps(units: i128) -> f64 {
     units as f64 * 2_f64.powi(-64)
 }
 
-/// The shape of the three registers' distances after `t` of `n` ticks, for V n, A n^2 and J n^3.
+/// The distances that V n, A n^2 and J n^3 contribute after `t` of `n` ticks, each per unit of its
+/// unknown.
 pub(crate) fn basis(t: f64, n: f64) -> [f64; 3] {
     let s = t / n;
     let pairs = s * (t - 1.0) / (2.0 * n);
     [s, pairs, pairs * (t - 2.0) / (3.0 * n)]
 }
 
-/// The same where edges are: on the chord from tick to tick.
+/// The same on the chord of the tick that contains `t`. Edges lie on this chord, because the
+/// gateware interpolates linearly within a tick.
 fn chord(t: f64, n: f64) -> [f64; 3] {
     let part = t - t.floor();
     let [from, to] = [t.floor(), t.floor() + 1.0].map(|t| basis(t, n));
@@ -87,24 +97,26 @@ fn wide<F: Real>(x: F) -> f64 {
 }
 
 impl<F: Real> Corridor<'_, F> {
-    /// Seconds from the start of the move to `t` ticks into the piece.
+    /// Seconds from the start of the move to `t` ticks into the piece, limited to the end of the
+    /// move.
     fn seconds(&self, t: f64) -> F {
         let exact = float::<F>(self.piece.first) + F::from(t).unwrap_or_else(F::nan);
         (exact * self.clock.tick).min(self.clock.seconds)
     }
 
-    /// Whether the first pulse is due with the first motion: then V must not start at 0.
+    /// Whether the first pulse is due at the start of the motion; V must then not start at 0.
     pub fn steps_at_once(&self) -> bool {
         self.phase == StartPhase::Zero && self.backward
     }
 
-    /// Speed `t` ticks into the piece, steps per tick.
+    /// Speed of the profile `t` ticks into the piece, steps per tick.
     pub fn speed(&self, t: f64) -> f64 {
         wide(self.profile.speed(self.seconds(t)) * self.clock.tick)
     }
 
-    /// Steps from `done` to where the profile is `t` ticks into the piece: by way of the slower end of the piece,
-    /// so that near rest no two long distances are subtracted.
+    /// Steps from `done` to the position of the profile `t` ticks into the piece. The distance is
+    /// taken from the slower end of the piece, so that near rest no two long distances are
+    /// subtracted.
     pub fn ahead(&self, done: i128, t: f64) -> f64 {
         let Piece { first, ticks, start, units, .. } = self.piece;
         let now = self.seconds(t);
@@ -116,7 +128,7 @@ impl<F: Real> Corridor<'_, F> {
         }
     }
 
-    /// Rows for all edges of a stretch.
+    /// Appends the rows for all edges of a stretch to `rows`, and describes them.
     pub fn rows(&self, stretch: Stretch, rows: &mut Vec<Row>) -> Samples {
         let Stretch { first, ticks, done } = stretch;
         let (begin, n) = (first as f64, ticks as f64);
@@ -125,7 +137,7 @@ impl<F: Real> Corridor<'_, F> {
         let until = self.pulses_until(here(n));
         let edges = until.saturating_sub(before);
         if edges > u64::from(SAMPLES) {
-            // Where edges are far apart, none is before the first and behind the last.
+            // Where edges are far apart, there are none before the first and after the last one.
             let sparse = |t: f64| self.speed(begin + t) * n < 64.0;
             let low = if sparse(0.0) { self.edge(stretch, before + 1).0 } else { 0.0 };
             let high = if sparse(n) { self.edge(stretch, until).0 } else { n };
@@ -153,7 +165,9 @@ impl<F: Real> Corridor<'_, F> {
         Samples { start: alternating([0, 2, 4, 6]), standing: 0 }
     }
 
-    /// Where the next stretch starts, the error is smaller; before the first edge, as small as it is there.
+    /// Bounds the error at the end of a stretch, because the next stretch starts with it. The bound
+    /// is the distance that the axis travels in the fraction [`JOINT`] of the tolerance, at the
+    /// speed there or at the next edge, whichever is greater. At rest it is [`AT_REST`] steps.
     fn joint(&self, rows: &mut Vec<Row>, stretch: Stretch, until: u64) {
         let Stretch { first, ticks, done } = stretch;
         let n = ticks as f64;
@@ -167,7 +181,8 @@ impl<F: Real> Corridor<'_, F> {
         }
     }
 
-    /// The pulse due before the stretch may come in it, but not too late; the one due after it not too early.
+    /// Keeps the neighbouring edges: the pulse due before the stretch must not come too late within
+    /// it, and the pulse due after it must not come too early.
     fn neighbours(&self, rows: &mut Vec<Row>, stretch: Stretch, before: u64, until: u64) {
         let n = stretch.ticks as f64;
         let mut keep = |sign: f64, pulse: u64| {
@@ -187,13 +202,14 @@ impl<F: Real> Corridor<'_, F> {
         }
     }
 
-    /// Pulses that are due up to a position.
+    /// Number of pulses that are due up to a position.
     fn pulses_until(&self, position: f64) -> u64 {
         let offset = self.phase.pulse_half_steps(1, self.backward) as f64 / 2.0;
         ((position - offset + 1.0).floor().max(0.0) as u64).min(self.pulses)
     }
 
-    /// When a pulse is due, in ticks of the stretch, and how many steps it is ahead.
+    /// The time at which a pulse is due, in ticks of the stretch, and its distance from `done` in
+    /// steps.
     fn edge(&self, Stretch { first, done, .. }: Stretch, pulse: u64) -> (f64, f64) {
         let half_steps = self.phase.pulse_half_steps(pulse, self.backward);
         let due = self.profile.crossing(F::from(half_steps as f64 / 2.0).unwrap_or_else(F::nan));
@@ -201,23 +217,26 @@ impl<F: Real> Corridor<'_, F> {
         (t, steps(i128::from(half_steps) * (ONE_STEP / 2) - done))
     }
 
-    /// How far the chord of the profile's tick is above the profile, steps.
+    /// How far the chord of the profile's tick lies above the profile at time `t`, steps.
     fn sag(&self, stretch: Stretch, t: f64) -> f64 {
         let part = t - t.floor();
         let acceleration = self.profile.acceleration(self.seconds(stretch.first as f64 + t)) * self.clock.tick;
         wide(acceleration * self.clock.tick) * part * (1.0 - part) / 2.0
     }
 
-    /// Not late, not early: the curve passes `ahead` within the tolerance of `t`, or within `least` steps of it.
+    /// Appends the two rows of one sample: the curve passes `ahead` within the tolerance of time
+    /// `t`, or, if the profile is slow, within `least` steps at `t`.
     fn both_sides(&self, rows: &mut Vec<Row>, stretch: Stretch, t: f64, ahead: f64, least: f64) {
         let n = stretch.ticks as f64;
         let width = self.speed(stretch.first as f64 + t) * self.tolerance;
         let (width, late) = if width > least { (width, self.tolerance) } else { (least, 0.0) };
-        // At rest no time is too long: such an edge is where the move ends, or where it starts.
+        // An edge at rest is the first or the last of the move. Its time has no bound, so its rows
+        // get the weight 0.
         let weight = if width > 0.0 { width.recip() } else { 0.0 };
         let slack = if late > 0.0 { 1.0 } else { 0.0 };
-        // An edge is on the chord of its tick. That of the profile itself is in the bound of its edges already, so
-        // the curve's may be off the curve as far, but not further.
+        // An edge lies on the chord of its tick. The edges of the profile are computed without
+        // chords, so the chord of the curve may deviate from the curve as far as the profile's
+        // chord does from the profile.
         let chords = late > 0.0 && self.bend / 8.0 > UNSEEN * width;
         let side = |t: f64| if chords { (chord(t, n), self.sag(stretch, t)) } else { (basis(t, n), 0.0) };
         let [(after, above), (before, below)] = [t + late, t - late].map(side);
@@ -226,7 +245,8 @@ impl<F: Real> Corridor<'_, F> {
     }
 }
 
-/// The greatest of evenly spaced values and of what a parabola through three of them says lies between.
+/// The greatest of evenly spaced values, and of the maxima of the parabolas through three
+/// neighbouring values.
 pub(crate) fn peak(values: impl Iterator<Item = f64>) -> f64 {
     let (mut greatest, mut held) = (0.0_f64, [f64::NAN; 2]);
     for next in values {
@@ -241,7 +261,7 @@ pub(crate) fn peak(values: impl Iterator<Item = f64>) -> f64 {
     greatest
 }
 
-/// Below, above, below, above: the first rows of four samples.
+/// The indices of the rows below, above, below and above four samples, each given by its first row.
 fn alternating(samples: [usize; 4]) -> [usize; 4] {
     std::array::from_fn(|k| samples[k] + k % 2)
 }

@@ -1,4 +1,6 @@
-//! How long a move takes, and the profile of each axis in that time.
+//! Determines how long a move takes, and the profile of each axis in that time.
+//!
+//! A new kind of profile is added to `least_time` and `profile` in this file.
 
 use crate::error::PlanError;
 use crate::limits::float_limits;
@@ -9,35 +11,41 @@ use carrystep_files::{MoveFile, PathKind, ProfileKind};
 use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, rule};
 use std::sync::Arc;
 
-/// Most ticks of a move, 10^6 s at 250 ns: closed forms over it stay well inside i128, its segments in memory.
+/// The greatest number of ticks of a move: 2^42, which is 1.1 x 10^6 s at 250 ns. Up to there the
+/// closed forms stay inside an i128 and the segments fit in memory.
 const MOST_TICKS: u64 = 1 << 42;
 
-/// The time of a move, in ticks and seconds.
+/// The duration of a move.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Clock<F> {
-    /// Whole ticks, the last one perhaps used in part.
+    /// Whole ticks; the last one may be used only in part.
     pub ticks: u64,
-    /// How much of the last tick is used, over 0 and at most 1.
+    /// The fraction of the last tick that the move uses, above 0 and at most 1.
     pub last: F,
-    /// Seconds.
+    /// Duration of the move, seconds.
     pub seconds: F,
-    /// Seconds in a tick.
+    /// Length of a tick, seconds.
     pub tick: F,
 }
 
 impl<F: Real> Clock<F> {
-    /// Seconds from the start of the move to the start of tick `n`, from 0; the end of the move at most.
+    /// Seconds from the start of the move to the start of tick `n` (counted from 0), limited to the
+    /// end of the move.
     pub fn at(&self, n: u64) -> F {
         (float::<F>(n) * self.tick).min(self.seconds)
     }
 }
 
-/// A whole number as the nearest float.
+/// Converts a whole number to the nearest float.
 pub(crate) fn float<F: Real>(n: u64) -> F {
     F::from(n).unwrap_or_else(F::nan)
 }
 
-/// The common time of all axes and their profiles, in a given time or, without one, as fast as the limits allow.
+/// Returns the common duration of all axes and the profile of each: in the given time, or without
+/// one as fast as the limits allow, rounded up to whole ticks.
+///
+/// # Errors
+/// [`PlanError::Refused`], [`PlanError::NotWholeTicks`] or [`PlanError::TooLong`].
 pub(crate) fn demand<F: Real>(
     file: &MoveFile,
     index: usize,
@@ -69,7 +77,8 @@ pub(crate) fn demand<F: Real>(
         None => whole(least, &timebase, index)?,
     };
 
-    // Where several axes are refused, the slowest one is named: its time is what all can do.
+    // Where several axes refuse the time, the error names the slowest one: its least time works for
+    // all axes.
     let mut worst: Option<(usize, Refusal)> = None;
     let mut profiles: Vec<SharedProfile<F>> = Vec::with_capacity(axes.len());
     for (axis, (steps, limits)) in axes.iter().enumerate() {
@@ -121,12 +130,12 @@ fn seconds(ticks: u64, timebase: &Timebase) -> f64 {
     (u128::from(ticks) * u128::from(timebase.tick_ns())) as f64 / 1e9
 }
 
-/// `least` seconds, rounded up to a whole tick, one at least.
+/// Rounds `least` seconds up to whole ticks, at least one.
 fn whole<F: Real>(least: F, timebase: &Timebase, index: usize) -> Result<Clock<F>, PlanError> {
     let tick = F::from(timebase.tick_seconds()).unwrap_or_else(F::nan);
     let exact = least / tick;
     let nearest = exact.round();
-    // A time that is whole ticks but for its rounding does not cost another tick.
+    // A time that differs from whole ticks only by float rounding does not cost another tick.
     let noise = F::epsilon() * float(8) * exact;
     let rounded = if (exact - nearest).abs() <= noise { nearest } else { exact.ceil() };
     let ticks = rounded.to_u64().unwrap_or(u64::MAX).max(1);
@@ -138,7 +147,7 @@ fn whole<F: Real>(least: F, timebase: &Timebase, index: usize) -> Result<Clock<F
     Ok(Clock { ticks, last: F::one(), seconds, tick })
 }
 
-/// The time that the file gives: ceil(T / h) ticks, exactly.
+/// Converts the time of the file to ceil(T / h) ticks, in exact decimals.
 fn given<F: Real>(
     time: &BigDecimal,
     timebase: &Timebase,
@@ -150,7 +159,7 @@ fn given<F: Real>(
     let float = |value: &BigDecimal| value.to_f64().and_then(F::from).unwrap_or_else(F::nan);
     let too_long = || PlanError::TooLong { index, seconds: time.to_f64().unwrap_or(f64::NAN), tick_ns };
     let tick = BigDecimal::from(tick_ns);
-    // The quotient may be rounded; the remainder is exact, and puts it right.
+    // The decimal quotient may be rounded; the remainder is exact and corrects it.
     let mut full = (&ns / &tick).with_scale_round(0, RoundingMode::Floor);
     let mut rest = &ns - &full * &tick;
     if rest < BigDecimal::zero() {

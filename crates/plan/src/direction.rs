@@ -1,11 +1,18 @@
-//! Rest before a move, where DIR set-up and hold would otherwise delay its first edge.
+//! Computes the rest before a move, where DIR set-up and hold would otherwise delay its first edge.
 //!
-//! DIR follows the sign of V. A rest of 1 + r ticks turns it early and leaves P as it was: one tick with
-//! V = -r, which DIR already points to, then r ticks with V = 1 unit in the new direction.
+//! DIR follows the sign of V. A rest of 1 + r ticks changes DIR early and leaves P unchanged: one
+//! tick with V = -r, in the old direction, and then r ticks with V = 1 unit in the new direction.
+//! At phase zero a forward move cannot do so and borrows one unit from its own distance (see
+//! [`borrows`]).
+//!
+//! The rule for DIR is that of the gateware (docs/clock-by-clock.md, "shaper"); both may change
+//! only together.
 
 use carrystep_core::{PinTiming, Segment, StartPhase, Timebase};
 
-/// The pins of one axis after the moves planned so far; times in clocks from the origin, latency left out.
+/// The state of the pins of one axis after the moves planned so far: the direction, the clock at
+/// which DIR last changed, and that of the last rising edge of STEP. Clocks count from the origin,
+/// without the latency of the build.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pins {
     backward: bool,
@@ -13,18 +20,19 @@ pub(crate) struct Pins {
     last_edge: Option<i128>,
 }
 
-/// What a move does to the pins, in clocks from where its motion starts.
+/// The times at which a move uses the pins, in clocks from the start of its motion.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strokes {
     pub backward: bool,
-    /// The first tick whose V has a sign.
+    /// The first tick in which V is not 0, as a clock.
     pub motion: i128,
     pub first_edge: i128,
     pub last_edge: i128,
 }
 
 impl Pins {
-    /// After configuration DIR is forward; no axis can start before the first strobe.
+    /// The state after configuration: DIR is forward. No axis can start before the first strobe, so
+    /// DIR has been stable since one latency and one tick before the origin.
     pub fn new(timebase: &Timebase) -> Self {
         let configured = -i128::from(timebase.latency_clocks()) - i128::from(timebase.clocks_per_tick());
         Self { backward: false, turned: configured, last_edge: None }
@@ -48,7 +56,8 @@ impl Pins {
         missing(self.turn(begin + early, pins)).max(least)
     }
 
-    /// The pins after a move whose rest starts at clock `begin`.
+    /// Updates the state of the pins by a move whose rest starts at clock `begin`. `turned_in_rest`
+    /// is the clock within the rest at which DIR changes, or `None` if it changes with the motion.
     pub fn after(
         &mut self,
         begin: i128,
@@ -75,19 +84,20 @@ impl Pins {
         self.last_edge.map_or(wanted, |last| wanted.max(last + i128::from(pins.hold)))
     }
 
-    /// When the last pulse and its gap are over.
+    /// The clock at which the last pulse and the gap after it are over.
     fn ready(&self, pins: &PinTiming) -> i128 {
         self.last_edge.map_or(i128::MIN, |last| last + i128::from(pins.width) + i128::from(pins.gap))
     }
 }
 
-/// Whether a rest that turns DIR takes its unit from the move: from P = 0 forward, a tick with negative V
-/// would step back, so that P cannot come back to where it was.
+/// Whether a rest that changes DIR takes one unit of distance from the move. A forward move that
+/// starts at P = 0 has to: a tick with negative V would step back at once, so the rest could not
+/// leave P unchanged.
 pub(crate) fn borrows(phase: StartPhase, backward: bool) -> bool {
     phase == StartPhase::Zero && !backward
 }
 
-/// The segments of a rest that turns DIR.
+/// The segments of a rest of `ticks` ticks (at least 1) that changes DIR.
 pub(crate) fn turning_rest(ticks: u32, backward: bool, phase: StartPhase) -> Vec<Segment> {
     let segment = |ticks, v| Segment { ticks, v, a: 0, j: 0, last: false };
     let sign = if backward { -1 } else { 1 };

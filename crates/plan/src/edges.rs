@@ -1,4 +1,7 @@
-//! When the pins move, exactly, from the integers of a plan.
+//! Computes the clock of a pin edge exactly, from the integers of a plan.
+//!
+//! These functions repeat the arithmetic of the gateware (docs/clock-by-clock.md) in closed form;
+//! they may change only together with it.
 
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{Segment, Timebase};
@@ -7,18 +10,20 @@ use carrystep_core::{Segment, Timebase};
 pub(crate) fn travel(segment: &Segment, n: i128) -> i128 {
     let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
     let pairs = n * (n - 1) / 2;
-    // n(n-1)(n-2)/6 is whole, but n(n-1)/2 (n-2) need not fit where J is 0.
+    // n(n-1)(n-2)/6 is a whole number. The product is skipped where J is 0, because for a long
+    // segment it may not fit into an i128.
     let triples = if j == 0 { 0 } else { n * (n - 1) * (n - 2) / 6 };
     n * v + pairs * a + triples * j
 }
 
-/// V in tick `k`, from 0, of a segment.
+/// V in tick `k` of a segment, counted from 0, in units per tick.
 fn speed(segment: &Segment, k: i128) -> i128 {
     let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
     v + k * a + k * (k - 1) / 2 * j
 }
 
-/// The first tick, from 0, in which V is not 0.
+/// The first tick in which V is not 0, counted from 0. A segment that starts at V = 0 moves from
+/// its second tick on if A is not 0, and from its third tick on if only J is not 0.
 pub(crate) fn first_motion(segments: &[Segment]) -> u64 {
     let mut before = 0;
     for segment in segments {
@@ -31,9 +36,11 @@ pub(crate) fn first_motion(segments: &[Segment]) -> u64 {
     before
 }
 
-/// Clocks from the start of the segments to the edge of pulse `k` (from 1), the latency left out.
+/// Clocks from the start of the segments to the rising edge of pulse `k` (counted from 1), without
+/// the latency of the build.
 ///
-/// The segments go one way only, from a `start` value of P. `None`: there is no such pulse.
+/// The segments must travel in one direction only; `start` is the value of P before them. Returns
+/// `None` if the segments have fewer than `k` pulses.
 pub(crate) fn edge(segments: &[Segment], start: u64, backward: bool, k: u64, timebase: &Timebase) -> Option<i128> {
     let target = i128::from(k) * ONE_STEP;
     let passed = |p: i128| if backward { p < ONE_STEP - target } else { p >= target };
@@ -43,7 +50,7 @@ pub(crate) fn edge(segments: &[Segment], start: u64, backward: bool, k: u64, tim
         let ticks = i128::from(segment.ticks);
         let end = p + travel(segment, ticks);
         if passed(end) {
-            // Smallest n with the edge at or before the end of tick n.
+            // Bisects for the least n for which the edge is at or before the end of tick n.
             let (mut low, mut high) = (0, ticks);
             while high - low > 1 {
                 let middle = low + (high - low) / 2;
@@ -60,7 +67,8 @@ pub(crate) fn edge(segments: &[Segment], start: u64, backward: bool, k: u64, tim
     None
 }
 
-/// The gateware's bisection: top 32 bits of P and V, one halving of V a phase bit.
+/// The phase that the gateware's bisection finds: it uses the top 32 bits of P and V, and halves V
+/// once for each phase bit.
 fn phase(p: i128, v: i128, bits: u32) -> i128 {
     let mut p = (p >> 32) & 0xffff_ffff;
     let v = v >> 32;

@@ -1,81 +1,89 @@
-//! Why a file cannot be planned.
+//! The errors of planning: why a file cannot be planned.
+//!
+//! The messages are part of the command's interface: transcripts in tests/ quote them.
 
 use carrystep_files::{TooManyAxes, Unit};
 use carrystep_profile::Refusal;
 use thiserror::Error;
 
-/// A move that cannot be done as asked, and what to do. `index` counts moves from 0, messages from 1.
+/// A move that cannot be done as requested, and what to change. `index` counts moves from 0; the
+/// messages count them from 1.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PlanError {
-    /// The gateware that plans are made for has fewer axes.
+    /// The machine file has more axes than the gateware that plans are made for.
     #[error(transparent)]
     Axes(#[from] TooManyAxes),
-    /// A limit of an axis forbids it.
+    /// A limit of an axis forbids the move.
     #[error("move {}, axis {axis}: {}", index + 1, refused(refusal, unit, *least_time))]
     Refused {
-        /// Which move.
+        /// The move, counted from 0.
         index: usize,
-        /// The axis that needs most time.
+        /// The axis that needs the longest time.
         axis: String,
-        /// Limit, wanted and available value, in steps.
+        /// The limit with the wanted and the available value, in steps and seconds.
         refusal: Refusal,
-        /// The unit in which the message gives them.
+        /// The unit in which the message gives the values.
         unit: Unit,
-        /// Least time in which all axes can do the move, whole ticks, seconds; `None`: no time would do.
+        /// Least time in which all axes can do the move, seconds, rounded up to whole ticks; `None`
+        /// if no time works.
         least_time: Option<f64>,
     },
-    /// At phase zero the last pulse is due at the very end, so that a tick must end there.
+    /// The time is not a whole number of ticks. At phase zero the last pulse is due at the very end
+    /// of the move, which must therefore be the end of a tick.
     #[error(
         "move {}: time = {seconds} s is not a whole number of ticks of {tick_ns} ns, which phase = \"zero\" needs; take {rounded} s, or phase = \"half\"",
         index + 1
     )]
     NotWholeTicks {
-        /// Which move.
+        /// The move, counted from 0.
         index: usize,
-        /// Time asked for, seconds.
+        /// The requested time, seconds.
         seconds: f64,
-        /// Tick, ns.
+        /// Length of a tick, ns.
         tick_ns: u64,
-        /// The next time that would do, seconds.
+        /// The next longer time that works, seconds.
         rounded: f64,
     },
-    /// More ticks than a plan counts.
+    /// The move has more than 2^42 ticks.
     #[error("move {}: {seconds} s is over 2^42 ticks of {tick_ns} ns; raise the limits that make it slow, or split it", index + 1)]
     TooLong {
-        /// Which move.
+        /// The move, counted from 0.
         index: usize,
         /// Its time, seconds.
         seconds: f64,
-        /// Tick, ns.
+        /// Length of a tick, ns.
         tick_ns: u64,
     },
-    /// So slow that segments of 64 bits cannot do it, or the gateware cannot place its edges.
+    /// The move is so slow that it needs too many segments, or that the gateware cannot place its
+    /// edges.
     #[error("move {}, axis {axis}: {}", index + 1, too_slow(*broken, least_speed, *longest))]
     TooSlow {
-        /// Which move.
+        /// The move, counted from 0.
         index: usize,
-        /// Which axis.
+        /// The name of the axis.
         axis: String,
         /// [`Broken::Slow`] or [`Broken::Segments`].
         broken: Broken,
-        /// The least speed limit with which slow edges can be placed, in the unit of the axis.
+        /// The least speed limit with which slow edges can be placed, as text in the unit of the
+        /// axis.
         least_speed: String,
-        /// The longest time that works, whole ticks, seconds; `None`: not even the least time does.
+        /// The longest time that works, seconds, in whole ticks; `None` if none was found.
         longest: Option<f64>,
     },
-    /// The integers do not keep a promise: the plan is not given out.
+    /// The integers break a rule of the exact check. This is a bug in the planner, and no plan is
+    /// returned.
     #[error("move {}, axis {axis}: the plan breaks its own rule: {broken}; please report this move", index + 1)]
     Broken {
-        /// Which move.
+        /// The move, counted from 0.
         index: usize,
-        /// Which axis.
+        /// The name of the axis.
         axis: String,
-        /// The rule.
+        /// The rule that is broken.
         broken: Broken,
     },
 }
 
-/// What the exact check of the integers found.
+/// The rules of the exact check, and the reasons for which no integers were found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Broken {
     /// V has the wrong sign within a move.
@@ -84,34 +92,35 @@ pub enum Broken {
     /// V is half a step per tick or more.
     #[error("half a step per tick is reached")]
     Overspeed,
-    /// Over `speed_limit`.
+    /// V exceeds `speed_limit`.
     #[error("speed_limit is passed")]
     Speed,
-    /// Over `accel_limit`.
+    /// A exceeds `accel_limit`.
     #[error("accel_limit is passed")]
     Acceleration,
-    /// Over `jerk_limit`.
+    /// J exceeds `jerk_limit`.
     #[error("jerk_limit is passed")]
     Jerk,
-    /// Over `start_speed`.
+    /// The start speed exceeds `start_speed`.
     #[error("start_speed is passed")]
     StartSpeed,
-    /// Not the commanded distance, or not the ticks of the move.
+    /// The segments do not add up to the commanded distance or to the ticks of the move.
     #[error("it does not land exactly")]
     Landing,
-    /// The speed limit is so low that edges of slow pulses cannot be placed.
+    /// The speed limit is so low that the edges of slow pulses cannot be placed.
     #[error("pulses come too slowly")]
     Slow,
-    /// Over 2^17 segments.
+    /// More than 2^17 segments are needed.
     #[error("more than 131072 segments are needed")]
     Segments,
-    /// A number that should fit does not.
+    /// A number exceeds the range of its register.
     #[error("a number is out of range")]
     Range,
 }
 
 impl PlanError {
-    /// The move that it is about, from 0: [`carrystep_files::MoveFile::move_error`] shows its place.
+    /// The move of the error, counted from 0; [`carrystep_files::MoveFile::move_error`] shows its
+    /// place in the file. `None` if the error concerns the whole file.
     pub const fn move_index(&self) -> Option<usize> {
         match self {
             Self::Axes(_) => None,
@@ -132,7 +141,7 @@ fn refused(refusal: &Refusal, unit: &Unit, least_time: Option<f64>) -> String {
         None => format!("needs a {limit} over {has}; raise it, or take another profile"),
         Some(least) if wanted.is_finite() => {
             let needs = unit.both(*wanted, seconds);
-            // Figures of six digits may be the same.
+            // Both numbers may look the same when they are printed with six digits.
             let needs = if needs == has { format!("a little more than {needs}") } else { needs };
             format!("needs {needs}, over {limit} {has}; at least {least} s would do")
         }

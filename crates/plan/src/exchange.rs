@@ -1,19 +1,25 @@
-//! The best cubic under constraints: a linear programme in three coefficients and the error, by exchange.
+//! Finds the best cubic under constraints: a linear programme in three coefficients and the error,
+//! solved by exchange.
 //!
-//! E. Remez (1934) holds four points at which the error alternates, and exchanges one of them for the worst
-//! offender until there is none. With bounds among the points this is the dual simplex method; it starts
-//! from an alternation, which needs no search.
+//! E. Remez (1934) keeps a set of points at which the error alternates and exchanges one of them
+//! for the point with the greatest error until none is greater. With four points and bounds among
+//! them this is the dual simplex method. It starts from an alternation, so that no first solution
+//! has to be searched.
+//!
+//! The constants may be tuned: the caller judges the rounded integers, not the level that is found
+//! here.
 
-/// A point that the cubic should meet: `at` x is to be within level x `width` of `value`; one-sided.
+/// One linear constraint on the three unknowns x and the level: `at` x - `error` level <= `most`.
 ///
-/// Rows with an `error` of 0 are bounds, which hold whatever the level.
+/// Two such rows, above and below, hold the cubic near a sample. A row with an `error` of 0 is a
+/// bound, which holds whatever the level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Row {
     /// Coefficients of the three unknowns.
     pub at: [f64; 3],
-    /// How much of the level it may exceed `most` by: 1 or 0.
+    /// The weight of the level in this row: 1 for a sample, 0 for a bound.
     pub error: f64,
-    /// `at` x - `error` level <= `most`.
+    /// Right-hand side of the constraint.
     pub most: f64,
 }
 
@@ -24,14 +30,15 @@ pub(crate) struct Best {
     pub level: f64,
 }
 
-/// Rounds of exchange after which a programme counts as impossible; a usual one takes ten.
+/// Exchanges after which a programme counts as infeasible; a usual one takes ten.
 const ROUNDS: usize = 64;
 
-/// How far a row may be exceeded by rounding.
+/// The excess of a row that counts as float rounding.
 const NOISE: f64 = 1e-9;
 
-/// The coefficients with the least level, given four rows (by index) that alternate: two-sided points in order
-/// of time, above and below in turn. `None`: the bounds contradict each other, or four equal points.
+/// Returns the coefficients with the least level. `start` names four rows, by index, that
+/// alternate: samples in order of time, above and below in turn. Returns `None` if the bounds
+/// contradict each other, if the start rows are linearly dependent, or after 64 exchanges.
 pub(crate) fn solve(rows: &[Row], start: [usize; 4]) -> Option<Best> {
     let mut basis = start;
     let mut inverse = invert(basis.map(|i| wide(&rows[i])))?;
@@ -44,7 +51,8 @@ pub(crate) fn solve(rows: &[Row], start: [usize; 4]) -> Option<Best> {
         if excess <= NOISE {
             return Some(Best { coefficients: [z[0], z[1], z[2]], level: z[3] });
         }
-        // The entering row as a sum of the basis' rows; the multipliers are the last row, negated.
+        // Writes the entering row as a combination of the basis rows. The dual multipliers of the
+        // basis are the last row of the inverse, negated.
         let entering = wide(&rows[worst]);
         let share: [f64; 4] = std::array::from_fn(|c| (0..4).map(|r| entering[r] * inverse[r][c]).sum());
         let ratio = |c: usize| -inverse[3][c] / share[c];
@@ -68,7 +76,7 @@ fn dot(a: [f64; 4], b: [f64; 4]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
-/// Gauss and Jordan, with pivots from each column.
+/// Inverts a matrix by Gauss-Jordan elimination with column pivots; `None` if it is singular.
 fn invert(mut matrix: [[f64; 4]; 4]) -> Option<[[f64; 4]; 4]> {
     let mut inverse: [[f64; 4]; 4] = std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c))));
     for column in 0..4 {
@@ -97,7 +105,7 @@ fn invert(mut matrix: [[f64; 4]; 4]) -> Option<[[f64; 4]; 4]> {
 mod tests {
     use super::*;
 
-    /// Both sides of `value` at s, for coefficients of s, s^2 and s^3.
+    /// The two rows that bound the error at `s` on both sides, for coefficients of s, s^2 and s^3.
     fn point(s: f64, value: f64) -> [Row; 2] {
         [1.0, -1.0].map(|sign| Row { at: [s, s * s, s * s * s].map(|b| sign * b), error: 1.0, most: sign * value })
     }
@@ -107,22 +115,23 @@ mod tests {
     }
 
     #[test]
-    fn a_cubic_is_found_exactly() {
+    fn a_sampled_cubic_is_recovered_exactly() {
         let best = solve(&samples(|s| 3.0 * s - 2.0 * s * s + s * s * s), [0, 43, 84, 127]).unwrap();
         assert!(best.level.abs() < 1e-12, "{best:?}");
         assert!((best.coefficients[1] + 2.0).abs() < 1e-9);
     }
 
     #[test]
-    fn a_quartic_leaves_what_theory_says() {
-        // Pinned at 0 with error 0: Chebyshev's T4 from its first zero on, (2 / (1 + cos(pi/8)))^-4 / 8.
+    fn error_of_a_fitted_quartic_equals_the_chebyshev_bound() {
+        // The cubic is 0 at s = 0, where the error is 0 too. The error curve is Chebyshev's T4 from
+        // its first zero on, scaled to [0, 1]: its amplitude is (1 + cos(pi/8))^-4 / 8.
         let best = solve(&samples(|s| s.powi(4)), [0, 43, 84, 127]).unwrap();
         let theory = ((1.0 + (std::f64::consts::PI / 8.0).cos()) / 2.0).powi(-4) / 128.0;
         assert!((best.level / theory - 1.0).abs() < 5e-3, "{} {theory}", best.level);
     }
 
     #[test]
-    fn bounds_hold_whatever_they_cost() {
+    fn bounds_hold_at_any_level_and_contradicting_bounds_give_none() {
         let mut rows = samples(|s| s);
         rows.push(Row { at: [1.0, 0.0, 0.0], error: 0.0, most: 0.25 });
         let best = solve(&rows, [0, 43, 84, 127]).unwrap();

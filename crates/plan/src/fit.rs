@@ -1,9 +1,12 @@
-//! A smooth curve as few cubics: each segment as long as its edges stay within the tolerance.
+//! Fits a smooth curve with few cubic segments, each as long as its edges stay within the
+//! tolerance.
 //!
-//! A segment knows exactly where it starts, since P carries on; V, A and J are its own. So the best of a given
-//! length is a linear programme in three unknowns, and its error grows with the fourth power of the length,
-//! which leads to the longest one in two or three tries. Whatever floats have found is rounded to integers, and
-//! only these are judged.
+//! A segment knows exactly where it starts, since P carries on; its V, A and J are free. The best
+//! segment of a given length is therefore the solution of a linear programme in three unknowns. Its
+//! error grows with about the fourth power of the length, so that two or three tries find the
+//! longest one. The floats of the solution are rounded to integers, and only the integers are
+//! judged. The constants below may be tuned: they affect the number of segments and the planning
+//! time, not the tolerance.
 
 use crate::bend::{Bend, Wanted, jerk_distance};
 use crate::bounds::bounds;
@@ -14,25 +17,26 @@ use crate::limits::ExactLimits;
 use carrystep_core::Segment;
 use carrystep_profile::Real;
 
-/// The part of the tolerance that a segment may use up.
+/// The greatest fraction of the tolerance that a segment may use.
 const FULL: f64 = 0.97;
 
-/// What a next try aims at.
+/// The fraction of the tolerance that the next try aims at.
 const AIM: f64 = 0.95;
 
-/// From here on a segment is long enough.
+/// The fraction of the tolerance from which on a segment counts as long enough.
 const ENOUGH: f64 = 0.90;
 
-/// Tries for one segment, as long as one of them has been good.
+/// Tries for one segment after which the best one so far is taken.
 const TRIES: usize = 12;
 
-/// How much longer the next try is at least, after one with room to spare.
+/// The least factor by which the next try is longer, after one that used little of the tolerance.
 const LEAP: f64 = 1.25;
 
-/// The first try for a segment after one that had to be short, ticks.
+/// The least length of the first try for the segment after a short one, ticks.
 const LEAST_GUESS: f64 = 64.0;
 
-/// A next segment shorter than this part of one is better off with half of both.
+/// If the rest of a piece is shorter than a segment divided by this number, the segment and the
+/// rest are divided evenly instead.
 const STUB: u64 = 4;
 
 /// One segment of a fit, in the direction of travel.
@@ -40,7 +44,8 @@ const STUB: u64 = 4;
 pub(crate) struct Fitted {
     pub ticks: u64,
     pub bend: Bend,
-    /// Distance, 2^-64 step: a V for all ticks makes it, but for the last segment of a move.
+    /// Distance of the segment, 2^-64 step. For every segment but the last of a move it is reached
+    /// exactly by one value of V.
     pub distance: i128,
 }
 
@@ -53,12 +58,13 @@ pub(crate) struct Fitter<'a, F> {
 }
 
 impl<F: Real> Fitter<'_, F> {
-    /// The segments of the piece, for an axis that is at `done` when it begins; `risen` are those of the ramp up.
+    /// Returns the segments of the piece for an axis that is at `done` when the piece begins.
+    /// `risen` are the segments of the ramp up, which a ramp down may reuse.
     pub fn segments(&mut self, done: i128, risen: &[Fitted]) -> Vec<Fitted> {
         self.mirrored(done, risen).unwrap_or_else(|| self.greedy(done))
     }
 
-    /// One segment after the other, each as long as it can be.
+    /// Fits one segment after the other, each as long as possible.
     fn greedy(&mut self, mut done: i128) -> Vec<Fitted> {
         let ticks = self.corridor.piece.ticks;
         let mut segments: Vec<Fitted> = Vec::new();
@@ -77,7 +83,8 @@ impl<F: Real> Fitter<'_, F> {
         segments
     }
 
-    /// The ramp up run backward, if that keeps the tolerance: a cubic backward in time is a cubic, tick for tick.
+    /// Returns the segments of the ramp up in reverse, if they keep the tolerance: a cubic reversed
+    /// in time is again a cubic, tick for tick.
     fn mirrored(&mut self, mut done: i128, risen: &[Fitted]) -> Option<Vec<Fitted>> {
         let piece = self.corridor.piece;
         if risen.iter().map(|fitted| fitted.ticks).sum::<u64>() != piece.ticks {
@@ -106,12 +113,12 @@ impl<F: Real> Fitter<'_, F> {
         Some(segments)
     }
 
-    /// The longest segment that keeps the tolerance, within a few percent.
+    /// The longest segment that keeps the tolerance, within a few percent of its length.
     fn longest(&mut self, first: u64, done: i128, guess: f64) -> Fitted {
         let left = self.corridor.piece.ticks - first;
         let most = left.min(u32::MAX.into());
         let (mut good, mut bad): (Option<Fitted>, u64) = (None, most + 1);
-        // The two shortest that are too long, lengths and levels, the shorter one last.
+        // The two shortest lengths that are too long, with their levels; the shorter one is last.
         let mut long = [(f64::INFINITY, f64::INFINITY); 2];
         let mut ticks = (guess as u64).clamp(1, most);
         for attempt in 0.. {
@@ -139,8 +146,8 @@ impl<F: Real> Fitter<'_, F> {
         good.unwrap_or_else(|| self.straight(first, done))
     }
 
-    /// Where only a stub of the piece would be left, half of what is left: the stub alone could hardly make good what
-    /// the longest segment is off.
+    /// Replaces the longest segment by half of the rest of the piece, if only a stub would follow
+    /// it: a stub could hardly correct the error that the longest segment leaves.
     fn without_stub(&mut self, first: u64, done: i128, longest: Fitted) -> Fitted {
         let left = self.corridor.piece.ticks - first;
         let stub = left - longest.ticks;
@@ -151,10 +158,11 @@ impl<F: Real> Fitter<'_, F> {
         half.filter(|&(_, level)| level <= FULL).map_or(longest, |(fitted, _)| fitted)
     }
 
-    /// The best cubic of a stretch, and the part of the tolerance that its integers use.
+    /// Returns the best cubic of a stretch, and the fraction of the tolerance that its integers
+    /// use.
     ///
-    /// At the end of its piece it makes good what the segments before it are off, unless that would pass a limit;
-    /// then the next piece does, as long as there is one.
+    /// The last cubic of a piece corrects the distance that the segments before it are off. If that
+    /// would exceed a limit or the tolerance, the next piece corrects it, as long as there is one.
     fn best(&mut self, stretch: Stretch) -> Option<(Fitted, f64)> {
         let piece = self.corridor.piece;
         if stretch.first + stretch.ticks < piece.ticks {
@@ -167,7 +175,8 @@ impl<F: Real> Fitter<'_, F> {
         self.cubic(stretch, false)
     }
 
-    /// The best cubic of a stretch, `closed` if it has to come out exactly where the piece ends.
+    /// Returns the best cubic of a stretch. If `closed`, it has to end exactly where the piece
+    /// ends.
     fn cubic(&mut self, stretch: Stretch, closed: bool) -> Option<(Fitted, f64)> {
         let Stretch { first, ticks, done } = stretch;
         let piece = self.corridor.piece;
@@ -180,13 +189,14 @@ impl<F: Real> Fitter<'_, F> {
         let whole = piece.first + piece.ticks == self.corridor.clock.ticks;
         let (opens, ends) = (piece.first + first == 0, closed && whole);
         if closed {
-            // Exactly to the end: the integers will see to it, so this need not be more than near.
+            // These two rows only have to bring the cubic near the end of the piece; the integers
+            // reach it exactly.
             let at = basis(n, n).map(|b| b * scale * 100.0);
             let most = steps(rest) * scale * 100.0;
             self.rows.push(Row { at, error: 1.0, most });
             self.rows.push(Row { at: at.map(|b| -b), error: 1.0, most: -most });
         } else {
-            // No further than the piece: nothing could come back.
+            // The cubic must not pass the end of the piece, because nothing could correct that.
             self.rows.push(Row { at: basis(n, n).map(|b| b * scale), error: 0.0, most: steps(rest) * scale });
         }
         bounds(&mut self.rows, n, self.limits, [opens, ends], scale);
@@ -194,7 +204,8 @@ impl<F: Real> Fitter<'_, F> {
         let [by_v, by_a, by_j] = basis(n, n);
         let units = |x: f64| (x * 2_f64.powi(64)) as i128;
         let distance = if closed { rest } else { units(by_v * v + by_a * a + by_j * j).min(rest) };
-        // Rounded, a cubic may dip below zero between its ends; one whose A keeps its sign cannot.
+        // A rounded cubic may dip below zero between its ends. The second try forbids A to change
+        // its sign, which rules this out.
         [false, true].into_iter().find_map(|one_way| {
             let wanted = Wanted {
                 ticks: ticks.into(),
@@ -211,19 +222,21 @@ impl<F: Real> Fitter<'_, F> {
         })
     }
 
-    /// The distance that a whole V makes; that of the last segment of a move stays, and is shared out in the end.
+    /// Rounds the distance to one that a whole V reaches. The last segment of a move keeps its
+    /// distance; `Writer::lay` divides it later.
     fn whole(&self, fitted: Fitted, rest: i128, ends: bool) -> Option<Fitted> {
         let Fitted { ticks, bend: Bend { a, j }, distance } = fitted;
         let n = i128::from(ticks);
         let bent = n * (n - 1) / 2 * a + jerk_distance(n, j)?;
         let level = distance - bent;
-        // P is never behind its ideal, whichever way it goes.
+        // P must never be behind its ideal, in either direction of travel.
         let (down, up) = (level.div_euclid(n), -(-level).div_euclid(n));
         let v = if self.corridor.backward || n * up + bent > rest { down } else { up };
         Some(if ends { fitted } else { Fitted { distance: n * v + bent, ..fitted } })
     }
 
-    /// The level that the integers reach; `None` if they break a limit, the start speed where they open a move.
+    /// Returns the level of the integers as a fraction of the tolerance, or `None` if they break a
+    /// limit. The start speed counts only for a segment that `opens` a move.
     fn judge(&self, fitted: &Fitted, (samples, standing): (usize, usize), opens: bool) -> Option<f64> {
         let &Fitted { ticks, bend: Bend { a, j }, distance } = fitted;
         let n = i128::from(ticks);
@@ -249,7 +262,7 @@ impl<F: Real> Fitter<'_, F> {
         Some(rest.max(side(0)).max(side(1)))
     }
 
-    /// One tick, back to the profile as far as the speed limit allows.
+    /// A segment of one tick that returns to the profile as far as the speed limit allows.
     fn straight(&self, first: u64, done: i128) -> Fitted {
         let piece = self.corridor.piece;
         let ends = first + 1 == piece.ticks && piece.first + piece.ticks == self.corridor.clock.ticks;
@@ -260,16 +273,17 @@ impl<F: Real> Fitter<'_, F> {
     }
 }
 
-/// The length that should just do, from the two shortest that do not: as the power of the length that goes through
-/// both, or the fourth.
+/// Estimates the longest good length from the two shortest bad ones. The error is taken to grow
+/// with the power of the length that fits both, or with the fourth power if there is only one.
 fn shorter([(longer, worse), (length, level)]: [(f64, f64); 2]) -> f64 {
     let power = (worse / level).ln() / (longer / length).ln();
     let power = if power.is_finite() { power.clamp(2.0, 16.0) } else { 4.0 };
     length * (AIM / level).powf(power.recip()).max(0.25)
 }
 
-/// The length that should just do, from one that does, or that cannot be at all. A small error says little: it may be
-/// what the segment starts with.
+/// Estimates the longest good length from one good length, or from one that has no solution. A
+/// small error says little about the length, because it may be the error that the segment starts
+/// with.
 fn longer(length: f64, level: f64) -> f64 {
     let factor = (AIM / level).powf(0.25).clamp(0.25, 4.0);
     length * if level < JOINT { factor.max(LEAP) } else { factor }

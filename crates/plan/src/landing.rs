@@ -1,14 +1,20 @@
-//! A landing that costs no segment: what V cannot share evenly over the last one, two segments share.
+//! Lands a fitted move without an extra segment: two segments share the units that V cannot spread
+//! evenly over the last one.
 //!
-//! A unit of V more moves the end by as many units as the segment has ticks. Where the lengths of two segments have
-//! no common divisor, E. Bezout's identity makes any distance out of such moves; between the two the axis is off by
-//! no more than the product of their lengths.
+//! One unit more in V moves the end of a segment by as many units as the segment has ticks. If the
+//! lengths of two segments have no common divisor, Bezout's identity reaches any distance with such
+//! changes. Between the two segments the axis deviates by at most the product of their lengths.
+//!
+//! A greater `MOST_OFF` saves segments and allows a greater deviation.
 
-/// Greatest product of the lengths: 2^-64 step each, half a nanosecond at one step a second.
+/// The greatest product of the two lengths. It is the greatest deviation in units of 2^-64 step,
+/// which is half a nanosecond at one step a second.
 const MOST_OFF: i128 = 9_223_372_036;
 
-/// Units of V for an earlier segment and for the last one that together travel `rest` units further: the earlier one
-/// slower, the last one faster, so that it does not come to rest before its end.
+/// Returns the change of V, in units, of an earlier segment and of the last one, so that both
+/// together travel `rest` units further. The earlier segment gets slower and the last one faster,
+/// so that it does not come to rest before its end. Both lengths are in ticks. Returns `None` if
+/// the lengths have a common divisor or their product is too great.
 pub(crate) fn shared(earlier: i128, last: i128, rest: i128) -> Option<(i128, i128)> {
     if earlier * last > MOST_OFF {
         return None;
@@ -18,7 +24,7 @@ pub(crate) fn shared(earlier: i128, last: i128, rest: i128) -> Option<(i128, i12
     Some((slower, (rest - slower * earlier) / last))
 }
 
-/// The inverse of `a` modulo `m`, by Euclid's algorithm; `None` where they have a common divisor.
+/// The inverse of `a` modulo `m`, by Euclid's algorithm, or `None` if they have a common divisor.
 fn inverse(a: i128, m: i128) -> Option<i128> {
     let (mut remainders, mut factors) = ((m, a.rem_euclid(m)), (0, 1));
     while remainders.1 != 0 {
@@ -34,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn any_rest_is_shared() {
+    fn shared_units_add_up_to_any_rest() {
         for (earlier, last) in [(7, 5), (14_018, 17_167), (3, 1), (1, 1), (1, 9)] {
             for rest in -2 * last..2 * last {
                 let (slower, faster) = shared(earlier, last, rest).unwrap();

@@ -1,7 +1,11 @@
-//! Moves to integer segments that land exactly.
+//! Plans moves: turns each move of a file into integer segments that land exactly.
 //!
-//! A float profile says where each axis should be; [`plan`] turns it into segments whose sums are exact:
-//! floats decide how the distance of a move is spread over its ticks, never how long it is.
+//! A float profile gives the position of each axis over time. [`plan`] turns it into segments whose
+//! distances add up exactly to the commanded steps. Floats only decide how the distance of a move
+//! is spread over its ticks, never how long the distance is.
+//!
+//! The public items are the entrance [`plan`], its result and its errors; the modules are private
+//! and may change.
 
 mod bend;
 mod bounds;

@@ -1,4 +1,7 @@
-//! The limits of an axis in the gateware's units, exactly, and in the profile's floats.
+//! The limits of an axis, exactly in the gateware's units and as floats for the profiles.
+//!
+//! The directions of rounding ensure that a checked plan does not exceed a limit; they may not
+//! change.
 
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
 use carrystep_core::Timebase;
@@ -11,14 +14,16 @@ pub(crate) struct ExactLimits {
     pub start_speed: i128,
     pub speed: i128,
     pub acceleration: i128,
-    /// `None`: the axis has no jerk limit.
+    /// `None` if the axis has no jerk limit.
     pub jerk: Option<i128>,
-    /// What speeds may be over for the rounding of floats: 1e-9 of the speed limit in f64.
+    /// By how much a speed may exceed its limit because floats are rounded, 2^-64 step per tick:
+    /// 10^-9 of the speed limit in f64, 64 epsilon of it in f32, plus one unit.
     pub tolerance: i128,
 }
 
 impl ExactLimits {
-    /// `None` where a limit is beyond all registers; the machine file's check does not let one pass.
+    /// Converts the limits of an axis. Returns `None` if one of them exceeds an i128; the check of
+    /// the machine file already refuses such a limit.
     pub fn new<F: Real>(axis: &Axis, timebase: &Timebase) -> Option<Self> {
         let tick = BigDecimal::new(timebase.tick_ns().into(), 9);
         let speed = units(&axis.speed_limit, &[&tick])?;
@@ -27,13 +32,14 @@ impl ExactLimits {
             start_speed: units(&axis.start_speed, &[&tick])?,
             speed,
             acceleration: units(&axis.accel_limit, &[&tick, &tick])?,
-            // A limit beyond all registers limits nothing.
+            // A jerk limit beyond an i128 limits nothing.
             jerk: axis.jerk_limit.as_ref().and_then(|jerk| units(jerk, &[&tick, &tick, &tick])),
             tolerance: (speed as f64 * relative) as i128 + 1,
         })
     }
 
-    /// The speed that a segment may reach: half of what the check lets pass, since the landing may add a unit.
+    /// The greatest V that a segment may be planned with, 2^-64 step per tick: the speed limit and
+    /// half the tolerance. The other half is left for the landing, which may add a unit.
     pub fn fastest(&self) -> i128 {
         self.speed + self.tolerance / 2
     }
@@ -45,7 +51,7 @@ fn units(value: &BigDecimal, ticks: &[&BigDecimal]) -> Option<i128> {
     product.with_scale_round(0, RoundingMode::Down).to_i128()
 }
 
-/// The same limits in the profile's units and floats.
+/// The same limits in steps and seconds, as floats. A missing jerk limit is infinite.
 pub(crate) fn float_limits<F: Real>(axis: &Axis) -> Limits<F> {
     let float = |value: &BigDecimal| value.to_f64().and_then(F::from).unwrap_or_else(F::nan);
     Limits {

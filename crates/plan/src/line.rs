@@ -1,15 +1,18 @@
-//! A straight line: one profile for all axes, scaled by how far each of them goes.
+//! A straight line: all axes follow one profile, scaled by the steps of each axis.
 //!
-//! Every profile scales with its limits. So it is enough to give each axis those of the line, in its own steps: what
-//! the axis with the least room for a step of its own leaves to all of them.
+//! Every profile scales with its limits. It is therefore enough to give each axis the limits of the
+//! line in its own steps. A limit of the line is, for each kind of limit, the least quotient of an
+//! axis' limit and the axis' steps.
+//!
+//! A new kind of limit has to be added to [`share_limits`] and to `value`.
 
 use carrystep_files::ProfileKind;
 use carrystep_profile::{Limit, Limits, Real, Refusal};
 
-/// Steps of an axis and what it can do.
+/// The steps of an axis in this move, as a magnitude, and its limits in steps and seconds.
 type Travel<F> = (F, Limits<F>);
 
-/// Gives every axis that moves the limits of the line, in its own steps.
+/// Replaces the limits of every axis that moves by those of the line, in steps of that axis.
 pub(crate) fn share_limits<F: Real>(kind: ProfileKind, axes: &mut [Travel<F>]) {
     let line =
         [Limit::StartSpeed, Limit::Speed, Limit::Acceleration, Limit::Jerk].map(|limit| tightest(limit, kind, axes));
@@ -24,7 +27,8 @@ pub(crate) fn share_limits<F: Real>(kind: ProfileKind, axes: &mut [Travel<F>]) {
     }
 }
 
-/// A refusal on axis `on` of the line as one of the axis that leaves so little room, in its steps and by its limit.
+/// Converts a refusal on axis `on` of the line into one on the axis whose limit is the tightest, in
+/// the steps of that axis and with its own limit as the available value.
 pub(crate) fn blame<F: Real>(kind: ProfileKind, axes: &[Travel<F>], on: usize, refusal: Refusal) -> (usize, Refusal) {
     let Some((guilty, _)) = tightest(refusal.limit, kind, axes) else { return (on, refusal) };
     let wide = |x: F| x.to_f64().unwrap_or(f64::NAN);
@@ -33,11 +37,12 @@ pub(crate) fn blame<F: Real>(kind: ProfileKind, axes: &[Travel<F>], on: usize, r
     (guilty, Refusal { wanted: refusal.wanted * scale, available, ..refusal })
 }
 
-/// The axis with the least of a limit for each step that it takes, and that quotient.
+/// Returns the axis with the least quotient of a limit and its steps, and that quotient.
 fn tightest<F: Real>(limit: Limit, kind: ProfileKind, axes: &[Travel<F>]) -> Option<(usize, F)> {
     let moving = axes.iter().enumerate().filter(|(_, (steps, _))| !steps.is_zero());
     let rooms = moving.map(|(axis, (steps, limits))| (axis, value(limit, limits) / *steps));
-    // A logistic curve is never at rest: where no start speed is stated, its own will do.
+    // A logistic profile has a start speed of its own: axes without a start speed in the file do
+    // not restrict it, unless no axis has one.
     let open = |room: &(usize, F)| limit == Limit::StartSpeed && kind == ProfileKind::Logistic && room.1.is_zero();
     let least = |a: (usize, F), b: (usize, F)| if b.1 < a.1 { b } else { a };
     let stated = rooms.clone().filter(|room| !open(room)).reduce(least);

@@ -1,13 +1,18 @@
-//! The longest time in which a move can be done that is too slow as it stands.
+//! Finds the longest time that works for a move whose given time is too long.
+//!
+//! The result appears only in an error message, so its precision (`CLOSE`) may change.
 
 use bigdecimal::{BigDecimal, ToPrimitive};
 use carrystep_core::Timebase;
 
-/// The search ends where the longest time is known within this factor.
+/// The search ends when the interval of the longest time is narrower than this factor.
 const CLOSE: f64 = 1.003;
 
-/// The longest time between `shortest`, which works, and `longest`, which does not, in seconds: three digits, rounded
-/// to whole ticks, so that a user can take it as it stands. Every time that is given out has been tried.
+/// Searches, by bisection on a logarithmic scale, for the longest time for which `works` is true.
+/// It lies between `shortest` seconds, which works, and `longest` seconds, which does not.
+///
+/// Candidates have three significant digits and are whole ticks, so that a user can copy the
+/// result. The result itself has been tried; `None` means that no candidate worked.
 pub(crate) fn longest_time(
     shortest: f64,
     longest: f64,
@@ -27,7 +32,7 @@ pub(crate) fn longest_time(
     known
 }
 
-/// Three digits, down, to whole ticks.
+/// Rounds down to three significant digits and then to whole ticks.
 fn round(seconds: f64, timebase: &Timebase) -> Option<BigDecimal> {
     let digit = 10_f64.powf(seconds.log10().floor() - 2.0);
     let ns = ((seconds / digit).floor() * digit * 1e9).round().to_u64()?;
@@ -40,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_longest_time_is_near_the_limit_and_on_its_good_side() {
+    fn longest_time_is_within_two_percent_below_the_limit() {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         for limit in [0.5_f64, 3.3333, 2190.7, 654_321.0] {
             let found = longest_time(limit / 40.0, 1e6, &timebase, |time| time.to_f64().unwrap() <= limit).unwrap();

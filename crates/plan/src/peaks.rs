@@ -1,8 +1,10 @@
 //! The greatest values that a plan reaches, exactly, in the gateware's units.
+//!
+//! `check.rs` computes the values; this file only converts their units.
 
 use carrystep_core::Timebase;
 
-/// Greatest values over a move, in magnitude, from the integers of its segments.
+/// The greatest magnitudes over a move, computed from the integers of its segments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Peaks {
     /// Speed V, 2^-64 step per tick.
@@ -11,8 +13,9 @@ pub struct Peaks {
     pub acceleration: u64,
     /// Jerk J, 2^-64 step per tick^3.
     pub jerk: u64,
-    /// Speed at the very start, V - A/2 + J/3 rounded up, 2^-64 step per tick. Where the first tick is a
-    /// segment of its own: the least start speed from which the acceleration limit reaches its V.
+    /// Speed at the start of the first tick, V - A/2 + J/3 rounded up, 2^-64 step per tick. If the
+    /// first segment is one tick long: the least start speed from which the acceleration limit
+    /// reaches its V.
     pub start_speed: u64,
 }
 

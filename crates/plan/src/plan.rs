@@ -1,50 +1,56 @@
-//! What planning gives: for each move and axis a profile, and the segments that follow it.
+//! The result of planning: for each move and axis a profile, and the segments that follow it.
+//!
+//! The fields of these structs are public and read by the command, the checker and the simulator.
+//! Only `planner.rs` builds them.
 
 use crate::peaks::Peaks;
 use carrystep_core::{Build, Command, Program, Segment};
 use carrystep_files::PathKind;
 use carrystep_profile::{Leg, Line, SharedProfile, Timeline};
 
-/// All moves of a file, ready for the gateware; origin is the first tick of the first move.
+/// All moves of a file, ready for the gateware. The origin of all ticks is the first tick of the
+/// first move.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// The gateware that it is made for.
+    /// The build of the gateware that the plan is for.
     pub build: Build,
-    /// The moves, back to back.
+    /// The moves, without gaps between them.
     pub moves: Vec<PlannedMove>,
 }
 
 /// One move of all axes.
 #[derive(Debug, Clone)]
 pub struct PlannedMove {
-    /// First tick of the motion, from 0 at the origin: the rest is over.
+    /// First tick of the motion, after the rest, counted from 0 at the origin.
     pub start_tick: u64,
-    /// Ticks of rest before it, so that direction set-up and hold fit.
+    /// Ticks of rest before the motion, which direction set-up and hold need.
     pub rest_ticks: u64,
-    /// Ticks of the motion, the rest not counted.
+    /// Ticks of the motion, without the rest.
     pub ticks: u64,
-    /// Seconds of the motion as asked for; not always whole ticks.
+    /// Duration of the motion as given or derived, seconds. It may end inside the last tick.
     pub seconds: f64,
-    /// How far an edge may be from a profile that is fitted, seconds; 0 where it is followed exactly.
+    /// Tolerance of a fitted profile: how far an edge may be from the profile, seconds. It is 0 if
+    /// the profile is followed exactly.
     pub fit_seconds: f64,
-    /// The way that the axes take together.
+    /// Whether the axes move independently or along a straight line.
     pub path: PathKind,
-    /// One for each axis of the machine.
+    /// The move of each axis, in the order of the machine file.
     pub axes: Vec<PlannedAxis>,
 }
 
 /// One move of one axis.
 #[derive(Debug, Clone)]
 pub struct PlannedAxis {
-    /// Steps, either sign.
+    /// Steps of the move; negative is backward.
     pub steps: i64,
-    /// Its segments, the rest before the motion included; the last one is marked.
+    /// The segments, with the rest before the motion. The last one is marked.
     pub segments: Vec<Segment>,
-    /// The float reference, in the direction of travel.
+    /// The float reference, in steps and seconds, in the direction of travel.
     pub profile: SharedProfile,
-    /// What the profile is called: triangle, trapezoid, scurve, logistic, sine, constant or rest.
+    /// The name of the profile's shape: triangle, trapezoid, scurve, logistic, sine, constant or
+    /// rest.
     pub shape: &'static str,
-    /// Greatest speed, acceleration, jerk and start speed, from the integers.
+    /// Greatest speed, acceleration and jerk, and the start speed, computed from the integers.
     pub peaks: Peaks,
 }
 
@@ -54,7 +60,7 @@ impl Plan {
         self.moves.last().map_or(0, |last| last.start_tick + last.ticks)
     }
 
-    /// The moves along a straight line, for the checker.
+    /// The moves along a straight line, which the checker needs for its tolerance across the line.
     pub fn lines(&self) -> Vec<Line> {
         let mut before = vec![0; self.moves.first().map_or(0, |planned| planned.axes.len())];
         let mut lines = Vec::new();
@@ -76,7 +82,7 @@ impl Plan {
         lines
     }
 
-    /// The segments of one axis, each with its first tick from the origin, ascending.
+    /// The segments of one axis in order, each with its first tick from the origin.
     pub fn axis_segments(&self, axis: usize) -> impl Iterator<Item = (u64, Segment)> + '_ {
         self.moves.iter().flat_map(move |planned| {
             let segments = planned.axes.get(axis).map_or(&[][..], |a| &a.segments);
@@ -89,10 +95,11 @@ impl Plan {
         })
     }
 
-    /// What a host sends: every segment in the order in which the axes need them.
+    /// The commands that a host sends: every segment, in the order in which the axes need them.
     ///
-    /// With one segment running and one waiting on each axis this order never blocks. A move is
-    /// started while the last segments of the one before still run, so that moves follow back to back.
+    /// This order never blocks as long as each axis holds one running and one waiting segment. A
+    /// move is started while the last segments of the move before it still run, so that moves
+    /// follow each other without a gap.
     pub fn program(&self) -> Program {
         let mut program = Program::new();
         for planned in &self.moves {

@@ -1,4 +1,9 @@
-//! From a move file to a plan: time, profiles, shares, segments, rest, and the exact check.
+//! Plans a move file: for each move it finds the time and the profiles, shares the distance out,
+//! writes the segments, adds the rest that DIR needs, and runs the exact check.
+//!
+//! This file holds the order of these steps; each step has a module of its own. The two constants
+//! below may be tuned: the exact check (`check.rs`) decides whether a plan leaves this crate. A
+//! unit is 2^-64 step throughout the crate.
 
 use crate::check::{Duty, check};
 use crate::corridor::{self, Corridor};
@@ -22,26 +27,29 @@ use carrystep_files::{Axis, Move, MoveFile, ProfileKind};
 use carrystep_profile::{Profile, Real, SharedProfile, Widened};
 use std::sync::Arc;
 
-/// Plans all moves of a file, in floats of type `F`.
+/// Plans all moves of a file, with profiles computed in floats of type `F`.
 ///
-/// Whatever `F` is, a plan lands exactly. f32 cannot tell ticks apart beyond 2^24: a longer move may
-/// then fail the exact check instead of passing a limit unseen.
+/// Every plan that is returned travels exactly the commanded steps, whichever `F` is used. An f32
+/// cannot tell ticks apart beyond 2^24 (16.8 s at 1 us): a longer move planned in f32 may be
+/// refused by the exact check, but it never exceeds a limit unnoticed.
 ///
 /// # Errors
-/// [`PlanError`] names the move, the axis, the limit and what would do.
+/// A [`PlanError`] names the move and the axis, the limit that refuses the move, and, where one is
+/// known, a value that would work.
 pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
     let mut planner = Planner::new::<F>(file)?;
     let moves = (0..file.moves.len()).map(|index| planner.plan_move::<F>(index)).collect::<Result<_, _>>()?;
     Ok(Plan { build: planner.build, moves })
 }
 
-/// A fit takes no more than this part of the length of a piece for its tolerance.
+/// Least length of a fitted piece in multiples of the tolerance: in a short piece the tolerance is
+/// reduced to the length in ticks divided by this number.
 const LEAST_RATIO: f64 = 64.0;
 
-/// The part of the tolerance that the rounding of a breakpoint may use up.
+/// The fraction of the tolerance by which rounding a breakpoint to a whole tick may move an edge.
 const ROUNDED: f64 = 0.01;
 
-/// One axis in one move.
+/// Identifies one axis in one move; both indices count from 0.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     index: usize,
@@ -53,11 +61,12 @@ struct Planner<'a> {
     build: Build,
     limits: Vec<ExactLimits>,
     pins: Vec<Pins>,
-    /// Ticks planned so far.
+    /// Ticks planned so far, from the origin.
     ticks: u64,
 }
 
-/// One axis of a move, before it is known how long all must rest.
+/// One axis of a move before the common rest of all axes is known. `segments` holds the motion
+/// alone and `rest` the ticks of rest that this axis needs.
 struct Draft<F: Real> {
     steps: i64,
     profile: SharedProfile<F>,
@@ -96,7 +105,8 @@ impl<'a> Planner<'a> {
         Ok(PlannedMove { start_tick, rest_ticks: rest, ticks: clock.ticks, seconds, fit_seconds, path, axes: planned })
     }
 
-    /// All axes of a move, in a given time or as fast as the limits allow.
+    /// Plans all axes of a move, in the given time in seconds, or without one as fast as the limits
+    /// allow.
     fn drafts<F: Real>(&self, index: usize, time: Option<&BigDecimal>) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
         let (clock, profiles) = demand::<F>(self.file, index, time)?;
         let axes = &self.file.machine.axes;
@@ -106,7 +116,8 @@ impl<'a> Planner<'a> {
         Ok((clock, drafts.collect::<Result<_, _>>()?))
     }
 
-    /// A move that is too slow, with the longest time that would do.
+    /// Turns the error of a move that is too slow into [`PlanError::TooSlow`], which names the
+    /// longest time that works. Every other error is returned unchanged.
     fn explained<F: Real>(&self, index: usize, error: PlanError) -> PlanError {
         let PlanError::Broken { axis, broken: broken @ (Broken::Slow | Broken::Segments), .. } = error else {
             return error;
@@ -142,7 +153,8 @@ impl<'a> Planner<'a> {
         Ok(Draft { steps, profile, segments, strokes: Some(strokes), rest })
     }
 
-    /// The segments of the motion alone; `borrowed` units have been travelled before it.
+    /// Returns the segments of the motion alone. The rest before it has already travelled
+    /// `borrowed` units (0 or 1) of the distance.
     fn motion<F: Real>(
         &self,
         place: Place,
@@ -194,9 +206,13 @@ impl<'a> Planner<'a> {
                     risen = segments;
                 }
             } else {
-                // In a fit, only the last piece lands: each landing costs a segment. Hardly anything could not.
+                // In a fitted move only the last piece has to land exactly, because each exact
+                // landing costs a segment. A piece also lands exactly if the next piece is too
+                // small to take over its remainder.
                 let small = |next: &Piece| next.ticks == 1 || next.units <= i128::from(piece.ticks);
-                // So does one of several segments anyway: half a unit of V, not made up for, would be seen after hours.
+                // A piece longer than one segment's 32-bit tick counter also lands exactly: an
+                // uncorrected rounding of half a unit in V would shift edges visibly after some
+                // hours.
                 let long = piece.ticks > u64::from(u32::MAX);
                 let lands = !kind.is_fitted() || long || pieces.get(index + 1).is_none_or(small);
                 writer.piece(piece, lands)?;
@@ -205,18 +221,20 @@ impl<'a> Planner<'a> {
         Ok(writer.segments)
     }
 
-    /// What the integers of an axis in a move must keep.
+    /// The limits that the integers of one axis must keep in one move.
     fn limits<F: Real>(&self, Place { index, axis }: Place, profile: &dyn Profile<F>) -> ExactLimits {
         let limits = self.limits[axis];
         if self.file.moves[index].profile != ProfileKind::Logistic || limits.start_speed > 0 {
             return limits;
         }
-        // Never at rest: the jump of the curve itself is what a start speed of 0 leaves open.
+        // A logistic profile is never at rest. Without a start speed in the file, the speed of the
+        // curve itself at time 0 is therefore the limit of the start speed.
         let per_tick = profile.speed(F::zero()) * F::from(self.build.timebase.tick_seconds()).unwrap_or_else(F::nan);
         ExactLimits { start_speed: units::toward_zero(per_tick).unwrap_or(0), ..limits }
     }
 
-    /// Puts the rest before the motion, marks the end, checks all of it, and moves the pins on.
+    /// Puts the rest before the motion, marks the last segment, runs the exact check on the result,
+    /// and updates the recorded state of the axis' pins.
     fn finish<F: Real>(
         &mut self,
         place: Place,
@@ -258,25 +276,26 @@ impl<'a> Planner<'a> {
         Ok(PlannedAxis { steps, segments, shape: profile.shape(), profile, peaks })
     }
 
-    /// Clocks planned so far.
+    /// Gateware clocks planned so far, from the origin.
     fn now(&self) -> i128 {
         i128::from(self.ticks) * i128::from(self.build.timebase.clocks_per_tick())
     }
 }
 
-/// Ticks that an edge may be off: at least what the floats of the profile can tell apart.
+/// The edge tolerance of a fit in ticks. It is never less than the time that the floats of the
+/// profile can resolve.
 fn tolerance<F: Real>(fit_ns: u64, clock: &Clock<F>, tick_ns: u64) -> f64 {
     let noise = F::epsilon().to_f64().unwrap_or(0.0) * 16.0 * clock.ticks as f64;
     (fit_ns as f64 / tick_ns as f64).max(noise)
 }
 
-/// Whether a piece needs no fit: one tick, or one speed.
+/// Whether a piece needs no fit, because it is one tick long or has constant speed.
 fn is_straight<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, piece: Piece) -> bool {
     let middle = (clock.at(piece.first) + clock.at(piece.first + piece.ticks)) / (F::one() + F::one());
     piece.ticks == 1 || (profile.acceleration(middle).is_zero() && profile.jerk(middle).is_zero())
 }
 
-/// An axis that stands.
+/// Segments that keep an axis at rest for a number of ticks.
 fn still(mut ticks: u64) -> Vec<Segment> {
     let mut segments = Vec::new();
     while ticks > 0 {

@@ -1,4 +1,8 @@
-//! A piece of constant jerk as segments: J and A from the profile, rounded toward zero, V from the distance.
+//! Writes a piece of constant jerk as segments: J and A come from the profile, rounded toward zero,
+//! and V follows from the distance.
+//!
+//! A run is a sequence of ticks that follows one cubic; a unit is 2^-64 step. `ahead` carries the
+//! rounding of V from one run to the next, so that it never accumulates.
 
 use crate::bend::{Bend, Wanted, jerk_distance};
 use crate::check::speeds;
@@ -12,11 +16,12 @@ use crate::units;
 use carrystep_core::{Segment, StartPhase};
 use carrystep_profile::{Profile, Real};
 
-/// How far the rounding of A, J and V may move an edge, seconds; the rest of 2 ns is for the 32-bit bisection, and for
-/// the floats of the profile, which are good to 0.3 ns after 10^6 s.
+/// How far the rounding of A, J and V may move an edge, seconds. The rest of the promised 2 ns is
+/// for the 32-bit bisection and for the floats of the profile, which are accurate to 0.3 ns after
+/// 10^6 s.
 const EDGE_SHIFT: f64 = 0.5e-9;
 
-/// Most segments of one axis in one move: what needs more is refused.
+/// The greatest number of segments of one axis in one move. A move that needs more is refused.
 pub(crate) const MOST_SEGMENTS: usize = 1 << 17;
 
 /// Writes the segments of one axis in one move.
@@ -27,46 +32,50 @@ pub(crate) struct Writer<'a, F> {
     pub phase: StartPhase,
     pub backward: bool,
     pub segments: Vec<Segment>,
-    /// Units by which the segments of this piece are ahead.
+    /// Units by which the segments written so far are ahead of the profile; signed, positive is
+    /// forward.
     pub ahead: i128,
 }
 
-/// A rate of a piece in units, in the direction of travel.
+/// A register value of a piece in units, in the direction of travel.
 #[derive(Debug, Clone, Copy, Default)]
 struct Rate {
-    /// Rounded toward zero, and within the limit.
+    /// The value, rounded toward zero and clamped to its limit.
     units: i128,
-    /// What that left out: units, in magnitude.
+    /// Magnitude of the difference from the exact value, units.
     lost: f64,
 }
 
-/// What becomes of the units by which V, rounded, is ahead at the end of a run.
+/// How a run may treat the units by which its rounded V is ahead at its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fine {
-    /// The next run makes them good.
+    /// The next run corrects them.
     Carried,
-    /// They would move an edge of the next run: this one lands exactly.
+    /// The run has to land exactly, because they would move an edge of the next run.
     Landed,
 }
 
 impl<F: Real> Writer<'_, F> {
-    /// Writes the segments of a piece of constant jerk; where it `ends`, what they travel adds up exactly.
+    /// Writes the segments of a piece of constant jerk. If the piece `ends` a part of the move, its
+    /// segments travel exactly the distance that is left.
     pub fn piece(&mut self, piece: Piece, ends: bool) -> Result<(), Broken> {
         let jerk = if piece.ticks == 1 { Rate::default() } else { self.jerk(piece)? };
         self.divide(piece, jerk, ends)
     }
 
-    /// 1 forward, -1 backward.
+    /// The sign of the motion: 1 forward, -1 backward.
     pub const fn sign(&self) -> i128 {
         if self.backward { -1 } else { 1 }
     }
 
-    /// Where the axis is when a piece begins, in the direction of travel, given what is carried into it.
+    /// The position of the axis when a piece begins, units in the direction of travel, with what is
+    /// carried over from the piece before.
     pub fn position(&self, piece: Piece) -> i128 {
         piece.start + self.sign() * self.ahead
     }
 
-    /// Writes the segments of a fitted piece, and carries on what they are off.
+    /// Writes the segments of a fitted piece, and carries the units that they are off into the next
+    /// piece.
     pub fn fitted(&mut self, piece: Piece, segments: &[Fitted], ends: bool) -> Result<(), Broken> {
         let sign = self.sign();
         let mut done = self.position(piece);
@@ -83,7 +92,8 @@ impl<F: Real> Writer<'_, F> {
         Ok(())
     }
 
-    /// Lands the last segment of a fit without a split, if one of the others can give it a few units of V.
+    /// Lands the last segment of a fit without dividing it, if another segment can take over a few
+    /// units of V. Returns whether that was possible.
     fn land(&mut self, segments: &[Fitted], distance: i128) -> Result<bool, Broken> {
         let Some((last, others)) = segments.split_last() else { return Ok(false) };
         let laid = self.segments.len();
@@ -120,20 +130,22 @@ impl<F: Real> Writer<'_, F> {
         rate(per_tick, self.limits.jerk.unwrap_or(i128::MAX))
     }
 
-    /// The acceleration in the middle of a run: twice, in units, and what rounding it leaves out.
+    /// The acceleration in the middle of a run: twice its value in units, and the magnitude of what
+    /// rounding leaves out.
     fn acceleration(&self, piece: Piece, jerk: Rate) -> Result<(i128, f64), Broken> {
         let tick = self.clock.tick;
         let per_tick = self.profile.acceleration(self.middle(piece)) * tick * tick;
         let doubled = units::toward_zero(per_tick + per_tick).ok_or(Broken::Range)?;
         let lost = rate(per_tick, self.limits.acceleration)?.lost;
-        // A starts half a run of J away from the middle, which rounds once more.
+        // A is loaded for the start of the run, half a run of J away from the middle. That rounds
+        // once more.
         Ok((doubled, if jerk.units == 0 { lost } else { lost.max(1.0) }))
     }
 
     /// Halves a piece until the rounding of A, J and V moves no edge by more than [`EDGE_SHIFT`].
     ///
-    /// The slower half gets its distance from the profile, the faster one what remains: float rounding
-    /// is relative to a distance, so this keeps it small where edges are far apart.
+    /// The slower half gets its distance from the profile, and the faster half what remains. Float
+    /// rounding is relative to a distance, so this keeps the error small where edges are far apart.
     fn divide(&mut self, piece: Piece, jerk: Rate, ends: bool) -> Result<(), Broken> {
         let Piece { first, ticks, units, .. } = piece;
         let (doubled, lost) = if ticks == 1 { (0, 0.0) } else { self.acceleration(piece, jerk)? };
@@ -156,7 +168,8 @@ impl<F: Real> Writer<'_, F> {
         self.halves(piece, half, head, jerk, ends)
     }
 
-    /// The first `half` ticks of a piece, which travel `head` units, then the others.
+    /// Writes the first `half` ticks of a piece, which travel `head` units, and then the other
+    /// ticks.
     fn halves(&mut self, piece: Piece, half: u64, head: i128, jerk: Rate, ends: bool) -> Result<(), Broken> {
         let Piece { first, ticks, start, units, .. } = piece;
         self.divide(Piece { ticks: half, units: head, ..piece }, jerk, false)?;
@@ -164,17 +177,19 @@ impl<F: Real> Writer<'_, F> {
         self.divide(Piece { first, ticks: ticks - half, start, units: units - head, ..piece }, jerk, ends)
     }
 
-    /// Whether a piece has one speed: integers then share its distance out.
+    /// Whether a piece has constant speed, so that integers can share its distance out.
     pub fn is_level(&self, piece: Piece) -> bool {
         let middle = self.middle(piece);
         self.profile.acceleration(middle).is_zero() && self.profile.jerk(middle).is_zero()
     }
 
-    /// How a run may be as long as this, if it may, given what rounding leaves out of A and J.
+    /// Decides whether a run may have the length of this piece, and how it then treats its
+    /// remainder. `acceleration` and `jerk` are the magnitudes that rounding leaves out of A and J.
+    /// `None` means that the piece has to be divided.
     fn fine(&self, piece: Piece, acceleration: f64, jerk: f64) -> Option<Fine> {
         let Piece { first, ticks, .. } = piece;
         let length = ticks as f64;
-        // V makes up for A and J, so that a long first run would start too fast by half of this.
+        // V makes up for A and J, so a long first run would start too fast by half of this speed.
         let late = (acceleration + jerk * length / 3.0) * length;
         if first == 0 && late > self.limits.tolerance as f64 {
             return None;
@@ -182,30 +197,32 @@ impl<F: Real> Writer<'_, F> {
         let [begin, end] = [first, first + ticks].map(|tick| self.clock.at(tick));
         let wide = |x: F| x.to_f64().unwrap_or(f64::NAN);
         let slowest = wide(self.profile.speed(begin).min(self.profile.speed(end)));
-        // From rest, the first edge comes half a step later, at speed sqrt(a) or over cbrt(j).
+        // After a start from rest the first edge comes half a step later, at a speed of sqrt(a) or
+        // more than cbrt(j).
         let by_acceleration = wide(self.profile.acceleration(begin).abs().sqrt());
         let by_jerk = wide(self.profile.jerk(begin).abs().cbrt());
         let at_edge = if self.is_level(piece) {
-            // A rounded breakpoint may leave the end of a ramp to the beginning of a cruise.
+            // A breakpoint rounded to a tick may leave the end of a ramp at the beginning of a
+            // cruise.
             wide(self.profile.speed(self.middle(piece)))
         } else {
             slowest.max(by_acceleration).max(by_jerk).max(f64::MIN_POSITIVE)
         };
-        // A parabola t(n-t)/2 per unit of A, at most a cubic t^2 (n-t)/6 per unit of J; and V is ahead by up to
-        // a unit a tick.
+        // The deviation is a parabola t(n-t)/2 for each unit left out of A, and at most a cubic t^2
+        // (n-t)/6 for each unit left out of J. In addition V is ahead by up to one unit per tick.
         let lost = (jerk * length / 40.0 + acceleration / 8.0) * length + 1.0;
         let shift = lost * length * 2_f64.powi(-64) / at_edge;
         if shift <= EDGE_SHIFT {
             return Some(Fine::Carried);
         }
         let [from, to] = [begin, end].map(|t| wide(self.profile.position(t)));
-        // What V is ahead by would move the next edge.
+        // Tests whether the units by which V is ahead would move the next edge.
         let by_v = length * 2_f64.powi(-64) / at_edge;
         let still = if by_v <= EDGE_SHIFT { Fine::Carried } else { Fine::Landed };
         (!self.has_edge(from, to)).then_some(still)
     }
 
-    /// Whether a pulse is due between two positions, or near them.
+    /// Whether a pulse is due between two positions in steps, or within 10^-3 step of them.
     fn has_edge(&self, from: f64, to: f64) -> bool {
         let offset = match self.phase {
             StartPhase::Half => 0.5,
@@ -214,7 +231,7 @@ impl<F: Real> Writer<'_, F> {
         (to - offset + 1e-3).floor() > (from - offset - 1e-3).floor()
     }
 
-    /// One run of constant jerk.
+    /// Writes one run of constant jerk.
     fn run(&mut self, piece: Piece, doubled_middle: i128, jerk: i128, ends: bool) -> Result<(), Broken> {
         let n = i128::from(piece.ticks);
         let sign = self.sign();
@@ -224,8 +241,9 @@ impl<F: Real> Writer<'_, F> {
         self.lay(n, distance, wanted.within(self.limits), ends)
     }
 
-    /// A run over a signed distance. What V cannot share evenly goes to the first ticks, one unit each, where the
-    /// piece ends; before that it is carried into the next run.
+    /// Writes a run of `n` ticks over a signed distance in units. The part that V cannot spread
+    /// evenly is added to the first ticks, one unit each, if the run `ends` a piece; otherwise it
+    /// is carried into the next run.
     pub fn lay(&mut self, n: i128, distance: i128, Bend { a, j }: Bend, ends: bool) -> Result<(), Broken> {
         let sign = self.sign();
         let level = sign * distance - n * (n - 1) / 2 * a - jerk_distance(n, j).ok_or(Broken::Range)?;
@@ -239,7 +257,7 @@ impl<F: Real> Writer<'_, F> {
             let Registers { v, a, j } = head.after(remainder);
             self.push(n - remainder, Registers { v: v - 1, a, j })
         } else {
-            // What a limit keeps behind stays behind.
+            // A distance that the speed limit prevents stays in `ahead` and is not forced.
             let most = if a == 0 && j == 0 { self.limits.fastest() } else { i128::MAX };
             let used = (v + i128::from(remainder > 0)).clamp(-most, most);
             self.ahead = n * (used - v) - remainder;
@@ -247,7 +265,7 @@ impl<F: Real> Writer<'_, F> {
         }
     }
 
-    /// Ticks of one cubic, in as many segments as their counters need.
+    /// Writes the ticks of one cubic, in as many segments as their 32-bit tick counters need.
     fn push(&mut self, mut ticks: i128, mut now: Registers) -> Result<(), Broken> {
         while ticks > 0 {
             if self.segments.len() >= MOST_SEGMENTS {
@@ -264,7 +282,7 @@ impl<F: Real> Writer<'_, F> {
     }
 }
 
-/// V, A and J before a tick.
+/// The values of V, A and J before a tick.
 #[derive(Debug, Clone, Copy)]
 struct Registers {
     v: i128,
@@ -273,14 +291,14 @@ struct Registers {
 }
 
 impl Registers {
-    /// What the gateware has added up `n` ticks later.
+    /// The values that the gateware has accumulated `n` ticks later.
     fn after(self, n: i128) -> Self {
         let Self { v, a, j } = self;
         Self { v: v + n * a + n * (n - 1) / 2 * j, a: a + n * j, j }
     }
 }
 
-/// `per_tick` steps in units, rounded toward zero and clamped.
+/// Converts `per_tick` steps to units, rounded toward zero and clamped to `most`.
 fn rate<F: Real>(per_tick: F, most: i128) -> Result<Rate, Broken> {
     let units = units::toward_zero(per_tick).ok_or(Broken::Range)?.clamp(-most, most);
     let exact = per_tick.to_f64().unwrap_or(f64::NAN) * 2_f64.powi(64);

@@ -1,4 +1,8 @@
-//! A move's distance, shared out over its ticks: the pieces add up to it exactly.
+//! Divides a move into pieces and shares its distance out among them, so that the pieces add up
+//! exactly to the distance.
+//!
+//! A piece ends at every breakpoint of the profile and wherever a slow move needs special
+//! treatment.
 
 use crate::demand::{Clock, float};
 use crate::error::Broken;
@@ -6,37 +10,41 @@ use crate::slow::Care;
 use crate::units;
 use carrystep_profile::{Profile, Real};
 
-/// Ticks that follow one formula, or one tick in which formulas change.
+/// A run of ticks that follows one formula of the profile, or one tick in which formulas change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Piece {
-    /// First tick, from 0 at the start of the move.
+    /// First tick, counted from 0 at the start of the move.
     pub first: u64,
     /// Length, ticks.
     pub ticks: u64,
-    /// Distance from the start of the move to its start, 2^-64 step.
+    /// Distance from the start of the move to the start of the piece, 2^-64 step.
     pub start: i128,
-    /// Distance in the direction of travel, 2^-64 step.
+    /// Distance of the piece in the direction of travel, 2^-64 step.
     pub units: i128,
-    /// Whether each of its pulses is placed by a tick of its own; it may then follow several formulas.
+    /// Whether the step of each pulse gets a tick of its own. Such a piece may follow several
+    /// formulas.
     pub by_pulse: bool,
 }
 
-/// What happens to a breakpoint inside a tick.
+/// How a breakpoint that falls inside a tick is treated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Breakpoints<F> {
-    /// The tick becomes a piece of its own: nothing is lost.
+    /// The tick becomes a piece of its own, and the breakpoint is exact.
     Kept,
-    /// The nearest boundary takes its place where that moves no edge by more than so many ticks.
+    /// The breakpoint is moved to the nearest tick boundary if this moves no edge by more than the
+    /// given number of ticks; otherwise the tick becomes a piece of its own.
     Rounded(F),
 }
 
-/// Splits the move at its breakpoints, and where a slow move needs care; `fastest` is what the axis may travel in a tick.
+/// Divides the move at its breakpoints and at the ends of the parts that `care` names. `fastest` is
+/// the greatest distance that the axis may travel in a tick, in units.
 ///
-/// Floats share the distance out; the greatest piece takes what their rounding leaves, so that the sum is
-/// `total`.
+/// Floats share the distance out. The greatest piece takes what their rounding leaves, so that the
+/// sum is exactly `total`.
 ///
 /// # Errors
-/// [`Broken::Range`] if a float is out of range, [`Broken::Slow`] if the axis cannot catch up where it is behind.
+/// [`Broken::Range`] if a float is out of range; [`Broken::Slow`] if the axis has to fall behind
+/// and the speed limit does not let it catch up.
 pub(crate) fn share<F: Real>(
     profile: &dyn Profile<F>,
     clock: &Clock<F>,
@@ -72,8 +80,9 @@ pub(crate) fn share<F: Real>(
     Ok(pieces)
 }
 
-/// Takes units from a piece before the first of these ticks, and gives them to one after the second that has most room
-/// below the speed limit.
+/// Keeps the axis behind between the two ticks: takes units from a piece before the first tick, and
+/// adds them to the piece after the second one that has most room below the speed limit. Returns
+/// `None` if there is no such piece or no room.
 fn fall_behind(pieces: &mut [Piece], [first, last]: [u64; 2], units: i128, fastest: i128) -> Option<()> {
     let early = pieces.iter_mut().filter(|piece| piece.first < first).max_by_key(|piece| piece.units)?;
     early.units -= units;
@@ -83,7 +92,7 @@ fn fall_behind(pieces: &mut [Piece], [first, last]: [u64; 2], units: i128, faste
     (room(late) >= 0).then_some(())
 }
 
-/// The pieces between the cuts, which travel `total` together; where they start is left open.
+/// The pieces between the cuts, which travel `total` units together. Their `start` is not yet set.
 fn pieces<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, total: i128, cuts: &[u64]) -> Option<Vec<Piece>> {
     let mut pieces = Vec::with_capacity(cuts.len());
     for ends in cuts.windows(2) {
@@ -97,8 +106,8 @@ fn pieces<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, total: i128, cuts
     (greatest.units >= 0).then_some(pieces)
 }
 
-/// Distance over whole ticks, as a mean speed: no difference of two positions, so that it is relatively
-/// exact for a single tick too.
+/// Distance over whole ticks, in units. It is computed from a mean speed and not from the
+/// difference of two positions, so that its relative error stays small for a single tick too.
 pub(crate) fn distance<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, first: u64, ticks: u64) -> Option<i128> {
     let end = first + ticks;
     let mean = profile.mean_speed(clock.at(first), clock.at(end));
@@ -106,10 +115,10 @@ pub(crate) fn distance<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, firs
     Some(units::nearest(mean * (used * clock.tick))?.max(0))
 }
 
-/// Ticks at which pieces begin, and the end.
+/// The ticks at which pieces begin, and the end of the move; unsorted, and with duplicates.
 fn cuts<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, breakpoints: Breakpoints<F>) -> Vec<u64> {
     let mut cuts = vec![0, clock.ticks];
-    // A fit that comes to rest may do so a part of a tick later.
+    // A fitted move that comes to rest may do so up to a tick later.
     let rests = breakpoints != Breakpoints::Kept && profile.speed(clock.seconds).is_zero();
     if clock.last < F::one() && !rests {
         cuts.push(clock.ticks - 1);
@@ -117,15 +126,17 @@ fn cuts<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, breakpoints: Breakp
     for &breakpoint in profile.breakpoints() {
         let exact = breakpoint / clock.tick;
         let nearest = exact.round();
-        // So near to a boundary that only rounding, or nothing that a pin could show, lies between.
+        // This close to a boundary, the difference is float rounding or too small to move an edge.
         let noise = F::epsilon() * float(4) * exact + F::from(1e-9).unwrap_or_else(F::epsilon);
         let off = (exact - nearest).abs();
         let rounded = match breakpoints {
             Breakpoints::Kept => false,
             Breakpoints::Rounded(most) => {
-                // A cruise that takes in this much of a ramp, or of a rest, begins with the wrong speed.
+                // A cruise that takes over this much of a ramp, or of a rest, begins with the wrong
+                // speed.
                 let [here, there] = [breakpoint, nearest * clock.tick].map(|t| profile.speed(t.min(clock.seconds)));
-                // And without a ramp a move would start at its top speed.
+                // A breakpoint at either end of the move is not rounded: without its ramp the move
+                // would start at its top speed.
                 let inside = nearest > F::zero() && nearest < float(clock.ticks);
                 inside && off * (here - there).abs() <= most * here
             }

@@ -1,14 +1,17 @@
-//! Floats to units of 2^-64 step, exactly.
+//! Converts float steps to units of 2^-64 step. Only the rounding that the function names is
+//! applied.
 
 use carrystep_core::fixed::FRACTION_BITS;
 use carrystep_profile::Real;
 
-/// `steps` in units of 2^-64 step, rounded to the nearest; `None` if not finite or out of i128.
+/// Converts `steps` to units of 2^-64 step, rounded to the nearest, halves away from zero. Returns
+/// `None` if the value is not finite or does not fit into an i128.
 pub(crate) fn nearest<F: Real>(steps: F) -> Option<i128> {
     scaled(steps, true)
 }
 
-/// `steps` in units of 2^-64 step, rounded toward zero.
+/// Converts `steps` to units of 2^-64 step, rounded toward zero. Returns `None` if the value is not
+/// finite or does not fit into an i128.
 pub(crate) fn toward_zero<F: Real>(steps: F) -> Option<i128> {
     scaled(steps, false)
 }
@@ -39,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn powers_of_two_are_exact() {
+    fn powers_of_two_convert_without_rounding() {
         for exponent in -80..60_i32 {
             let units = toward_zero(2_f64.powi(exponent));
             let expected = if exponent < -64 { 0 } else { 1_i128 << (exponent + 64) };
@@ -49,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_is_as_said() {
+    fn nearest_and_toward_zero_round_as_documented() {
         let unit = 2_f64.powi(-64);
         for (value, near, cut) in [(0.5, 1, 0), (0.49, 0, 0), (1.5, 2, 1), (-1.5, -2, -1), (-0.4, 0, 0)] {
             assert_eq!(nearest(value * unit), Some(near), "{value}");

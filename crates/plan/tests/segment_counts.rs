@@ -1,11 +1,13 @@
-//! How few segments a fit takes, on the reference move: 20 000 steps from and to rest, at most 500 000 steps/s^2.
+//! Tests how few segments a fit needs on the reference move: 20 000 steps from and to rest, with at
+//! most 500 000 steps/s^2. The counts are upper bounds and may only be lowered.
 
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_files::{MoveFile, Source};
 use carrystep_plan::{PlannedAxis, plan};
 
-/// The move at a tolerance; only the seven segments have a jerk limit, which the reference's sine would pass.
+/// Plans the reference move with a tolerance in ns. Only the seven-segment profile gets a jerk
+/// limit, which the sine profile of the reference would exceed.
 fn reference(profile: &str, fit_ns: u32) -> PlannedAxis {
     let jerk = if profile == "scurve" { "jerk_limit = 50_000_000\n" } else { "" };
     let text = format!(
@@ -17,7 +19,7 @@ fn reference(profile: &str, fit_ns: u32) -> PlannedAxis {
     plan::<f64>(&file).expect("a plan").moves.remove(0).axes.remove(0)
 }
 
-/// Segments of the ramp up, of the cruise, and of the ramp down with its landing.
+/// Numbers of segments of the ramp up, of the cruise, and of the ramp down with its landing.
 fn counts(axis: &PlannedAxis) -> [usize; 3] {
     let ends: Vec<u64> = axis.profile.breakpoints().iter().map(|t| (t * 1e6).round() as u64).collect();
     let mut counts = [0; 3];
@@ -35,8 +37,9 @@ fn assert_at_most(profile: &str, fit_ns: u32, most: usize) {
 }
 
 #[test]
-fn the_reference_ramps_are_those_of_the_literature() {
-    // Whole ticks, and a cruise of less than a millisecond: ramps are up to 0.2 % shorter.
+fn reference_ramps_last_as_long_as_published() {
+    // The durations are whole ticks, and the move cruises for less than a millisecond. Ramps are
+    // therefore up to 0.2 % shorter.
     for (profile, ramp, within) in [("logistic", 0.325_371, 1e-4), ("sine", 0.282_843, 5e-4)] {
         let axis = reference(profile, 1000);
         assert!((axis.profile.breakpoints()[0] - ramp).abs() < within, "{profile}: {:?}", axis.profile);
@@ -44,19 +47,19 @@ fn the_reference_ramps_are_those_of_the_literature() {
 }
 
 #[test]
-fn a_microsecond_takes_13_segments_a_ramp_for_logistic_and_11_for_sine() {
+fn one_microsecond_of_tolerance_takes_at_most_13_logistic_or_11_sine_segments_per_ramp() {
     assert_at_most("logistic", 1000, 13);
     assert_at_most("sine", 1000, 11);
 }
 
 #[test]
-fn fifty_nanoseconds_take_27_and_22() {
+fn fifty_nanoseconds_of_tolerance_take_at_most_27_logistic_or_22_sine_segments_per_ramp() {
     assert_at_most("logistic", 50, 27);
     assert_at_most("sine", 50, 22);
 }
 
 #[test]
-fn exact_profiles_do_not_look_at_the_tolerance() {
+fn exact_profiles_ignore_the_fit_tolerance() {
     for profile in ["trapezoid", "scurve"] {
         assert_eq!(reference(profile, 1).segments, reference(profile, 100_000).segments);
     }

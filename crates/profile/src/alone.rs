@@ -1,7 +1,9 @@
-//! A ramp by itself, up to a given speed: as steep as the limits allow, or in a given time.
+//! A single ramp up to a given speed: as steep as the limits allow, or in a given time.
 //!
-//! The limits are those of a move, their speed aside: `top` (over 0) stands for it. The start speed is a
-//! permission to jump: the sine and the trapezoid do not use it, Ranade's rule and the seven segments do.
+//! The limits are those of a move, except for their speed, which is replaced by `top` (steps/s,
+//! over 0). The start speed is the speed to which the motor may jump. The sine and the trapezoid do
+//! not use it; Ranade's rule and the seven-segment curve do. `time` is in seconds; `None` stands
+//! for the least time.
 
 use crate::bad_ramp::BadRamp;
 use crate::curve::Curve;
@@ -12,29 +14,29 @@ use crate::scurve::ScurveRamp;
 use crate::sine::SineRamp;
 use crate::solve::smallest;
 
-/// The ramp of one acceleration, from rest.
+/// The ramp of constant acceleration from rest.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that `time` breaks and the least time.
+/// A [`Refusal`] names the limit that `time` breaks and the least time.
 pub fn trapezoid_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<ScurveRamp<F>, Refusal> {
     ranade_ramp(top, time, &Limits { start_speed: F::zero(), ..*limits })
 }
 
-/// The ramp of one acceleration, from the start speed, which is under `top`.
+/// The ramp of constant acceleration from the start speed, which must be below `top`.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that `time` breaks and the least time.
+/// A [`Refusal`] names the limit that `time` breaks and the least time.
 pub fn ranade_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<ScurveRamp<F>, Refusal> {
     scurve_ramp(top, time, &Limits { jerk: F::infinity(), ..*limits })
 }
 
-/// The ramp of three segments, from the start speed, which is under `top`.
+/// The ramp of three segments from the start speed, which must be below `top`.
 ///
-/// In a given time it has the jerk of the limits and the acceleration that this takes; so without a jerk
-/// limit it is a ramp of one acceleration.
+/// In a given time it has the jerk of the limits and the acceleration that results. Without a jerk
+/// limit it is therefore a ramp of constant acceleration.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that `time` breaks and the least time.
+/// A [`Refusal`] names the limit that `time` breaks and the least time.
 pub fn scurve_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<ScurveRamp<F>, Refusal> {
     let start = limits.start_speed;
     let ramp = |acceleration, jerk| ScurveRamp::steepest(start, top, acceleration, jerk);
@@ -43,7 +45,8 @@ pub fn scurve_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Resu
         if limits.jerk.is_infinite() {
             return ramp(gain / time, limits.jerk);
         }
-        // Jerk segments of r: gain = j r (T - r), the smaller root, which does not cancel.
+        // With jerk segments of r seconds, gain = j r (T - r). This is the smaller root, in a form
+        // without cancellation.
         let turn = gain / limits.jerk;
         let spare = (time * time - real::<F>(4.0) * turn).max(F::zero());
         ramp(limits.jerk * (turn + turn) / (time + spare.sqrt()), limits.jerk)
@@ -51,38 +54,40 @@ pub fn scurve_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Resu
     in_time(time, limits, |limits| ramp(limits.acceleration, limits.jerk), lasting)
 }
 
-/// The sinusoidal ramp, from rest.
+/// The sinusoidal ramp from rest.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that `time` breaks and the least time.
+/// A [`Refusal`] names the limit that `time` breaks and the least time.
 pub fn sine_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<SineRamp<F>, Refusal> {
     in_time(time, limits, |limits| SineRamp::within(limits, top), |time| SineRamp::lasting(top, time))
 }
 
-/// The logistic ramp with the asymptote `top`, as its source has it: it ends at 99.5 %.
+/// The logistic ramp with the asymptote `top`. As in its source, it ends at 99.5 % of the
+/// asymptote.
 ///
-/// It starts at 0.5 %, or at the start speed where that is over 0 and less.
+/// It starts at 0.5 %, or at the start speed if that is over 0 and smaller.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that `time` breaks and the least time.
+/// A [`Refusal`] names the limit that `time` breaks and the least time.
 pub fn logistic_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<LogisticRamp<F>, Refusal> {
     let start = logistic::start_fraction(limits, top);
     let ramp = |steepness| LogisticRamp::between(top, steepness, start);
-    // With a steepness of 1 a ramp takes k T seconds.
+    // With a steepness of 1/s, the duration of the ramp is the product k T.
     let lasting = |time| ramp(ramp(F::one()).duration() / time);
     in_time(time, limits, |limits| ramp(logistic::steepest(limits, top)), lasting)
 }
 
-/// [`logistic_ramp`] as its source begins it: T_i seconds before it has half its speed.
+/// [`logistic_ramp`] with the start of its source: the ramp starts T_i seconds before it has half
+/// its speed.
 ///
 /// # Errors
-/// A centre so early that the ramp is over before it starts.
+/// A [`BadRamp`] if the centre is so early that the ramp would end before it starts.
 pub fn logistic_ramp_about<F: Real>(top: F, centre: F, limits: &Limits<F>) -> Result<LogisticRamp<F>, BadRamp> {
     let acceleration = logistic::steepest(limits, top) * (top / real(4.0));
     LogisticRamp::new(top, acceleration, centre, real(SHORTFALL))
 }
 
-/// `steepest` of the limits, or what lasts `time`.
+/// The `steepest` ramp of the limits, or the ramp that lasts `time` seconds.
 fn in_time<F: Real, R: Curve<F>>(
     time: Option<F>,
     limits: &Limits<F>,

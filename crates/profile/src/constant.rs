@@ -1,10 +1,10 @@
-//! One speed from start to end.
+//! The profile of constant speed from start to end.
 
 use crate::curve::Curve;
 use crate::profile::{Profile, Real};
 use crate::refusal::{Limit, Limits, Refusal};
 
-/// A move at one speed, N / T; a distance of 0 is an axis that stands.
+/// A move at the constant speed N / T. A distance of 0 is an axis at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constant<F> {
     distance: F,
@@ -12,12 +12,12 @@ pub struct Constant<F> {
 }
 
 impl<F: Real> Constant<F> {
-    /// `distance` steps in `duration` seconds.
+    /// A move of `distance` steps in `duration` seconds.
     pub fn new(distance: F, duration: F) -> Self {
         Self { distance, duration }
     }
 
-    /// An axis that stands for `duration` seconds.
+    /// An axis at rest for `duration` seconds.
     pub fn rest(duration: F) -> Self {
         Self::new(F::zero(), duration)
     }
@@ -26,7 +26,7 @@ impl<F: Real> Constant<F> {
 /// The constant-speed move of `distance` steps in `time` seconds.
 ///
 /// # Errors
-/// Refused where the motor would have to jump to more than its start speed.
+/// A [`Refusal`] if the motor would have to jump to more than its start speed.
 pub fn constant<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Constant<F>, Refusal> {
     let least = constant_least_time(distance, limits)?;
     if limits.too_short(time, least) {
@@ -38,7 +38,7 @@ pub fn constant<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Con
 /// Least time at constant speed: N / v_s, seconds.
 ///
 /// # Errors
-/// Refused where the start speed is 0: no time would do.
+/// A [`Refusal`] if the start speed is 0, because no time would then be long enough.
 pub fn constant_least_time<F: Real>(distance: F, limits: &Limits<F>) -> Result<F, Refusal> {
     if limits.start_speed <= F::zero() {
         return Err(Refusal::never(Limit::StartSpeed, limits.start_speed));

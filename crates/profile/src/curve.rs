@@ -1,8 +1,8 @@
-//! What a user has to know before trusting a curve.
+//! The figures of a curve that a user needs to judge it.
 
 use crate::profile::{Profile, Real, real};
 
-/// A profile that knows its extremes.
+/// A profile that can give its extremes.
 pub trait Curve<F: Real>: Profile<F> {
     /// Greatest speed, steps/s.
     fn top_speed(&self) -> F;
@@ -10,19 +10,20 @@ pub trait Curve<F: Real>: Profile<F> {
     /// Greatest absolute acceleration, steps/s^2.
     fn peak_acceleration(&self) -> F;
 
-    /// Greatest absolute jerk inside the pieces, steps/s^3; where acceleration jumps, jerk has an impulse
-    /// that is not counted here but in [`Figures::acceleration_jump`].
+    /// Greatest absolute jerk inside the pieces, steps/s^3. Where the acceleration jumps, the jerk
+    /// has an impulse; it is not counted here but in [`Figures::acceleration_jump`].
     fn peak_jerk(&self) -> F;
 
-    /// Time from position `x` to `x + 1` (both in 0..=distance), seconds: the c_n of the literature.
+    /// Time from position `x` to `x + 1` (both in 0..=distance), seconds: the delay c_n of the
+    /// literature.
     ///
-    /// As the reciprocal of a mean speed, which is well conditioned where the difference of two late
-    /// crossing times is not.
+    /// It is the reciprocal of a mean speed. This is well conditioned, unlike the difference of two
+    /// late crossing times.
     fn delay(&self, x: F) -> F {
         self.mean_speed(self.crossing(x), self.crossing(x + F::one())).recip()
     }
 
-    /// All extremes at once.
+    /// Returns all extremes.
     fn figures(&self) -> Figures<F> {
         let (start, end) = (F::zero(), self.duration());
         Figures {
@@ -37,11 +38,13 @@ pub trait Curve<F: Real>: Profile<F> {
         }
     }
 
-    /// Greatest sudden change of acceleration, steps/s^2, the ends included; 0 where acceleration is continuous.
+    /// Greatest sudden change of acceleration, steps/s^2, with the ends of the move; 0 where the
+    /// acceleration is continuous.
     fn acceleration_jump(&self) -> F;
 }
 
-/// Whether a part of a move takes time, or is nothing but the rounding of its whole.
+/// Whether a part of a move takes time, as opposed to being only the rounding of the whole, both in
+/// seconds.
 pub(crate) fn is_time<F: Real>(part: F, whole: F) -> bool {
     part > real::<F>(64.0) * F::epsilon() * whole
 }
@@ -49,19 +52,19 @@ pub(crate) fn is_time<F: Real>(part: F, whole: F) -> bool {
 /// The extremes of a ramp or a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figures<F> {
-    /// Length, steps.
+    /// Distance, steps.
     pub steps: F,
-    /// Length, seconds.
+    /// Duration, seconds.
     pub seconds: F,
-    /// The jump from rest at the start, steps/s.
+    /// Speed at the start, to which the motor jumps from rest, steps/s.
     pub start_speed: F,
-    /// Speed at the end, steps/s: of a move, the jump back to rest.
+    /// Speed at the end, steps/s. At the end of a move the motor jumps from it to rest.
     pub end_speed: F,
     /// Greatest speed, steps/s.
     pub top_speed: F,
     /// Greatest absolute acceleration, steps/s^2.
     pub peak_acceleration: F,
-    /// Greatest sudden change of acceleration, steps/s^2; 0 where acceleration is continuous.
+    /// Greatest sudden change of acceleration, steps/s^2; 0 where the acceleration is continuous.
     pub acceleration_jump: F,
     /// Greatest absolute jerk between such changes, steps/s^3.
     pub peak_jerk: F,

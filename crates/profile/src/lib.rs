@@ -1,9 +1,13 @@
 //! Float reference profiles of the literature.
 //!
-//! A [`Profile`] is a distance travelled from rest or from a start speed, as a function of time, for one
-//! axis and one move. Distances are in steps and never negative: which way an axis goes is kept outside.
-//! All is generic over [`Real`] floats; nothing here knows of ticks' integers. [`Timeline`] strings the
-//! profiles of one axis together and says when each pulse is due.
+//! A [`Profile`] gives the distance that one axis has travelled in one move as a function of time,
+//! from rest or from a start speed. Distances are in steps and never negative; the direction of
+//! travel is kept by the caller. All code is generic over [`Real`] floats and knows nothing of the
+//! planner's integers. A [`Timeline`] puts the profiles of one axis in sequence and gives the time
+//! at which each pulse is due.
+//!
+//! The modules are private. The public items are listed below; docs/profiles.md gives the formulas
+//! and their sources.
 
 mod alone;
 mod bad_ramp;
@@ -40,8 +44,9 @@ pub use sine::SineRamp;
 pub use timeline::{Crossing, Leg, Timeline};
 pub use widened::Widened;
 
-/// From distance, time and limits to a profile, or to a refusal; and the least time for each. For a ramp by
-/// itself, from its top speed.
+/// Functions that return the profile for a distance, a time and limits, or a refusal, and functions
+/// that return the least time. The functions whose names end in `_ramp` return a single ramp up to
+/// a given top speed.
 pub mod rule {
     pub use crate::alone::{logistic_ramp, logistic_ramp_about, ranade_ramp, scurve_ramp, sine_ramp, trapezoid_ramp};
     pub use crate::constant::{constant, constant_least_time};

@@ -1,12 +1,13 @@
-//! A move in which all axes keep to one straight line.
+//! The description of a move in which all axes keep to one straight line.
 
-/// What the pulses of such a move can be measured against: not when, only where the axes are together.
+/// The line against which the checker measures the pulses of such a move. It compares the positions
+/// of the axes with each other, not with the time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
     /// Pulses that each axis has made before the move.
     pub before: Vec<u64>,
-    /// Steps of each axis in the move, either sign.
+    /// Steps of each axis in the move; negative is backward.
     pub steps: Vec<i64>,
-    /// Greatest part of the line that is travelled in a second.
+    /// Greatest speed along the line, as the fraction of the line that is travelled in a second.
     pub speed: f64,
 }

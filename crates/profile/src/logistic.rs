@@ -1,6 +1,9 @@
-//! The logistic S-curve: w(t) = w / (1 + e^(k (T_i - t))), k = 4 a / w.
+//! The logistic S-curve: w(t) = w / (1 + e^(k (T_i - t))), with k = 4 a / w.
 //!
-//! M. Sorn (2019), Eqs. 1-5. Right here, wrong there: `docs/profiles.md`.
+//! The source is M. Sorn (2019), Eqs. 1 to 5. docs/profiles.md lists its errors, which are
+//! corrected here.
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 use crate::bad_ramp::{BadRamp, in_range, positive, wide};
 use crate::curve::Curve;
@@ -10,20 +13,22 @@ use crate::ramped::RampedMove;
 use crate::refusal::{Limits, Refusal};
 use crate::timed;
 
-/// The part of the asymptote that is missing at the end of a ramp, and present at its start: the source stops at 99.5 %.
+/// The fraction of the asymptote that is missing at the end of a ramp, and present at its start:
+/// the source ends its ramp at 99.5 %.
 pub const SHORTFALL: f64 = 1.0 / 200.0;
 
-/// One acceleration ramp along a logistic curve, cut off on both sides: it never is at rest, nor at its asymptote.
+/// One acceleration ramp along a logistic curve. The curve is cut off on both sides, because it
+/// never reaches rest or its asymptote.
 ///
-/// It starts with a jump to w / (1 + e^(k T_i)) and ends at (1 - shortfall) w.
+/// The ramp starts with a jump to w / (1 + e^(k T_i)) and ends at (1 - shortfall) w.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LogisticRamp<F> {
     asymptote: F,
     steepness: F,
     centre: F,
-    /// Speed at the start over the asymptote: 1 / (1 + A), A = e^(k T_i).
+    /// Speed at the start as a fraction of the asymptote: 1 / (1 + A), with A = e^(k T_i).
     start: F,
-    /// ln(1 + A): finite where A is not.
+    /// ln(1 + A), which is finite even where A overflows.
     ln_start: F,
     end: F,
     duration: F,
@@ -31,15 +36,18 @@ pub struct LogisticRamp<F> {
 }
 
 impl<F: Real> LogisticRamp<F> {
-    /// The ramp of the source.
+    /// The ramp of the source, with its parameters.
     ///
-    /// - `asymptote` w, steps/s;
-    /// - `acceleration` a, its peak, steps/s^2;
-    /// - `centre` T_i, when half the asymptote and the peak acceleration are reached, seconds;
-    /// - `shortfall`, the part of w still missing where the ramp ends, under 1 ([`SHORTFALL`]).
+    /// - `asymptote`: w, steps/s.
+    /// - `acceleration`: a, the peak acceleration, steps/s^2.
+    /// - `centre`: T_i, the time at which half the asymptote and the peak acceleration are reached,
+    ///   seconds.
+    /// - `shortfall`: the fraction of w that is missing at the end of the ramp, over 0 and under 1
+    ///   (usually [`SHORTFALL`]).
     ///
     /// # Errors
-    /// A parameter out of its range; a centre so early that the ramp is over before it starts.
+    /// A [`BadRamp`] if a parameter is out of its range, or if the centre is so early that the ramp
+    /// would end before it starts.
     pub fn new(asymptote: F, acceleration: F, centre: F, shortfall: F) -> Result<Self, BadRamp> {
         let asymptote = positive("the top speed", asymptote)?;
         let acceleration = positive("the acceleration", acceleration)?;
@@ -57,28 +65,29 @@ impl<F: Real> LogisticRamp<F> {
         }
     }
 
-    /// The symmetric ramp: as far from rest at the start as from the asymptote at the end, T_i = ln(199) / k.
+    /// The symmetric ramp, which starts as far from rest as it ends from the asymptote: T_i =
+    /// ln(199) / k.
     ///
     /// # Errors
-    /// A parameter out of its range.
+    /// A [`BadRamp`] if a parameter is out of its range.
     pub fn symmetric(asymptote: F, acceleration: F) -> Result<Self, BadRamp> {
         let steepness = real::<F>(4.0) * positive("the acceleration", acceleration)? / asymptote;
         Self::new(asymptote, acceleration, tail(real::<F>(SHORTFALL)) / steepness, real(SHORTFALL))
     }
 
-    /// `ln_start` = ln(1 + A).
+    /// Builds a ramp from `ln_start` = ln(1 + A).
     fn cut(asymptote: F, steepness: F, ln_start: F, shortfall: F) -> Self {
         let start = (-ln_start).exp();
         let centre = ln_exp_m1(ln_start) / steepness;
         let duration = centre + tail(shortfall) / steepness;
-        // s(T) = (w / k) ln((1 - start) / shortfall)
+        // The distance is s(T) = (w / k) ln((1 - start) / shortfall).
         let distance = asymptote / steepness * ((-start).ln_1p() - shortfall.ln());
         let end = asymptote * (F::one() - shortfall);
         Self { asymptote, steepness, centre, start, ln_start, end, duration, distance }
     }
 
-    /// The steepest ramp within `limits` that ends at `top`; its jump at the start is at most the start
-    /// speed, where there is one.
+    /// The steepest ramp within `limits` that ends at `top` steps/s. If the limits have a start
+    /// speed, the jump at the start does not exceed it.
     fn within(limits: &Limits<F>, top: F) -> Self {
         let shortfall = real::<F>(SHORTFALL);
         let asymptote = top / (F::one() - shortfall);
@@ -89,27 +98,27 @@ impl<F: Real> LogisticRamp<F> {
         Self::between(asymptote, steepest(limits, asymptote), start_fraction(limits, asymptote))
     }
 
-    /// From `start` of the asymptote to [`SHORTFALL`] under it.
+    /// A ramp from the fraction `start` of the asymptote to [`SHORTFALL`] below it.
     pub(crate) fn between(asymptote: F, steepness: F, start: F) -> Self {
         Self::cut(asymptote, steepness, -start.ln(), real(SHORTFALL))
     }
 
-    /// w, approached but never reached, steps/s.
+    /// The asymptote w, which is approached but never reached, steps/s.
     pub fn asymptote(&self) -> F {
         self.asymptote
     }
 
-    /// k = 4 a / w, 1/s.
+    /// The steepness k = 4 a / w, 1/s.
     pub fn steepness(&self) -> F {
         self.steepness
     }
 
-    /// T_i, when half the asymptote is passed, seconds.
+    /// The centre T_i, at which half the asymptote is passed, seconds.
     pub fn centre(&self) -> F {
         self.centre
     }
 
-    /// Speed over the asymptote at t, in 0..1.
+    /// Speed at `t` as a fraction of the asymptote, in 0..1.
     fn fraction(&self, t: F) -> F {
         (F::one() + (self.steepness * (self.centre - self.clamped(t))).exp()).recip()
     }
@@ -118,46 +127,47 @@ impl<F: Real> LogisticRamp<F> {
         t.max(F::zero()).min(self.duration)
     }
 
-    /// Fractions at the start and the end.
+    /// The fractions of the asymptote at the start and at the end.
     fn reach(&self) -> (F, F) {
         (self.start, self.end / self.asymptote)
     }
 }
 
-/// max |d^2 f/dz^2| of f = 1 / (1 + e^-z): 1 / (6 sqrt 3), where f is (1 -+ 1/sqrt 3) / 2.
+/// The maximum of |d^2 f/dz^2| for f = 1 / (1 + e^-z). It is 1 / (6 sqrt 3), where f is (1 -+
+/// 1/sqrt 3) / 2.
 const PEAK_JERK: f64 = 0.096_225_044_864_937_63;
 
-/// The greatest k within acceleration and jerk limit.
+/// The greatest steepness k within the acceleration and jerk limits, 1/s.
 pub(crate) fn steepest<F: Real>(limits: &Limits<F>, asymptote: F) -> F {
     let by_acceleration = real::<F>(4.0) * limits.acceleration / asymptote;
     let by_jerk = (limits.jerk / (asymptote * real(PEAK_JERK))).sqrt();
     by_acceleration.min(by_jerk)
 }
 
-/// The jump at the start over the asymptote: as much as is missing at the end, or the start speed where
-/// that is stated and less.
+/// The jump at the start as a fraction of the asymptote: as much as is missing at the end, or the
+/// start speed if one is given and smaller.
 pub(crate) fn start_fraction<F: Real>(limits: &Limits<F>, asymptote: F) -> F {
     let (jump, shortfall) = (limits.start_speed / asymptote, real(SHORTFALL));
     if jump > F::zero() { jump.min(shortfall) } else { shortfall }
 }
 
-/// k times the time from the centre to where `shortfall` of the asymptote is missing.
+/// k times the time from the centre to the point at which `shortfall` of the asymptote is missing.
 fn tail<F: Real>(shortfall: F) -> F {
     (-shortfall).ln_1p() - shortfall.ln()
 }
 
-/// df/dz = f (1 - f).
+/// The derivative df/dz = f (1 - f).
 fn slope<F: Real>(f: F) -> F {
     f * (F::one() - f)
 }
 
-/// d^2 f/dz^2 = f (1 - f) (1 - 2 f).
+/// The second derivative d^2 f/dz^2 = f (1 - f) (1 - 2 f).
 fn bend<F: Real>(f: F) -> F {
     slope(f) * (F::one() - f - f)
 }
 
-/// ln(1 + f (e^y - 1)), given ln f: the distance, in w/k, from speed f w in the time y/k. Neither f nor e^y
-/// need fit into a float.
+/// ln(1 + f (e^y - 1)), for a given ln f: the distance, in units of w/k, that is travelled in the
+/// time y/k from the speed f w. The result is correct even where f or e^y do not fit into a float.
 fn gain<F: Real>(ln_f: F, y: F) -> F {
     let f = ln_f.exp();
     let grown = f * y.exp_m1();
@@ -195,7 +205,7 @@ impl<F: Real> Profile<F> for LogisticRamp<F> {
         self.steepness * self.steepness * self.asymptote * bend(self.fraction(t))
     }
 
-    /// t = ln(1 + (A + 1) (e^(k x / w) - 1)) / k.
+    /// The time is t = ln(1 + (A + 1) (e^(k x / w) - 1)) / k.
     fn crossing(&self, x: F) -> F {
         if x <= F::zero() {
             return F::zero();
@@ -256,13 +266,13 @@ impl<F: Real> Curve<F> for LogisticRamp<F> {
 
 /// The logistic move of `distance` steps (over 0) in `time` seconds.
 ///
-/// Up along the curve to 99.5 % of its asymptote, a cruise at that speed, down along the mirrored curve. The jump
-/// at both ends is 0.5 % of the asymptote, or the start speed where that is less; a logistic curve
-/// has no rest, so with a start speed of 0, which says nothing of the jump that the motor takes, it is
-/// 0.5 % too. [`Curve::figures`] states it.
+/// The move rises along the curve to 99.5 % of its asymptote, cruises at that speed and falls along
+/// the mirrored curve. The speed jump at both ends is 0.5 % of the asymptote, or the start speed if
+/// that is smaller. A logistic curve is never at rest; a start speed of 0 therefore does not limit
+/// the jump, which is 0.5 % then too. [`Curve::figures`] gives its value.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that fails and the least time.
+/// A [`Refusal`] names the limit that fails and the least time.
 pub fn logistic<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<RampedMove<F, LogisticRamp<F>>, Refusal> {
     timed::in_time(distance, time, limits, &ramps)
 }

@@ -1,28 +1,31 @@
-//! What every profile answers.
+//! The interface of every profile.
+//!
+//! A new profile implements [`Profile`], and [`crate::Curve`] for its figures.
 
 use num_traits::Float;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A float that profiles can be computed in: f64 in the product, f32 where less must do.
+/// A float type that profiles can be computed in: f64 in the product, f32 where it is accurate
+/// enough.
 pub trait Real: Float + Debug + Send + Sync + 'static {}
 
 impl<F: Float + Debug + Send + Sync + 'static> Real for F {}
 
-/// The float nearest to a constant of a formula.
+/// Converts a constant of a formula to the nearest float.
 pub(crate) fn real<F: Real>(value: f64) -> F {
     F::from(value).unwrap_or_else(F::nan)
 }
 
-/// How far one axis has come, and how fast it is, at each moment of one move.
+/// Position and speed of one axis at each moment of one move.
 ///
-/// Times are seconds from the start of the move, distances steps from where it started, in the
-/// direction of travel. Outside 0..=duration the axis stands: times are clamped.
+/// Times are in seconds from the start of the move. Distances are in steps from the start position,
+/// in the direction of travel. A time outside 0..=duration is clamped: the axis is at rest there.
 pub trait Profile<F: Real>: Debug + Send + Sync {
-    /// What the literature calls it.
+    /// The name of the shape in the literature.
     fn shape(&self) -> &'static str;
 
-    /// Length, seconds.
+    /// Duration of the move, seconds.
     fn duration(&self) -> F;
 
     /// Whole distance, steps, 0 or more.
@@ -31,27 +34,31 @@ pub trait Profile<F: Real>: Debug + Send + Sync {
     /// Distance travelled after `t` seconds, steps.
     fn position(&self, t: F) -> F;
 
-    /// Speed, steps/s, 0 or more; at the ends the speed just inside.
+    /// Speed at `t` seconds, steps/s, 0 or more. At the ends it is the speed just inside the move.
     fn speed(&self, t: F) -> F;
 
-    /// Acceleration, steps/s^2; at a breakpoint that of the piece that begins there.
+    /// Acceleration at `t` seconds, steps/s^2. At a breakpoint it is that of the piece that begins
+    /// there.
     fn acceleration(&self, t: F) -> F;
 
-    /// Jerk inside a piece, steps/s^3; the impulses at breakpoints are left out.
+    /// Jerk at `t` seconds, steps/s^3, inside a piece. The impulses of jerk at breakpoints are left
+    /// out.
     fn jerk(&self, t: F) -> F;
 
-    /// Time at which position `x` (0..=distance, steps) is passed, seconds.
+    /// Time at which the axis passes position `x` (0..=distance, steps), seconds.
     ///
-    /// Stable everywhere: near rest at the end as near rest at the start.
+    /// The result is well conditioned near rest at both ends of the move.
     fn crossing(&self, x: F) -> F;
 
-    /// Times inside the move at which one formula gives way to another, ascending, seconds.
+    /// Times inside the move at which the formula changes, seconds, ascending.
     fn breakpoints(&self) -> &[F];
 
-    /// Mean speed between two times, steps/s, without taking the difference of two positions.
+    /// Mean speed between two times in seconds, steps/s, without taking the difference of two
+    /// positions.
     ///
-    /// Provided by Gauss' rule of two points from breakpoint to breakpoint: exact up to constant jerk, and
-    /// its points lie inside the pieces, so that a rounded breakpoint costs nothing.
+    /// The provided method applies the two-point Gauss rule from breakpoint to breakpoint. It is
+    /// exact up to constant jerk. Its points lie inside the pieces, so that the rounding of a
+    /// breakpoint has no effect.
     fn mean_speed(&self, from: F, to: F) -> F {
         let whole = to - from;
         if whole <= F::zero() {
@@ -72,5 +79,5 @@ pub trait Profile<F: Real>: Debug + Send + Sync {
     }
 }
 
-/// A profile that plans and waveforms share.
+/// A profile that several plans and waveforms share.
 pub type SharedProfile<F = f64> = Arc<dyn Profile<F>>;

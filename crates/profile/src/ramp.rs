@@ -1,4 +1,4 @@
-//! Triangle and trapezoid: up at one acceleration, perhaps a cruise, down at the same.
+//! Triangle and trapezoid: constant acceleration, perhaps a cruise, and the same deceleration.
 
 use crate::curve::{Curve, is_time};
 use crate::profile::{Profile, Real, real};
@@ -25,13 +25,14 @@ pub struct Ramp<F> {
 }
 
 impl<F: Real> Ramp<F> {
-    /// Up and down without a cruise, in `duration` seconds; `acceleration` over 0.
+    /// A move up and down without a cruise, in `duration` seconds; `acceleration` must be over 0.
     pub fn triangle(distance: F, duration: F, start: F, acceleration: F) -> Self {
         let half = duration / real(2.0);
         Self::build(distance, duration, start, start + acceleration * half, acceleration, half, true)
     }
 
-    /// Up to `top` steps/s in `ramp` seconds (at most half the duration), cruise, and down.
+    /// A move that rises to `top` steps/s in `ramp` seconds (limited to half the duration), cruises
+    /// and falls.
     pub fn trapezoid(distance: F, duration: F, start: F, top: F, acceleration: F, ramp: F) -> Self {
         Self::build(distance, duration, start, top, acceleration, ramp.min(duration / real(2.0)), false)
     }
@@ -57,12 +58,13 @@ impl<F: Real> Ramp<F> {
         self.acceleration
     }
 
-    /// Length of each ramp, seconds.
+    /// Duration of each ramp, seconds.
     pub fn ramp_time(&self) -> F {
         self.ramp
     }
 
-    /// Distance after `t` seconds, t in the first half; by symmetry, distance left `t` seconds before the end.
+    /// Distance after `t` seconds, for t in the first half, in steps. By symmetry it is also the
+    /// distance that is left `t` seconds before the end.
     fn head(&self, t: F) -> F {
         if t <= self.ramp {
             (self.start + self.acceleration * t / real(2.0)) * t
@@ -71,8 +73,8 @@ impl<F: Real> Ramp<F> {
         }
     }
 
-    /// The time of [`Self::head`], x in the first half. The usual root, rationalised: no difference of
-    /// nearly equal numbers near rest.
+    /// The inverse of [`Self::head`], for x in the first half. The root of the quadratic is
+    /// rationalised, so that near rest no difference of nearly equal numbers is taken.
     fn head_time(&self, x: F) -> F {
         if x <= F::zero() {
             return F::zero();
@@ -152,7 +154,7 @@ impl<F: Real> Curve<F> for Ramp<F> {
         F::zero()
     }
 
-    /// Without a cruise, that of rounding aside, the two jumps at the top are one.
+    /// Without a cruise, rounding aside, the two jumps at the top are one jump of twice the size.
     fn acceleration_jump(&self) -> F {
         let [up, down] = self.breakpoints;
         let peak = Curve::peak_acceleration(self);

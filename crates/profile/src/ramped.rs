@@ -1,9 +1,10 @@
-//! A whole move from two ramps: up, a cruise, and down.
+//! A whole move made of two ramps: a ramp up, a cruise and a ramp down.
 
 use crate::curve::{Curve, is_time};
 use crate::profile::{Profile, Real, real};
 
-/// A move that ramps up, cruises at the speed the ramp has reached, and ramps down, mirrored in time.
+/// A move that ramps up, cruises at the speed that the ramp has reached, and ramps down along a
+/// ramp that is mirrored in time.
 ///
 /// ```text
 /// top          __^^^^^^^^^^^^^__
@@ -22,7 +23,8 @@ pub struct RampedMove<F, R> {
 }
 
 impl<F: Real, R: Curve<F>> RampedMove<F, R> {
-    /// `up` and `down` (as if it went up) end at `top` steps/s and fit into `distance` and `duration`.
+    /// Builds a move from two ramps that both end at `top` steps/s and fit into `distance` and
+    /// `duration`. `down` is given as if it went up.
     pub(crate) fn new(distance: F, duration: F, top: F, up: R, down: R) -> Self {
         let rising = up.breakpoints().iter().copied().chain([up.duration()]);
         let falling = down.breakpoints().iter().rev().map(|&b| duration - b);
@@ -97,7 +99,8 @@ impl<F: Real, R: Curve<F>> Profile<F> for RampedMove<F, R> {
             Phase::Cruise => {
                 let after = (t - self.up.duration()).max(F::zero());
                 let before = (left - self.down.duration()).max(F::zero());
-                // From the nearer ramp: a millionth of a step near rest stays a millionth.
+                // The distance is counted from the nearer end, so that it keeps its relative
+                // precision near rest.
                 if after <= before {
                     self.up.distance() + self.top * after
                 } else {
@@ -133,7 +136,7 @@ impl<F: Real, R: Curve<F>> Profile<F> for RampedMove<F, R> {
         match self.phase(t) {
             Phase::Up => self.up.jerk(t),
             Phase::Cruise => F::zero(),
-            // Twice mirrored: time runs back, and speed falls.
+            // Both signs cancel: time runs backward, and the speed falls.
             Phase::Down => self.down.jerk(self.duration - t),
         }
     }
@@ -204,13 +207,14 @@ impl<F: Real, R: Curve<F>> Curve<F> for RampedMove<F, R> {
         if is_time(self.cruise_time(), self.duration) {
             return ends;
         }
-        // From one ramp straight into the other: the two jumps at the top are one.
+        // Where one ramp follows the other without a cruise, the two jumps at the top are one.
         let at_top = |ramp: &R| ramp.acceleration(ramp.duration());
         ends.max(at_top(&self.up) + at_top(&self.down))
     }
 }
 
-/// The time of a move of `distance` steps with these ramps, cruising at `top` steps/s between them.
+/// The time of a move of `distance` steps with these ramps and a cruise at `top` steps/s between
+/// them, seconds.
 pub(crate) fn time_with_cruise<F: Real, R: Curve<F>>(distance: F, top: F, up: &R, down: &R) -> F {
     let cruise = distance - up.distance() - down.distance();
     up.duration() + down.duration() + cruise.max(real(0.0)) / top

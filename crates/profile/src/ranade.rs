@@ -1,8 +1,10 @@
-//! Ranade (2009), "Add-only speed-time accumulator": a move in a given time.
+//! Ranade's rule for a move in a given time: P. Ranade (2009), "Add-only speed-time accumulator".
 //!
-//! Triangle whenever possible; else a trapezoid at the speed limit; else a refusal. With average
-//! speed below the start speed the article's formulas give a negative acceleration: such a move
-//! runs at one speed.
+//! The move is a triangle whenever possible, otherwise a trapezoid at the speed limit, otherwise it
+//! is refused. For an average speed below the start speed the article's formulas give a negative
+//! acceleration: such a move has constant speed here.
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 use crate::constant::Constant;
 use crate::curve::Curve;
@@ -14,15 +16,15 @@ use std::sync::Arc;
 /// The move of `distance` steps (over 0) in `time` seconds by Ranade's rule.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that fails and the least time.
+/// A [`Refusal`] names the limit that fails and the least time.
 pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Profile<F>>, Refusal> {
     Ok(ranade_curve(distance, time, limits)?)
 }
 
-/// [`ranade`], with its figures.
+/// The move of [`ranade`] as a [`Curve`], which gives its figures.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that fails and the least time.
+/// A [`Refusal`] names the limit that fails and the least time.
 pub fn ranade_curve<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Curve<F>>, Refusal> {
     let Limits { start_speed, speed, acceleration: limit, .. } = *limits;
     let average = distance / time;
@@ -31,7 +33,7 @@ pub fn ranade_curve<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result
     }
     let least = ranade_least_time(distance, limits);
     let too_short = limits.too_short(time, least);
-    // The slowest rise that does: 4 (N - v_s T) / T^2.
+    // The least acceleration that is enough: 4 (N - v_s T) / T^2.
     let acceleration = real::<F>(4.0) * (average - start_speed) / time;
     let top = real::<F>(2.0) * average - start_speed;
     if top <= speed {
@@ -40,7 +42,7 @@ pub fn ranade_curve<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result
         }
         return Ok(Arc::new(Ramp::triangle(distance, time, start_speed, acceleration.min(limit))));
     }
-    // Speed-limited: t_a = (v_l T - N) / (v_l - v_s).
+    // The move is limited by the speed: t_a = (v_l T - N) / (v_l - v_s).
     let spare = speed * time - distance;
     let rise = speed - start_speed;
     let acceleration = if spare > F::zero() { rise * rise / spare } else { F::infinity() };
@@ -55,8 +57,8 @@ pub fn ranade_curve<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result
     Ok(Arc::new(Ramp::trapezoid(distance, time, start_speed, speed, acceleration, rise / acceleration)))
 }
 
-/// Least time from the start speed back to it: 2 (v_l - v_s)/a + (N - (v_l^2 - v_s^2)/a)/v_l, or,
-/// where the speed limit is not reached, 2 (sqrt(v_s^2 + a N) - v_s)/a. Seconds.
+/// Least time from the start speed back to it, seconds: 2 (v_l - v_s)/a + (N - (v_l^2 -
+/// v_s^2)/a)/v_l, or 2 (sqrt(v_s^2 + a N) - v_s)/a where the speed limit is not reached.
 pub fn ranade_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
     let Limits { start_speed, speed, acceleration, .. } = *limits;
     let two = real::<F>(2.0);

@@ -1,7 +1,8 @@
-//! Profiles in the terms of their sources: units in; step times, delays, figures and pictures out.
+//! Profiles in the units of their sources, with their step times, delays, figures and pictures.
 //!
-//! The curves are those of `carrystep-profile`. Here a [`Request`] asks for one of each [`Kind`], in
-//! millimetres, degrees or turns of a [`Drive`] as well as in steps, and gets [`Reference`]s.
+//! The curves are those of `carrystep-profile`. A [`Request`] gives the limits and the distance in
+//! millimetres, degrees or turns of a [`Drive`], or in steps. It returns a [`Reference`] for each
+//! [`Kind`]. The modules are private; the public items are listed below.
 //!
 //! ```
 //! use carrystep_profile::reference::{Drive, Kind, Length, Listing, Quantity, Request, Travel};

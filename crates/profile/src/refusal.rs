@@ -1,33 +1,35 @@
-//! What a motor can do, and the answer when a move asks for more.
+//! The limits of a motor, and the error for a move that exceeds them.
+//!
+//! The texts of [`Limit`] are the keys of the machine file and may not change.
 
 use crate::profile::{Real, real};
 use std::fmt;
 use thiserror::Error;
 
-/// What one axis can do.
+/// The limits of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits<F> {
-    /// Speed that the motor takes from rest, steps/s; 0..=speed.
+    /// Greatest speed to which the motor may jump from rest, steps/s; in 0..=speed.
     pub start_speed: F,
     /// Greatest speed, steps/s; over 0.
     pub speed: F,
     /// Greatest acceleration, steps/s^2; over 0.
     pub acceleration: F,
-    /// Greatest jerk, steps/s^3; over 0, infinite where there is no limit.
+    /// Greatest jerk, steps/s^3; over 0, infinite if there is no limit.
     pub jerk: F,
 }
 
 impl<F: Real> Limits<F> {
-    /// Whether `time` is under `least`, rounding aside.
+    /// Whether `time` is below `least`, except for rounding. Both are in seconds.
     ///
-    /// Times are compared rather than speeds or accelerations: near a limit these come from differences
-    /// of nearly equal numbers, and would refuse a move for the rounding of its time.
+    /// Times are compared and not speeds or accelerations. Near a limit these come from differences
+    /// of nearly equal numbers, so that the rounding of the time would refuse a valid move.
     pub(crate) fn too_short(&self, time: F, least: F) -> bool {
         time < least * (F::one() - real::<F>(16.0) * F::epsilon())
     }
 }
 
-/// A limit of an axis, by its key in the machine file.
+/// A limit of an axis, named by its key in the machine file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Limit {
     /// `start_speed`, steps/s.
@@ -41,7 +43,8 @@ pub enum Limit {
 }
 
 impl Limit {
-    /// The power of seconds that its unit is per: 1 of a speed, 2 of an acceleration, 3 of a jerk.
+    /// The exponent of the second in the limit's unit: 1 for a speed, 2 for an acceleration, 3 for
+    /// a jerk.
     pub const fn seconds(self) -> u32 {
         match self {
             Self::StartSpeed | Self::Speed => 1,
@@ -50,7 +53,7 @@ impl Limit {
         }
     }
 
-    /// Its unit.
+    /// The unit of the limit.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::StartSpeed | Self::Speed => "steps/s",
@@ -71,16 +74,17 @@ impl fmt::Display for Limit {
     }
 }
 
-/// Why a move cannot be done within the limits, and the least time in which it could.
+/// Why the limits do not allow a move, and the least time in which they would.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub struct Refusal {
     /// The limit that fails.
     pub limit: Limit,
-    /// What the move needs, in the limit's unit; infinite where no finite value would do.
+    /// The value that the move needs, in the limit's unit; infinite where no finite value is
+    /// enough.
     pub wanted: f64,
-    /// What the axis has, in the same unit.
+    /// The value that the axis has, in the same unit.
     pub available: f64,
-    /// Least time that would do, seconds; `None` where no time would.
+    /// Least time that is long enough, seconds; `None` if no time is.
     pub least_time: Option<f64>,
 }
 

@@ -1,8 +1,8 @@
-//! The seven-segment S-curve: limits on speed, acceleration and jerk.
+//! The seven-segment S-curve, with limits on speed, acceleration and jerk.
 //!
-//! Three segments a ramp (jerk up, acceleration held, jerk down) and the cruise. The formulas are those of
-//! L. Biagiotti and C. Melchiorri, "Trajectory Planning for Automatic Machines and Robots" (2008), 3.4, with
-//! jumps at the ends.
+//! Each ramp has three segments (jerk up, constant acceleration, jerk down); the cruise is the
+//! seventh. The formulas are those of L. Biagiotti and C. Melchiorri, "Trajectory Planning for
+//! Automatic Machines and Robots" (2008), section 3.4, extended by speed jumps at the ends.
 
 use crate::bad_ramp::{BadRamp, in_range, wide};
 use crate::curve::Curve;
@@ -24,7 +24,8 @@ pub struct ScurveRamp<F> {
     start: F,
     end: F,
     jerk: F,
-    /// Held between the two jerk segments; under the limit where that is not reached.
+    /// Acceleration between the two jerk segments, steps/s^2; below the limit if that is not
+    /// reached.
     peak: F,
     rise: F,
     hold: F,
@@ -34,13 +35,14 @@ pub struct ScurveRamp<F> {
 }
 
 impl<F: Real> ScurveRamp<F> {
-    /// From `start` to `end` steps/s with at most `acceleration` steps/s^2 and `jerk` steps/s^3.
+    /// A ramp from `start` to `end` steps/s with at most `acceleration` steps/s^2 and `jerk`
+    /// steps/s^3.
     ///
-    /// An infinite jerk makes it a ramp of one acceleration.
+    /// With an infinite jerk the ramp has constant acceleration.
     ///
     /// # Errors
-    /// A speed that is negative or not finite, a limit that is not over 0, both limits infinite, an end
-    /// under the start.
+    /// A [`BadRamp`] if a speed is negative or not finite, if a limit is not over 0, if both limits
+    /// are infinite, or if `end` is below `start`.
     pub fn new(start: F, end: F, acceleration: F, jerk: F) -> Result<Self, BadRamp> {
         let speed = |name, v: F| in_range(name, v, "finite and not negative", v >= F::zero() && v.is_finite());
         let (start, end) = (speed("the start speed", start)?, speed("the top speed", end)?);
@@ -70,12 +72,13 @@ impl<F: Real> ScurveRamp<F> {
         Self { start, end, jerk, peak, rise, hold, duration, distance, breakpoints: [rise, rise + hold] }
     }
 
-    /// Time of each jerk segment, seconds.
+    /// Duration of each jerk segment, seconds.
     pub fn jerk_time(&self) -> F {
         self.rise
     }
 
-    /// Time at constant acceleration, seconds; 0 where the acceleration limit is not reached.
+    /// Duration of the constant acceleration, seconds; 0 where the acceleration limit is not
+    /// reached.
     pub fn hold_time(&self) -> F {
         self.hold
     }
@@ -85,12 +88,12 @@ impl<F: Real> ScurveRamp<F> {
         self.peak * self.rise / real(2.0)
     }
 
-    /// Distance of the first segment.
+    /// Distance of the first segment, steps.
     fn lower(&self) -> F {
         self.rise * (self.start + self.peak * self.rise / real(6.0))
     }
 
-    /// Distance of the last segment.
+    /// Distance of the last segment, steps.
     fn upper(&self) -> F {
         self.rise * (self.end - self.peak * self.rise / real(6.0))
     }
@@ -100,9 +103,10 @@ impl<F: Real> ScurveRamp<F> {
     }
 }
 
-/// The t over 0 with v t + j t^3 / 6 = x, for j over 0.
+/// Solves v t + j t^3 / 6 = x for t over 0, with j over 0.
 ///
-/// Newton from above: the left side is convex, so it comes down and never leaves.
+/// Newton's method starts above the root. The left side is convex, so that the iterates fall
+/// towards the root and stay above it.
 fn early_crossing<F: Real>(v: F, j: F, x: F) -> F {
     let (two, six) = (real::<F>(2.0), real::<F>(6.0));
     let by_jerk = (x / j * six).cbrt();
@@ -110,9 +114,10 @@ fn early_crossing<F: Real>(v: F, j: F, x: F) -> F {
     newton(start, |t| (t * (v + j * t * t / six) - x, v + j * t * t / two))
 }
 
-/// The smallest t with v t - j t^3 / 6 = y: back from the end of a ramp.
+/// Finds the smallest t with v t - j t^3 / 6 = y, which counts back from the end of a ramp.
 ///
-/// Newton from below: the left side is concave up to the start of the segment, so it comes up and never leaves.
+/// Newton's method starts below the root. The left side is concave up to the start of the segment,
+/// so that the iterates rise towards the root and stay below it.
 fn late_crossing<F: Real>(v: F, j: F, y: F) -> F {
     let (two, six) = (real::<F>(2.0), real::<F>(6.0));
     newton(y / v, |t| (t * (v - j * t * t / six) - y, v - j * t * t / two))
@@ -219,7 +224,7 @@ impl<F: Real> Profile<F> for ScurveRamp<F> {
 
     fn breakpoints(&self) -> &[F] {
         let [held, released] = self.breakpoints;
-        // A jerk segment may be too short to be told from the end of a long ramp.
+        // A jerk segment may be so short that it rounds to the end of a long ramp.
         let inside = |t: F| t > F::zero() && t < self.duration;
         match (inside(held), inside(released) && released > held) {
             (true, true) => &self.breakpoints,
@@ -242,19 +247,20 @@ impl<F: Real> Curve<F> for ScurveRamp<F> {
         if self.rise > F::zero() { self.jerk } else { F::zero() }
     }
 
-    /// 0, but where jerk has no limit.
+    /// 0, unless the jerk is not limited.
     fn acceleration_jump(&self) -> F {
         if self.rise > F::zero() { F::zero() } else { self.peak }
     }
 }
 
-/// The seven-segment move of `distance` steps (over 0) in `time` seconds, jumping to and from the start speed.
+/// The seven-segment move of `distance` steps (over 0) in `time` seconds. The motor jumps from rest
+/// to the start speed and back.
 ///
-/// In a longer time than the least the ramps stay as steep and end at a lower top speed; where that is
-/// under the start speed, it is all the move does: constant speed, as in Ranade's rule.
+/// In a time above the least time the ramps stay as steep and end at a lower top speed. If that is
+/// below the start speed, the whole move has constant speed, as in Ranade's rule.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that fails and the least time.
+/// A [`Refusal`] names the limit that fails and the least time.
 pub fn scurve<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<RampedMove<F, ScurveRamp<F>>, Refusal> {
     scurve_to(distance, time, limits.start_speed, limits)
 }
@@ -267,7 +273,7 @@ pub fn scurve_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
 /// [`scurve`] with another jump at the end: from at most `end_speed` steps/s to rest.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that fails and the least time.
+/// A [`Refusal`] names the limit that fails and the least time.
 pub fn scurve_to<F: Real>(
     distance: F,
     time: F,

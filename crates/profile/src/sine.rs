@@ -1,6 +1,8 @@
-//! The sinusoidal S-curve: acceleration (v / T) (1 - cos 2 pi u), u = t / T.
+//! The sinusoidal S-curve: the acceleration is (v / T) (1 - cos 2 pi u), with u = t / T.
 //!
-//! Wrong in the source, right here: `docs/profiles.md`.
+//! docs/profiles.md lists the errors of the published source that are corrected here.
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 use crate::bad_ramp::{BadRamp, positive};
 use crate::curve::Curve;
@@ -11,9 +13,11 @@ use crate::refusal::{Limits, Refusal};
 use crate::timed;
 use std::f64::consts::PI;
 
-/// One acceleration ramp from rest to `top` in `duration`, with acceleration and jerk continuous.
+/// One acceleration ramp from rest to `top` steps/s in `duration` seconds. Acceleration and jerk
+/// are continuous.
 ///
-/// With y = pi u: s = v T / (2 pi^2) (y^2 - sin^2 y), whose difference is (y - sin y) (y + sin y).
+/// With y = pi u, the distance is s = v T / (2 pi^2) (y^2 - sin^2 y). The difference is computed as
+/// (y - sin y) (y + sin y).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SineRamp<F> {
     top: F,
@@ -21,28 +25,28 @@ pub struct SineRamp<F> {
 }
 
 impl<F: Real> SineRamp<F> {
-    /// To `top` steps/s in `duration` seconds.
+    /// A ramp to `top` steps/s in `duration` seconds.
     ///
     /// # Errors
-    /// A parameter that is not over 0.
+    /// A [`BadRamp`] if a parameter is not finite and over 0.
     pub fn new(top: F, duration: F) -> Result<Self, BadRamp> {
         Ok(Self { top: positive("the top speed", top)?, duration: positive("the ramp time", duration)? })
     }
 
-    /// To `top` steps/s with a peak acceleration of `acceleration` steps/s^2: T = 2 v / a.
+    /// A ramp to `top` steps/s with a peak acceleration of `acceleration` steps/s^2: T = 2 v / a.
     ///
     /// # Errors
-    /// A parameter that is not over 0.
+    /// A [`BadRamp`] if a parameter is not finite and over 0.
     pub fn with_acceleration(top: F, acceleration: F) -> Result<Self, BadRamp> {
         Self::new(top, real::<F>(2.0) * top / positive("the acceleration", acceleration)?)
     }
 
-    /// [`Self::new`] of what has been checked.
+    /// [`Self::new`] for parameters that have been checked.
     pub(crate) fn lasting(top: F, duration: F) -> Self {
         Self { top, duration }
     }
 
-    /// The steepest ramp within `limits` that ends at `top`.
+    /// The steepest ramp within `limits` that ends at `top` steps/s.
     pub(crate) fn within(limits: &Limits<F>, top: F) -> Self {
         if top <= F::zero() {
             return Self { top: F::zero(), duration: F::zero() };
@@ -63,10 +67,11 @@ fn path<F: Real>(y: F) -> F {
     x_minus_sin(y) * (y + y.sin())
 }
 
-/// The y in 0..=pi with y^2 - sin^2 y = c, c in 0..=pi^2.
+/// Solves y^2 - sin^2 y = c for y in 0..=pi, with c in 0..=pi^2.
 ///
-/// Newton. y^4/3 and y^2 are over the left side, so the greater of their roots is under y; the left side is
-/// convex, so the first step lands over y, and the others come down to it.
+/// Newton's method: y^4/3 and y^2 are both above the left side, so that the greater of their roots
+/// is below y. The left side is convex: the first step lands above y, and the others come down to
+/// it.
 fn angle_of_path<F: Real>(c: F) -> F {
     let mut y = (c * real(3.0)).sqrt().sqrt().max(c.sqrt());
     for _ in 0..32 {
@@ -132,7 +137,8 @@ impl<F: Real> Profile<F> for SineRamp<F> {
         &[]
     }
 
-    /// With y from p to q: (q^2 - p^2) - (sin^2 q - sin^2 p) = d s - sin d sin s, d = q - p, s = q + p.
+    /// With y from p to q, the difference is (q^2 - p^2) - (sin^2 q - sin^2 p) = d s - sin d sin s,
+    /// where d = q - p and s = q + p.
     fn mean_speed(&self, from: F, to: F) -> F {
         let (p, q) = (self.angle(from), self.angle(to));
         let (d, s) = (q - p, q + p);
@@ -140,7 +146,7 @@ impl<F: Real> Profile<F> for SineRamp<F> {
             return self.speed(from);
         }
         let fall = x_minus_sin(s);
-        // From rest on s = d, and one series is both.
+        // From rest s equals d, and one series gives both.
         let rise = if p.is_zero() { fall } else { x_minus_sin(d) };
         self.top / real(2.0 * PI) * (rise / d * s + d.sin() / d * fall)
     }
@@ -151,12 +157,12 @@ impl<F: Real> Curve<F> for SineRamp<F> {
         self.top
     }
 
-    /// 2 v / T.
+    /// The peak acceleration 2 v / T.
     fn peak_acceleration(&self) -> F {
         if self.duration.is_zero() { F::zero() } else { real::<F>(2.0) * self.top / self.duration }
     }
 
-    /// 2 pi v / T^2.
+    /// The peak jerk 2 pi v / T^2.
     fn peak_jerk(&self) -> F {
         self.peak_acceleration() * (if self.duration.is_zero() { F::zero() } else { real::<F>(PI) / self.duration })
     }
@@ -169,7 +175,7 @@ impl<F: Real> Curve<F> for SineRamp<F> {
 /// The sinusoidal move of `distance` steps (over 0) in `time` seconds, from rest to rest.
 ///
 /// # Errors
-/// [`Refusal`] names the limit that fails and the least time.
+/// A [`Refusal`] names the limit that fails and the least time.
 pub fn sine<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<RampedMove<F, SineRamp<F>>, Refusal> {
     timed::in_time(distance, time, limits, &ramps)
 }

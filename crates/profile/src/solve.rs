@@ -1,9 +1,10 @@
-//! Where a monotone condition turns, to the last bit. Bisection: it cannot fail, and takes microseconds.
+//! Finds the float at which a monotone condition changes, by bisection down to neighbouring floats.
+//! The bisection always ends, and takes microseconds.
 
 use crate::profile::{Real, real};
 
-/// The largest value in `low..=high` at which `holds`. It holds at `low` and, once lost, stays lost.
-/// `high` may be infinite.
+/// The largest value in `low..=high` at which `holds`. The condition must hold at `low`, and once
+/// it fails it must fail for all greater values. `high` may be infinite.
 pub(crate) fn largest<F: Real>(low: F, high: F, holds: impl Fn(F) -> bool) -> F {
     if high.is_finite() {
         return if holds(high) { high } else { last_held(low, high, holds) };
@@ -15,7 +16,8 @@ pub(crate) fn largest<F: Real>(low: F, high: F, holds: impl Fn(F) -> bool) -> F 
     last_held(low, high, holds)
 }
 
-/// The smallest value over `low` at which `holds`. Once it holds, it goes on. Infinite where it never does.
+/// The smallest value from `low` on at which `holds`. Once the condition holds, it must hold for
+/// all greater values. Returns infinity if it never holds.
 pub(crate) fn smallest<F: Real>(low: F, holds: impl Fn(F) -> bool) -> F {
     let (mut low, mut high) = (low, low);
     while high.is_finite() && !holds(high) {
@@ -38,7 +40,7 @@ fn first_held<F: Real>(mut low: F, mut high: F, holds: impl Fn(F) -> bool) -> F 
     high
 }
 
-/// The middle of two floats; `None` where no float is left between them.
+/// The middle of two floats, or `None` if there is no float between them.
 fn between<F: Real>(low: F, high: F) -> Option<F> {
     let middle = low + (high - low) / real(2.0);
     (middle > low && middle < high).then_some(middle)
@@ -49,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn finds_the_last_float_that_holds() {
+    fn largest_and_smallest_find_the_last_and_first_float_that_holds() {
         assert_eq!(largest(0.0, 10.0, |x| x * x <= 2.25), 1.5);
         assert_eq!(largest(0.0, f64::INFINITY, |x| x <= 1e9), 1e9);
         assert_eq!(largest(0.0, f64::INFINITY, |x| x <= 1e-9), 1e-9);

@@ -1,8 +1,11 @@
-//! How fast, and in a given time: one rule for every curve.
+//! One rule for the move of every curve: its least time, and the move in a given time.
 //!
-//! A curve is a family of ramps, one for each top speed, as steep as the limits allow. The time of a
-//! move falls as its top speed rises, down to where the two ramps meet or the speed limit is reached:
-//! that is the least time. A longer time keeps the ramps as steep and lowers the top speed.
+//! A curve is a family of ramps, one for each top speed, each as steep as the limits allow. The
+//! time of a move falls as its top speed rises, until the two ramps meet or the speed limit is
+//! reached: this gives the least time. In a longer time the ramps stay as steep, and the top speed
+//! is lower.
+//!
+//! A new curve only has to provide its ramps, as a [`Ramps`] function.
 
 use crate::curve::Curve;
 use crate::profile::Real;
@@ -10,12 +13,14 @@ use crate::ramped::{RampedMove, time_with_cruise};
 use crate::refusal::{Limit, Limits, Refusal};
 use crate::solve::{largest, smallest};
 
-/// The ramps of one curve: up and down, given the limits and the speed that both reach.
+/// The ramps of one curve: returns the ramps up and down for the limits and the common top speed in
+/// steps/s.
 pub(crate) trait Ramps<F: Real, R: Curve<F>>: Fn(&Limits<F>, F) -> (R, R) {}
 
 impl<F: Real, R: Curve<F>, S: Fn(&Limits<F>, F) -> (R, R)> Ramps<F, R> for S {}
 
-/// The top speed of the fastest move: the speed limit, or where the two ramps meet.
+/// The top speed of the fastest move, steps/s: the speed limit, or the speed at which the two ramps
+/// meet.
 fn fastest_top<F: Real, R: Curve<F>>(distance: F, limits: &Limits<F>, ramps: &impl Ramps<F, R>) -> F {
     largest(F::zero(), limits.speed, |top| {
         let (up, down) = ramps(limits, top);
@@ -36,7 +41,11 @@ pub(crate) fn least_time<F: Real, R: Curve<F>>(distance: F, limits: &Limits<F>, 
     time_at(distance, fastest_top(distance, limits, ramps), limits, ramps)
 }
 
-/// The move in exactly `time`: the largest top speed at which it takes that long.
+/// Returns the move that takes exactly `time` seconds. Its top speed is the greatest one at which
+/// the move takes that long.
+///
+/// # Errors
+/// A [`Refusal`] if `time` is not a number or below the least time.
 pub(crate) fn in_time<F: Real, R: Curve<F>>(
     distance: F,
     time: F,
@@ -49,13 +58,15 @@ pub(crate) fn in_time<F: Real, R: Curve<F>>(
         return Err(refusal(distance, time, least, limits, ramps));
     }
     let (mean, fastest) = (distance / time, fastest_top(distance, limits, ramps));
-    // `mean` is within rounding of `fastest` or under it: a move at one speed.
+    // `mean` is at most `fastest`, rounding aside; where both are equal the move has constant
+    // speed.
     let top = largest(mean.min(fastest), fastest, |top| time_at(distance, top, limits, ramps) >= time);
     let (up, down) = ramps(limits, top);
     Ok(RampedMove::new(distance, time, top, up, down))
 }
 
-/// Names the first limit that `time` breaks, the others taken away one by one, and what it would have to be.
+/// Names the first limit that `time` breaks and the value that it would need. The limits are tested
+/// one after the other, with the others removed.
 fn refusal<F: Real, R: Curve<F>>(
     distance: F,
     time: F,

@@ -1,4 +1,4 @@
-//! All moves of one axis, one after the other, and when each pulse is due.
+//! All moves of one axis in sequence, and the time at which each pulse is due.
 
 use crate::profile::SharedProfile;
 use carrystep_core::StartPhase;
@@ -8,43 +8,43 @@ use carrystep_core::StartPhase;
 pub struct Timeline {
     /// Length of a tick, seconds.
     pub tick_seconds: f64,
-    /// Moves in which the axis travels, in order; they do not overlap.
+    /// The moves in which the axis travels, in order; they do not overlap.
     pub legs: Vec<Leg>,
 }
 
 /// One move of one axis.
 #[derive(Debug, Clone)]
 pub struct Leg {
-    /// The tick, from 0, at whose beginning the profile starts.
+    /// The tick, counted from 0, at whose beginning the profile starts.
     pub start_tick: u64,
-    /// Which way it goes.
+    /// Whether the axis travels backward.
     pub backward: bool,
-    /// Whole steps travelled.
+    /// Number of whole steps travelled.
     pub steps: u64,
-    /// How.
+    /// The profile of the move, in the direction of travel.
     pub profile: SharedProfile,
-    /// How far from the profile its edges may be because it had to be fitted, seconds; 0 where it is followed
-    /// exactly.
+    /// Tolerance of a fitted profile: how far an edge may be from the profile, seconds. It is 0 if
+    /// the profile is followed exactly.
     pub fit_seconds: f64,
 }
 
 /// The moment at which a pulse is due.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
-    /// First tick of the leg, from 0.
+    /// First tick of the leg, counted from 0.
     pub start_tick: u64,
     /// Seconds from the beginning of that tick.
     pub seconds: f64,
-    /// Direction of the pulse.
+    /// Whether the pulse is a step backward.
     pub backward: bool,
-    /// Speed there, steps/s, 0 or more.
+    /// Speed at that moment, steps/s, 0 or more.
     pub speed: f64,
     /// Acceleration in the direction of travel, steps/s^2.
     pub acceleration: f64,
 }
 
 impl Leg {
-    /// When pulse `k` (1..=steps) is due.
+    /// The moment at which pulse `k` (1..=steps) is due.
     pub fn crossing(&self, phase: StartPhase, k: u64) -> Crossing {
         let x = phase.pulse_half_steps(k, self.backward) as f64 / 2.0;
         let seconds = self.profile.crossing(x);
@@ -68,18 +68,18 @@ impl Timeline {
         self.legs.iter().flat_map(move |leg| (1..=leg.steps).map(move |k| leg.crossing(phase, k)))
     }
 
-    /// Position in steps, signed, `tick` ticks (not necessarily whole) after the origin.
+    /// Signed position in steps, `tick` ticks (not necessarily whole) after the origin.
     pub fn position_at(&self, tick: f64) -> f64 {
         let begun = self.legs.iter().take_while(|leg| leg.start_tick as f64 <= tick);
         begun.map(|leg| leg.sign() * leg.profile.position(self.local(leg, tick))).sum()
     }
 
-    /// Speed in steps/s, signed, `tick` ticks after the origin; 0 between moves.
+    /// Signed speed in steps/s, `tick` ticks after the origin; 0 between moves.
     pub fn speed_at(&self, tick: f64) -> f64 {
         self.moving(tick).map_or(0.0, |(leg, t)| leg.sign() * leg.profile.speed(t))
     }
 
-    /// Acceleration in steps/s^2, signed, `tick` ticks after the origin; 0 between moves.
+    /// Signed acceleration in steps/s^2, `tick` ticks after the origin; 0 between moves.
     pub fn acceleration_at(&self, tick: f64) -> f64 {
         self.moving(tick).map_or(0.0, |(leg, t)| leg.sign() * leg.profile.acceleration(t))
     }

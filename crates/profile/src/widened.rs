@@ -1,8 +1,8 @@
-//! A profile of any float, seen in f64.
+//! A view in f64 of a profile of any float type.
 
 use crate::profile::{Profile, Real, SharedProfile, real};
 
-/// A profile that was computed in `F`, for readers that want f64.
+/// A profile that was computed in `F`, for readers that need f64.
 #[derive(Debug, Clone)]
 pub struct Widened<F: Real> {
     inner: SharedProfile<F>,
@@ -10,7 +10,7 @@ pub struct Widened<F: Real> {
 }
 
 impl<F: Real> Widened<F> {
-    /// The f64 view of a profile.
+    /// Creates the f64 view of a profile.
     pub fn new(inner: SharedProfile<F>) -> Self {
         let breakpoints = inner.breakpoints().iter().map(|&b| wide(b)).collect();
         Self { inner, breakpoints }

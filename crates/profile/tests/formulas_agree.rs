@@ -1,5 +1,6 @@
-//! The profiles against the golden planning cases of the article, against each other's definitions
-//! (speed is the derivative of position, `crossing` inverts it), and at the edge of their limits.
+//! Tests the profiles against the golden planning cases of the article, against each other's
+//! definitions (speed is the derivative of position, and `crossing` is its inverse), and at their
+//! limits.
 
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
@@ -20,7 +21,7 @@ fn close(a: f64, b: f64) -> bool {
 }
 
 #[test]
-fn the_articles_planning_cases() {
+fn planning_cases_of_the_article_are_reproduced() {
     let shapes = ["triangle", "refused", "constant"];
     for (case, shape) in golden()["planning_cases"].as_array().unwrap().iter().zip(shapes) {
         let get = |key: &str| number(&case[key]);
@@ -55,7 +56,7 @@ fn the_articles_planning_cases() {
 }
 
 #[test]
-fn exact_pulse_times_of_the_articles_ramp() {
+fn pulse_times_of_the_articles_ramp_are_exact() {
     let golden = golden();
     let case = &golden["conventional_euler"];
     let ramp = Ramp::triangle(1000.0, 0.5, number(&case["start"]), number(&case["acc"]));
@@ -65,8 +66,9 @@ fn exact_pulse_times_of_the_articles_ramp() {
 }
 
 #[test]
-fn the_minus_root() {
-    // 1000 steps in 0.5 s at 25000 steps/s^2: the plus root would be 9683 steps/s with a negative cruise.
+fn trapezoid_takes_the_smaller_root() {
+    // 1000 steps in 0.5 s at 25000 steps/s^2: the larger root would be 9683 steps/s with a negative
+    // cruise.
     let limits = Limits { start_speed: 0.0, speed: 5000.0, acceleration: 25000.0, jerk: f64::INFINITY };
     let ramp = rule::trapezoid(1000.0, 0.5, &limits).unwrap();
     let expected = (25000.0 * 0.5 - (12500.0_f64.powi(2) - 4.0 * 25000.0 * 1000.0).sqrt()) / 2.0;
@@ -75,7 +77,7 @@ fn the_minus_root() {
 }
 
 #[test]
-fn constant_needs_a_start_speed() {
+fn constant_speed_is_refused_without_a_start_speed() {
     let mut limits = Limits { start_speed: 0.0, speed: 5000.0, acceleration: 25000.0, jerk: f64::INFINITY };
     let refusal = rule::constant(10.0, 100.0, &limits).unwrap_err();
     assert_eq!((refusal.limit, refusal.least_time), (Limit::StartSpeed, None));
@@ -98,7 +100,7 @@ fn limits() -> impl Strategy<Value = Limits<f64>> {
     })
 }
 
-/// What must hold of any profile of `n` steps in `t` seconds under `limits`.
+/// Checks the properties of any profile of `n` steps in `t` seconds under `limits`.
 fn check(profile: &dyn Profile<f64>, n: f64, t: f64, limits: &Limits<f64>) -> Result<(), TestCaseError> {
     prop_assert_eq!((profile.distance(), profile.duration()), (n, t));
     prop_assert!(close(profile.mean_speed(0.0, t) * t, n), "adds up: {} {n}", profile.mean_speed(0.0, t) * t);
@@ -128,7 +130,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn speed_position_and_crossing_belong_together(n in 1_u64..1_000_000_000, limits in limits(), more in prop_oneof![Just(1.0), 1.0..1.001, 1.0..100.0]) {
+    fn speed_position_and_crossing_are_consistent(n in 1_u64..1_000_000_000, limits in limits(), more in prop_oneof![Just(1.0), 1.0..1.001, 1.0..100.0]) {
         let n = n as f64;
         let t = rule::ranade_least_time(n, &limits) * more;
         check(&*rule::ranade(n, t, &limits).unwrap(), n, t, &limits)?;
@@ -141,10 +143,10 @@ proptest! {
     }
 
     #[test]
-    fn a_little_less_than_the_least_time_is_refused(n in 1_u64..1_000_000_000, limits in limits(), less in 0.01..0.9999999) {
+    fn less_than_the_least_time_is_refused(n in 1_u64..1_000_000_000, limits in limits(), less in 0.01..0.9999999) {
         let n = n as f64;
         let refused = rule::ranade(n, rule::ranade_least_time(n, &limits) * less, &limits);
-        // Slower than the start speed is never too fast.
+        // A move that is slower than the start speed is never too fast.
         if let Ok(profile) = refused {
             prop_assert_eq!(profile.shape(), "constant");
         }
@@ -153,8 +155,9 @@ proptest! {
     }
 
     #[test]
-    fn near_rest_no_digit_is_lost(a in decades(1e-3, 1e8), exponent in -60_i32..0) {
-        // x = a t^2 / 2 from rest, down to 2^-60 of the way, at both ends.
+    fn crossing_near_rest_keeps_full_precision(a in decades(1e-3, 1e8), exponent in -60_i32..0) {
+        // The motion from rest is x = a t^2 / 2, down to 2^-60 of the way; by symmetry this holds
+        // at both ends.
         let ramp = Ramp::triangle(a / 2.0, 2.0_f64.sqrt(), 0.0, a);
         let x = a / 4.0 * 2_f64.powi(exponent);
         prop_assert!(close(ramp.crossing(x), (2.0 * x / a).sqrt()));

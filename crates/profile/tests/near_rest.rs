@@ -1,4 +1,5 @@
-//! First steps of long ramps against 40-digit arithmetic: where formulas cancel and overflow.
+//! Tests the first steps of long ramps against 40-digit arithmetic. There the textbook formulas
+//! cancel or overflow.
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
 #![allow(clippy::excessive_precision, reason = "the digits are those of the reference")]
 
@@ -9,9 +10,9 @@ fn close(actual: f64, ideal: f64, tolerance: f64) {
     assert!((actual / ideal - 1.0).abs() <= tolerance, "{actual:e}, not {ideal:e}");
 }
 
-/// Parts of a ramp, down to the first step of 2^31.
+/// Parts of a ramp, down to the first of 2^31 steps.
 #[test]
-fn sine() {
+fn sine_crossing_is_exact_near_rest() {
     let ramp = SineRamp::new(2.0, 1.0).unwrap();
     for (x, u) in [
         (1e-12, 0.000_742_515_383_963_117_424),
@@ -24,9 +25,10 @@ fn sine() {
     }
 }
 
-/// A ramp of 1.3 million steps: symmetric, and from far down the tail, where an error of T_i counts k T_i = 20 times.
+/// Two ramps of 1.3 million steps: a symmetric one, and one that starts far down the tail, where an
+/// error of T_i counts k T_i = 20 times.
 #[test]
-fn logistic() {
+fn logistic_crossing_is_exact_near_rest() {
     let symmetric = LogisticRamp::symmetric(1e5, 1e4).unwrap();
     let late = LogisticRamp::new(1e5, 1e4, 50.0, SHORTFALL).unwrap();
     for (x, from_symmetric, from_late) in [
@@ -42,9 +44,9 @@ fn logistic() {
     }
 }
 
-/// The first jerk segment, v t + j t^3 / 6, whichever term leads.
+/// The first jerk segment is v t + j t^3 / 6; either term may be the larger one.
 #[test]
-fn scurve() {
+fn scurve_crossing_is_exact_near_rest() {
     for (start, x, t) in [
         (0.0, 1e-9, 0.000_018_171_205_928_321_396_6),
         (1e-3, 1e-9, 9.998_334_166_111_535_14e-7),

@@ -1,4 +1,4 @@
-//! `docs/profiles.md` is true: its table and its figures, computed again.
+//! Tests that `docs/profiles.md` is true, by computing its table and its figures again.
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
 
@@ -11,7 +11,7 @@ fn page() -> String {
     std::fs::read_to_string(path).unwrap().split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The page has each of these texts, line breaks aside.
+/// Asserts that the page contains each of these texts, regardless of line breaks.
 #[track_caller]
 fn says(texts: &[String]) {
     let page = page();
@@ -20,7 +20,7 @@ fn says(texts: &[String]) {
     }
 }
 
-/// 61468.3 -> "61 468".
+/// Groups digits in threes: 61468.3 becomes "61 468".
 fn grouped(x: f64) -> String {
     let digits = format!("{x:.0}");
     let group = |(i, c): (usize, char)| {
@@ -49,7 +49,7 @@ fn row<R: Curve<f64>>(name: &str, ramped: &RampedMove<f64, R>) -> String {
 }
 
 #[test]
-fn the_reference_move() {
+fn page_gives_the_figures_of_the_reference_move() {
     let plan_scurve = |limits: &Limits<f64>| scurve(STEPS, scurve_least_time(STEPS, limits), limits).unwrap();
     let smooth = sine(STEPS, sine_least_time(STEPS, &LIMITS), &LIMITS).unwrap();
     let curve = logistic(STEPS, logistic_least_time(STEPS, &LIMITS), &LIMITS).unwrap();
@@ -75,13 +75,14 @@ fn the_reference_move() {
     ]);
 }
 
-/// The example of the logistic source: 1.8 degrees, half steps, 5 mm a turn, 80 mm/s^2, T_i = 0.4 s.
+/// The example of the logistic source: 1.8 degrees, half steps, 5 mm a turn, 80 mm/s^2, T_i = 0.4
+/// s.
 fn sorn(mm_per_minute: f64) -> LogisticRamp<f64> {
     LogisticRamp::new(mm_per_minute / 60.0 * 80.0, 80.0 * 80.0, 0.4, SHORTFALL).unwrap()
 }
 
 #[test]
-fn errors_of_the_logistic_source() {
+fn page_gives_the_errors_of_the_logistic_source() {
     let (slow, fast) = (sorn(1000.0), sorn(3000.0));
     let jump = |ramp: &LogisticRamp<f64>| 100.0 * ramp.speed(0.0) / ramp.asymptote();
     let least = 4.0 * 80.0 * 80.0 * 0.4 / f64::MAX.ln() / 80.0 * 60.0;
@@ -98,14 +99,14 @@ fn errors_of_the_logistic_source() {
 }
 
 #[test]
-fn errors_of_the_sinusoidal_source() {
+fn page_gives_the_errors_of_the_sinusoidal_source() {
     let ramp = SineRamp::new(10_000.0, 0.2).unwrap();
     let end = ramp.crossing(ramp.distance() / PI);
     let first = ramp.crossing(1.0);
     let leading = ramp.duration() * (3.0 / (PI * PI * ramp.distance())).powf(0.25);
-    // The linear table of 256 entries at the first step: between 0 and its second entry.
+    // The linear table of 256 entries at the first step, which lies between 0 and the second entry.
     let entry = ramp.crossing(ramp.distance() / 256.0);
-    // The same over the fourth root of the distance, at 40 places in each of 256 cells.
+    // The table over the fourth root of the distance, at 39 places in each of its 256 cells.
     let time = |root: f64| ramp.crossing(ramp.distance() * (root / 256.0).powi(4));
     let wrong = |cell: f64, part: f64| time(cell + part) - (time(cell) * (1.0 - part) + time(cell + 1.0) * part);
     let places = (0..256).flat_map(|cell| (1..40).map(move |part| (f64::from(cell), f64::from(part) / 40.0)));
@@ -121,7 +122,7 @@ fn errors_of_the_sinusoidal_source() {
 }
 
 #[test]
-fn how_long_a_ramp_takes() {
+fn page_gives_the_ramp_times_of_each_curve() {
     let ratio = |seconds: f64| format!("{:.2}", seconds / (2.0 * (STEPS / LIMITS.acceleration).sqrt()));
     let as_sharp = Limits { jerk: PI * 500_000.0 / 0.282_842_712_474_619, ..LIMITS };
     says(&[
@@ -131,9 +132,10 @@ fn how_long_a_ramp_takes() {
     ]);
 }
 
-/// 360 degrees in 1 s at 1800 degrees/s^2, 200 steps a turn, in degrees.
+/// The example of the trapezoidal source in degrees: 360 degrees in 1 s at 1800 degrees/s^2, with
+/// 200 steps a turn.
 #[test]
-fn errors_of_the_trapezoidal_source() {
+fn page_gives_the_errors_of_the_trapezoidal_source() {
     let (degrees, acceleration, per_step) = (360.0_f64, 1800.0_f64, 360.0 / 200.0);
     let root = (acceleration * acceleration - 4.0 * acceleration * degrees).sqrt();
     let (minus, plus) = ((acceleration - root) / 2.0, (acceleration + root) / 2.0);
@@ -145,7 +147,7 @@ fn errors_of_the_trapezoidal_source() {
     assert!((ramp.breakpoints()[0] - up).abs() < 1e-12 && (ramp.breakpoints()[1] - down).abs() < 1e-12);
     let refused =
         carrystep_profile::rule::trapezoid(200.0, 1.0, &Limits { acceleration: 100.0, ..limits }).unwrap_err();
-    // As printed, the third segment goes backward from rest for as long as the ramp takes.
+    // As printed, the third segment moves backward from rest for as long as the ramp lasts.
     let printed = minus * up / 2.0 + minus * (down - up) - minus * up / 2.0;
     says(&[
         format!(
@@ -162,14 +164,14 @@ fn errors_of_the_trapezoidal_source() {
 }
 
 #[test]
-fn where_the_first_step_of_a_sine_is_late() {
+fn page_gives_the_first_step_of_the_trapezoid() {
     let trapezoid = (2.0 / (10_000.0 / 0.2_f64)).sqrt();
     says(&[format!("that of the trapezoid ramp of the same time at {:.2} ms", 1e3 * trapezoid)]);
 }
 
-/// Gamma(3/4) and Gamma(1/4), for the recurrence of AVR446.
+/// The values of Gamma(3/4) and Gamma(1/4) give the first delay of the recurrence of AVR446.
 #[test]
-fn the_first_delay_of_the_recurrence() {
+fn page_gives_the_first_delay_of_the_recurrence() {
     let first = 2.0 * 1.225_416_702_465_178 / 3.625_609_908_221_908;
     says(&[
         format!("they are {:.3} times too long for ever", 1.0 / first),

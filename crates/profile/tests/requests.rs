@@ -1,4 +1,5 @@
-//! Any request gets a curve that is what it says, or a refusal that says what would do.
+//! Tests that any request returns a curve that keeps it, or a refusal that names a value that
+//! works.
 
 use carrystep_core::StartPhase;
 use carrystep_profile::Figures;
@@ -13,7 +14,7 @@ fn any_length() -> impl Strategy<Value = Length> {
     prop_oneof![Just(Length::Step), Just(Length::Degree), Just(Length::Turn), Just(Length::Millimetre)]
 }
 
-/// Mostly what a motor does, now and then anything.
+/// Mostly a value that suits a motor, and sometimes any value.
 fn quantity(sane: std::ops::Range<f64>) -> impl Strategy<Value = Option<Quantity>> {
     let wild = prop_oneof![prop::num::f64::ANY, (-9_i32..16).prop_map(|power| 10_f64.powi(power))];
     let value = prop_oneof![9 => sane, 1 => wild];
@@ -42,7 +43,8 @@ fn any_kind() -> impl Strategy<Value = Kind> {
     prop::sample::select(&Kind::ALL[..])
 }
 
-/// No limit is passed: of a ramp the speed is its own, and a trapezoid has no jerk but impulses.
+/// Checks that no limit is exceeded. The speed limit of a ramp is its own top speed, and the jerk
+/// of a trapezoid consists of impulses that do not count.
 fn within(request: &Request, kind: Kind, figures: &Figures<f64>) -> Result<(), TestCaseError> {
     let limit = |quantity: Option<Quantity>| {
         quantity.map_or(f64::INFINITY, |q| q.in_steps(&DRIVE).expect("a drive with a travel") * (1.0 + 1e-9))
@@ -57,8 +59,9 @@ fn within(request: &Request, kind: Kind, figures: &Figures<f64>) -> Result<(), T
     Ok(())
 }
 
-/// Limits raised one by one to what each refusal names let the profile be done. A limit that is met to the last
-/// digit leaves little for the next, so that one can be named twice.
+/// Raises the limits one after the other to the values that the refusals name, until the profile is
+/// possible. A limit that is met to the last digit leaves little for the next one, so that one
+/// limit may be named twice.
 fn raised(mut request: Request, kind: Kind) -> Result<(), TestCaseError> {
     for _ in 0..6 {
         let Err(ReferenceError::Refused { limit, wanted, unit, .. }) = request.reference(kind) else {
@@ -89,7 +92,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_request_is_answered(request in any_request(), kind in any_kind()) {
+    fn any_request_returns_a_consistent_profile_or_an_error(request in any_request(), kind in any_kind()) {
         match request.reference(kind) {
             Ok(reference) => {
                 let figures = reference.figures();
@@ -116,7 +119,7 @@ proptest! {
     }
 
     #[test]
-    fn a_refusal_can_be_taken_at_its_word(request in any_request(), kind in any_kind()) {
+    fn values_named_by_a_refusal_make_the_profile_possible(request in any_request(), kind in any_kind()) {
         if let Err(ReferenceError::Refused { least_time, .. }) = request.reference(kind) {
             if let Some(time) = least_time.filter(|time| (1e-9..1e12).contains(time)) {
                 let later = Request { time: Some(time), ..request.clone() };
@@ -131,7 +134,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn whatever_can_be_can_be_drawn(request in any_request(), kind in any_kind()) {
+    fn every_profile_can_be_drawn(request in any_request(), kind in any_kind()) {
         if let Ok(reference) = request.reference(kind) {
             let svg = picture(&[reference], Scale::STEPS).expect("a picture");
             prop_assert!(!svg.contains("NaN") && !svg.contains("inf"));
@@ -140,7 +143,7 @@ proptest! {
 }
 
 #[test]
-fn nothing_is_written_of_what_cannot_be_listed() {
+fn csv_of_a_profile_that_cannot_be_listed_stays_empty() {
     let long = Request {
         acceleration: Some(Quantity::new(1e5, Length::Step)),
         ..Request::new(DRIVE, Travel::Move(Quantity::new(1e9, Length::Step)))

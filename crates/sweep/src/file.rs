@@ -1,4 +1,7 @@
-//! The sweep file: a move file with blanks, and what they are filled with.
+//! The sweep file: a move file with placeholders, and the values that fill them.
+//!
+//! Case i depends only on the file, the seed and i. Any change of the order in which values are
+//! chosen changes every case.
 
 use carrystep_files::{InputError, MoveFile, Source};
 use minijinja::{Environment, UndefinedBehavior};
@@ -8,28 +11,29 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use thiserror::Error;
 
-/// What the blanks of one case are filled with.
+/// The values of the placeholders of one case, by name.
 pub type Values = BTreeMap<String, Value>;
 
-/// Something that stands in a move file.
+/// A value of a placeholder.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// `phases = 16`
+    /// A whole number, as in `phases = 16`.
     Integer(i64),
-    /// `time = 0.5`
+    /// A real number, as in `time = 0.5`.
     Float(f64),
-    /// `profile = "ranade"`
+    /// A text, as in `profile = "ranade"`.
     Text(String),
 }
 
-/// What a blank can be filled with.
+/// The values from which a placeholder is filled.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged)]
 enum Choice {
-    /// One of these.
+    /// One of these values.
     List(Vec<Value>),
-    /// Any number between, each size as likely as any other; in samples only.
+    /// A number between `from` and `to`, uniformly distributed on a logarithmic scale; only for
+    /// samples.
     Range { from: f64, to: f64 },
 }
 
@@ -40,29 +44,29 @@ struct Raw {
     vary: BTreeMap<String, Choice>,
 }
 
-/// Why there is no sweep.
+/// Why a sweep cannot run.
 #[derive(Debug, Error)]
 pub enum SweepError {
     /// The file cannot be read.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// The file is not a sweep.
+    /// The file is not a sweep file.
     #[error("{path}: {message}")]
     Format {
-        /// Which file.
+        /// The path of the file.
         path: String,
-        /// What is wrong with it.
+        /// What is wrong with it, in words.
         message: String,
     },
-    /// A sample of no case.
+    /// The sample has no cases.
     #[error("--sample 0 tries nothing: give at least 1")]
     NothingToTry,
-    /// Reports that do not belong together.
+    /// The reports do not belong together.
     #[error("{0}")]
     Merge(String),
 }
 
-/// A sweep that can make each of its cases.
+/// A sweep that can create each of its cases.
 pub struct SweepFile {
     source: Source,
     template: Environment<'static>,
@@ -74,19 +78,20 @@ pub struct SweepFile {
 /// One case.
 #[derive(Debug)]
 pub struct Case {
-    /// Its number, from 0.
+    /// The number of the case, counted from 0.
     pub number: u64,
-    /// What its blanks are filled with.
+    /// The values of its placeholders.
     pub values: Values,
-    /// The move file; an error where the values make none.
+    /// The move file, or an error if the values do not give a valid one.
     pub file: Result<MoveFile, InputError>,
 }
 
 impl SweepFile {
-    /// Reads a sweep: the grid of all lists, or a random sample of so many cases.
+    /// Reads a sweep. Without a `sample` it is the grid of all lists; with one it consists of that
+    /// many random cases, which `seed` determines.
     ///
     /// # Errors
-    /// [`SweepError`] says what is wrong, with the line where there is one.
+    /// A [`SweepError`] names what is wrong, with the line if there is one.
     pub fn load(path: &Path, sample: Option<u64>, seed: u64) -> Result<Self, SweepError> {
         if sample == Some(0) {
             return Err(SweepError::NothingToTry);
@@ -112,20 +117,21 @@ impl SweepFile {
         Ok(Self { source, template, vary: raw.vary, sample, seed })
     }
 
-    /// How many cases there are.
+    /// Number of cases.
     pub fn cases(&self) -> u64 {
         let grid =
             || self.vary.values().map(|choice| if let Choice::List(list) = choice { list.len() as u64 } else { 1 });
         self.sample.unwrap_or_else(|| grid().fold(1, u64::saturating_mul))
     }
 
-    /// What two reports must agree on to be of the same sweep.
+    /// A hash of the file, the seed and the number of cases. Reports of the same sweep have the
+    /// same one.
     pub fn fingerprint(&self) -> String {
         let words = self.source.text.bytes().map(u64::from).chain([self.seed, self.cases()]);
         format!("{:016x}", words.fold(0, |hash, word| mixed(hash ^ word)))
     }
 
-    /// Case `number`: the same whoever asks.
+    /// Case `number`, counted from 0. It is the same on every machine and in every shard.
     pub fn case(&self, number: u64) -> Case {
         let mut rest = number;
         let mut random = mixed(self.seed ^ mixed(number));
@@ -157,7 +163,8 @@ impl SweepFile {
     }
 }
 
-/// Steele's splitmix64: all bits of a number over all bits of the result.
+/// The splitmix64 function of G. L. Steele and others (2014): every bit of the argument affects all
+/// bits of the result.
 const fn mixed(number: u64) -> u64 {
     let z = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

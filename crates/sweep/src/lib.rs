@@ -1,7 +1,8 @@
-//! Sweeps: one move file with blanks, many ways to fill them in, and the worst that comes of it.
+//! Sweeps: one move file with placeholders, many ways to fill them, and the worst figures that
+//! result.
 //!
-//! A case is its number: case i of a sweep is the same on every machine and in every shard, so that shards
-//! can run anywhere, and their reports add up.
+//! A case is identified by its number: case i of a sweep is the same on every machine and in every
+//! shard. Shards can therefore run anywhere, and their reports can be merged.
 
 mod file;
 mod report;

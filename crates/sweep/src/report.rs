@@ -1,4 +1,6 @@
-//! What cases came to, in such a form that parts add up to a whole.
+//! The report of a sweep, in a form in which parts can be merged.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use crate::file::{SweepError, SweepFile, Values};
 use crate::shard::Shard;
@@ -7,73 +9,73 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Failed cases that are spelled out in a shard; the rest is counted.
+/// The number of failed cases in a shard that get a message. The others are only counted.
 const SPELLED_OUT: usize = 20;
 
-/// What a case came to.
+/// The result of a case.
 #[derive(Debug, Clone)]
 pub enum Verdict {
-    /// Everything holds; figures by name, the greatest is the worst.
+    /// All checks hold. The figures are given by name; the greatest value of each is its worst.
     Passed(BTreeMap<&'static str, f64>),
-    /// The planner refuses the move, and says why.
+    /// The planner refuses the move, with this message.
     Refused(String),
-    /// Something does not hold.
+    /// A check does not hold, with this message.
     Failed(String),
 }
 
-/// The worst of one figure, and the case that has it.
+/// The worst value of one figure, and the case in which it occurred.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Worst {
-    /// The figure.
+    /// The value of the figure.
     pub value: f64,
-    /// The case's number.
+    /// The number of the case.
     pub case: u64,
-    /// What it was filled in with.
+    /// The values of its placeholders.
     pub values: Values,
 }
 
 /// A case that failed.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Failed {
-    /// The case's number.
+    /// The number of the case.
     pub case: u64,
-    /// What it was filled in with.
+    /// The values of its placeholders.
     pub values: Values,
-    /// What does not hold.
+    /// The check that does not hold, as a message.
     pub message: String,
 }
 
 impl Failed {
-    /// `name = value` of each blank.
+    /// The text `name = value` of each placeholder, separated by commas.
     pub fn filled(&self) -> String {
         filled(&self.values)
     }
 }
 
-/// A sweep, or some shards of it.
+/// The report of a sweep or of some of its shards.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Report {
-    /// Whether all cases of all shards that are in here passed or were refused; `None` where no case ran: an empty shard
-    /// shows nothing, and neither do moves that the planner refuses.
+    /// Whether all cases passed or were refused by the planner; `None` if no case ran. An empty
+    /// shard proves nothing, and neither do moves that the planner refuses.
     pub passed: Option<bool>,
-    /// The same in all shards of a sweep.
+    /// The hash of the sweep, which is the same for all its shards.
     pub sweep: String,
-    /// Which shards are in here.
+    /// The shards in this report.
     pub shards: Vec<Shard>,
-    /// Cases that ran and passed.
+    /// Number of cases that ran and passed.
     pub cases_passed: u64,
-    /// Cases that the planner refused: impossible moves.
+    /// Number of cases that the planner refused because the move is impossible.
     pub cases_refused: u64,
-    /// Cases that failed.
+    /// Number of cases that failed.
     pub cases_failed: u64,
-    /// By figure.
+    /// The worst value of each figure, by name.
     pub worst: BTreeMap<String, Worst>,
-    /// The first that failed.
+    /// The first cases that failed.
     pub failures: Vec<Failed>,
 }
 
 impl Report {
-    /// A report of no case yet.
+    /// A report without any case.
     pub fn new(sweep: &SweepFile, shard: Shard) -> Self {
         Self {
             passed: None,
@@ -87,7 +89,7 @@ impl Report {
         }
     }
 
-    /// One case more.
+    /// Adds the result of one case.
     pub(crate) fn add(&mut self, case: u64, values: &Values, verdict: Verdict) {
         match verdict {
             Verdict::Refused(_) => self.cases_refused += 1,
@@ -110,7 +112,8 @@ impl Report {
         self.passed = (tried > 0).then_some(self.cases_failed == 0);
     }
 
-    /// The worse of two stays; of two alike the earlier, so that the order of merging is all the same.
+    /// Keeps the worse of two values, or the one of the earlier case if they are equal, so that the
+    /// order of merging has no effect.
     fn compare(&mut self, name: &str, new: Worst) {
         match self.worst.get_mut(name) {
             Some(old) if (old.value, new.case) < (new.value, old.case) => *old = new,
@@ -121,7 +124,7 @@ impl Report {
         }
     }
 
-    /// The same with another part, in any order.
+    /// Merges this report with another part; the order has no effect.
     #[must_use]
     pub(crate) fn with(mut self, other: Self) -> Self {
         self.cases_passed += other.cases_passed;
@@ -137,10 +140,11 @@ impl Report {
         self
     }
 
-    /// All shards of a sweep as one report.
+    /// Merges all shards of a sweep into one report.
     ///
     /// # Errors
-    /// [`SweepError::Merge`]: they are not of one sweep, or one is missing or there twice.
+    /// [`SweepError::Merge`] if the reports belong to different sweeps, or if a shard is missing or
+    /// occurs twice.
     pub fn merge(reports: impl IntoIterator<Item = Self>) -> Result<Self, SweepError> {
         let mut reports = reports.into_iter();
         let mut whole = reports.next().ok_or_else(|| SweepError::Merge("no report to merge".to_owned()))?;
@@ -163,7 +167,7 @@ impl Report {
     }
 }
 
-/// `name = value` of each blank.
+/// The text `name = value` of each placeholder, separated by commas.
 fn filled(values: &Values) -> String {
     let parts: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     parts.join(", ")

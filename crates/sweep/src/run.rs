@@ -1,12 +1,12 @@
-//! The cases of a shard over all cores.
+//! Runs the cases of a shard on all cores.
 
 use crate::file::{Case, SweepFile};
 use crate::report::{Report, Verdict};
 use crate::shard::Shard;
 use rayon::prelude::*;
 
-/// Runs each case of a shard; a case that fails does not keep the others from running. `done` hears of every
-/// case that is over.
+/// Runs each case of a shard. A case that fails does not stop the others. `done` is called after
+/// every case.
 pub fn run(sweep: &SweepFile, shard: Shard, judge: impl Fn(&Case) -> Verdict + Sync, done: impl Fn() + Sync) -> Report {
     let one = |number: u64| {
         let case = sweep.case(number);

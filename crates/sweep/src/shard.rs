@@ -1,24 +1,27 @@
-//! A part of a sweep, for one machine of many.
+//! A part of a sweep, for one of several machines.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// Shard `number` of `count`: every `count`-th case, so that each has easy and hard ones.
+/// Shard `number` of `count`. It has every `count`-th case, so that easy and hard cases are spread
+/// evenly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, JsonSchema, Serialize, Deserialize)]
 pub struct Shard {
-    /// From 1.
+    /// The number of the shard, counted from 1.
     pub number: u64,
-    /// How many there are.
+    /// The number of shards.
     pub count: u64,
 }
 
 impl Shard {
-    /// Everything.
+    /// The whole sweep as one shard.
     pub const WHOLE: Self = Self { number: 1, count: 1 };
 
-    /// The cases of this shard.
+    /// The numbers of the cases in this shard, out of `all` cases.
     pub fn cases(self, all: u64) -> impl Iterator<Item = u64> {
         (self.number - 1..all).step_by(usize::try_from(self.count).unwrap_or(usize::MAX))
     }
@@ -47,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shards_are_the_whole() {
+    fn shards_together_have_every_case_once() {
         let mut all: Vec<u64> = (1..=3).flat_map(|number| Shard { number, count: 3 }.cases(10)).collect();
         all.sort_unstable();
         assert_eq!(all, (0..10).collect::<Vec<_>>());

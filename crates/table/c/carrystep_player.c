@@ -1,4 +1,4 @@
-/* See carrystep_player.h. */
+/* Implementation of carrystep_player.h. Places on the ramp are counted in pulses from its start. */
 #include "carrystep_player.h"
 
 #ifdef CARRYSTEP_PROGMEM
@@ -8,14 +8,14 @@
 #define READ(word) (word)
 #endif
 
-/* The delay of the place where the move is. */
+/* The compare value of the delay at the current place of the move. */
 static uint16_t delay(const carrystep_player *player)
 {
     const carrystep_table *table = player->table;
     return player->at == table->ramp ? table->cruise : READ(table->compare[player->entry]);
 }
 
-/* One pulse up the ramp. */
+/* Goes one pulse up the ramp. */
 static void up(carrystep_player *player)
 {
     const carrystep_group *group = &player->table->groups[player->group];
@@ -30,7 +30,7 @@ static void up(carrystep_player *player)
     }
 }
 
-/* One pulse down the ramp: exactly what up() did, undone. */
+/* Goes one pulse down the ramp, and thereby undoes one call of up(). */
 static void down(carrystep_player *player)
 {
     const carrystep_group *groups = player->table->groups;
@@ -63,11 +63,11 @@ bool carrystep_start(carrystep_player *player, const carrystep_table *table, uin
 bool carrystep_next(carrystep_player *player, uint16_t *compare)
 {
     if (player->left <= 1) {
-        player->left = 0; /* and stays 0, should the interrupt come once more */
+        player->left = 0; /* It stays 0 if the interrupt comes once more. */
         return false;
     }
     player->left--;
-    /* Never higher than the pulses behind the next one: they are the way down. */
+    /* The place never exceeds the number of pulses after the next one: these are the way down. */
     if (player->left <= player->at) {
         down(player);
     } else if (player->left - 1 > player->at && player->at < player->table->ramp) {

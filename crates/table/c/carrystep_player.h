@@ -1,46 +1,50 @@
 /* Plays a speed ramp from a table of timer compare values: up, cruise, down, stop.
  *
- * A move of N steps has N delays, and a pulse at the end of each. Delay j (from 0) is that of ramp
- * pulse min(j, N - 1 - j), or the cruise where the ramp is over: the first entry is used, the way down
- * is the way up mirrored, and a move shorter than two ramps turns round half-way.
+ * A move of N steps has N delays, with a pulse at the end of each. Delay j (counted from 0) is that
+ * of ramp pulse min(j, N - 1 - j), or that of the cruise if the ramp has fewer pulses. The first
+ * entry is used, the way down is the way up in reverse, and a move shorter than two ramps changes
+ * from up to down in its middle.
  *
- * C99, no allocation, no floating point, no division; a bounded handful of operations a pulse.
+ * The code is C99 without allocation, floating point and division. Each pulse takes a small and
+ * bounded number of operations.
  *
- * Calling convention (AVR timer 1, CTC; `ramp` is the generated header's name):
+ * Calling convention (AVR timer 1, CTC; `ramp` is the name of the generated header):
  *
  *     static carrystep_player player;
  *     static volatile uint8_t moving;
  *
- *     void move(uint32_t steps) {               // the timer stands, its interrupt is off
+ *     void move(uint32_t steps) {               // the timer is stopped, its interrupt off
  *         uint16_t compare;
  *         if (!carrystep_start(&player, &ramp_table, steps, &compare)) return;   // 0 steps
  *         moving = 1;
  *         TCNT1 = 0;
  *         OCR1A = compare;                      // the first delay
- *         TIFR1 = _BV(OCF1A);                   // forget an old match
+ *         TIFR1 = _BV(OCF1A);                   // clear an old match
  *         TIMSK1 |= _BV(OCIE1A);
  *         TCCR1B = _BV(WGM12) | _BV(CS11) | _BV(CS10);    // CTC, clock / 64
  *     }
  *
  *     ISR(TIMER1_COMPA_vect) {
  *         uint16_t compare;
- *         STEP_PORT |= STEP;                    // the pulse that is due
+ *         STEP_PORT |= STEP;                    // emit the pulse that is due
  *         if (carrystep_next(&player, &compare)) {
  *             OCR1A = compare;                  // the next delay
  *         } else {
- *             TIMSK1 &= ~_BV(OCIE1A);           // that was the last one
+ *             TIMSK1 &= ~_BV(OCIE1A);           // that was the last pulse
  *             moving = 0;
  *         }
- *         STEP_PORT &= ~STEP;                   // mind the driver's least pulse width
+ *         STEP_PORT &= ~STEP;                   // keep the driver's least pulse width
  *     }
  *
- * Free-running: start with `OCR1A = TCNT1 + compare`, go on with `OCR1A += compare`.
+ * With a free-running timer, start with `OCR1A = TCNT1 + compare` and continue with
+ * `OCR1A += compare`.
  *
- * In CTC mode the timer has begun to count again when the handler runs: the shortest delay must be
- * longer than the handler and whatever may hold it up, or the match is missed and the timer runs
- * once round (`interrupt_clocks` in the request makes the generator check that).
+ * In CTC mode the timer is already counting again when the handler runs. The shortest delay must be
+ * longer than the handler and everything that may delay it. Otherwise the match is missed and the
+ * timer counts through its whole range. With `interrupt_clocks` in the request, the generator
+ * checks this.
  *
- * With the table in program memory (PROGMEM), compile all files with -DCARRYSTEP_PROGMEM.
+ * If the table is in program memory (PROGMEM), compile all files with -DCARRYSTEP_PROGMEM.
  */
 #ifndef CARRYSTEP_PLAYER_H
 #define CARRYSTEP_PLAYER_H
@@ -56,39 +60,41 @@ extern "C" {
 
 /* A run of entries that all last the same number of pulses. */
 typedef struct {
-    uint16_t end;    /* the first entry behind it */
-    uint16_t pulses; /* of each of its entries, 1 or more */
+    uint16_t end;    /* index of the first entry after the run */
+    uint16_t pulses; /* pulses of each entry of the run, 1 or more */
 } carrystep_group;
 
-/* A ramp, as the generated header has it. */
+/* A ramp, as the generated header defines it. */
 typedef struct {
-    const uint16_t *compare;       /* one per entry, from slow to fast */
-    const carrystep_group *groups; /* in order, the last one ends with the table */
-    uint32_t ramp;                 /* pulses over all entries */
+    const uint16_t *compare;       /* compare values, one per entry, from slow to fast */
+    const carrystep_group *groups; /* in order; the last one ends with the table */
+    uint32_t ramp;                 /* number of pulses over all entries */
     uint16_t cruise;               /* compare value of the top speed */
 } carrystep_table;
 
-/* Where a move is. All fields belong to the player. */
+/* The state of a move. Only the player may change the fields. */
 typedef struct {
     const carrystep_table *table;
-    uint32_t left;  /* pulses still to come, the one being waited for included */
-    uint32_t at;    /* ramp pulse whose delay runs, 0 to table->ramp; there it cruises */
-    uint16_t entry; /* the same place as entry, ... */
-    uint16_t pulse; /* ... pulse within it, ... */
-    uint16_t group; /* ... and group */
+    uint32_t left;  /* pulses that are left, with the one whose delay runs */
+    uint32_t at;    /* place: ramp pulse whose delay runs, 0 to table->ramp (cruise) */
+    uint16_t entry; /* the same place as an entry, */
+    uint16_t pulse; /* a pulse within the entry, */
+    uint16_t group; /* and a group */
 } carrystep_player;
 
-/* Begins a move. True: *compare is the first delay. False: nothing to do, 0 steps. */
+/* Begins a move of `steps` steps. Returns true and writes the first delay to *compare; returns
+ * false if `steps` is 0. */
 bool carrystep_start(carrystep_player *player, const carrystep_table *table, uint32_t steps, uint16_t *compare);
 
-/* To be called once a pulse, when its delay is over. True: *compare is the next delay. False: that was
- * the last pulse, stop the timer. */
+/* Call this once per pulse, when its delay is over. Returns true and writes the next delay to
+ * *compare; returns false after the last pulse: then stop the timer. */
 bool carrystep_next(carrystep_player *player, uint16_t *compare);
 
-/* Ends a move early, down the ramp: the pulse being waited for, then as many as it takes. With the interrupt off. */
+/* Ends a move early: after the pulse whose delay runs, the move goes down the ramp. Call this with
+ * the interrupt off. */
 void carrystep_stop(carrystep_player *player);
 
-/* Pulses still to come. With the interrupt off. */
+/* Returns the number of pulses that are left. Call this with the interrupt off. */
 uint32_t carrystep_left(const carrystep_player *player);
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-/* See carrystep_sine.h. */
+/* Implementation of carrystep_sine.h, in fixed point; the comments give the scale of each value. */
 #include "carrystep_sine.h"
 
 #ifdef CARRYSTEP_PROGMEM
@@ -8,7 +8,7 @@
 #define READ(word) (word)
 #endif
 
-/* Integer square root, rounded down, bit by bit. */
+/* Returns the integer square root, rounded down. It is computed bit by bit. */
 static uint32_t root(uint64_t square)
 {
     uint64_t rest = square;
@@ -24,18 +24,18 @@ static uint32_t root(uint64_t square)
     return (uint32_t)result;
 }
 
-/* Counts from the start of the ramp to the end of its share step / steps, step < steps. */
+/* Returns the counts from the start of the ramp to step `step` of `steps`, for step < steps. */
 static uint32_t crossing(const uint16_t *inverse, uint16_t intervals, uint16_t step, uint16_t steps, uint32_t counts)
 {
-    uint32_t share = (uint32_t)(((uint64_t)step << 32) / steps); /* s 2^32 */
-    uint32_t half = root((uint64_t)share << 32);                 /* s^(1/2) 2^32 */
-    uint32_t fourth = root((uint64_t)half << 32);                /* s^(1/4) 2^32 */
-    uint64_t place = (uint64_t)fourth * intervals;               /* intervals, 2^32 */
+    uint32_t share = (uint32_t)(((uint64_t)step << 32) / steps); /* s x 2^32 */
+    uint32_t half = root((uint64_t)share << 32);                 /* s^(1/2) x 2^32 */
+    uint32_t fourth = root((uint64_t)half << 32);                /* s^(1/4) x 2^32 */
+    uint64_t place = (uint64_t)fourth * intervals;               /* intervals x 2^32 */
     uint16_t left = (uint16_t)(place >> 32);
     uint16_t low = READ(inverse[left]);
     uint16_t high = READ(inverse[left + 1]);
-    uint64_t part = ((place & UINT32_MAX) * (uint16_t)(high - low)) >> 16; /* 2^16 */
-    uint64_t u = ((uint64_t)low << 16) + part;                             /* u 65535 2^16 */
+    uint64_t part = ((place & UINT32_MAX) * (uint16_t)(high - low)) >> 16; /* x 2^16 */
+    uint64_t u = ((uint64_t)low << 16) + part;                             /* u x 65535 x 2^16 */
     uint64_t scale = UINT64_C(65535) << 16;
     return (uint32_t)((u * counts + scale / 2) / scale);
 }

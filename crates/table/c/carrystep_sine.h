@@ -1,6 +1,6 @@
-/* Makes a sine ramp (acceleration 1 - cos) of any length and time on the controller, from one small table:
- * u = t / T against the fourth root of the distance done. Before a move, not in an interrupt: two
- * integer roots and a division a step. */
+/* Computes a sine ramp (acceleration 1 - cos) of any length and duration on the controller, from
+ * one small table of u = t / T against the fourth root of the travelled fraction of the distance.
+ * Each step takes two integer roots and a division: call it before a move, not in an interrupt. */
 #ifndef CARRYSTEP_SINE_H
 #define CARRYSTEP_SINE_H
 
@@ -11,15 +11,16 @@
 extern "C" {
 #endif
 
-/* Fills `delays[steps]` with the delays of a ramp from rest, in timer counts (free-running compare
- * values; one less, `ctc` true, for CTC).
+/* Fills `delays[steps]` with the compare values of a ramp from rest: the delays in timer counts for
+ * a free-running timer (`ctc` false), or one less for CTC (`ctc` true).
  *
- * inverse    the generated `NAME_inverse`, its intervals + 1 words
+ * inverse    the generated array `NAME_inverse`, which has `intervals` + 1 words
  * intervals  2 to 4096
  * steps      1 or more
- * counts     timer counts of the whole ramp, under 2^31: twice `steps` times the counts of a cruising step
+ * counts     timer counts of the whole ramp, below 2^31: 2 x `steps` x the counts of a cruise step
  *
- * False, and the buffer is of no use: a delay is not 1 to 65535 counts, or a parameter is out of range. */
+ * Returns false if a delay is not 1 to 65535 counts or a parameter is out of range; the contents of
+ * `delays` are then undefined. */
 bool carrystep_sine_ramp(const uint16_t *inverse, uint16_t intervals, uint16_t steps, uint32_t counts, bool ctc,
                          uint16_t *delays);
 

@@ -1,43 +1,45 @@
-//! Why a table cannot be, and the nearest that can.
+//! The errors of this crate: why a table is not possible, and the nearest one that is.
+//!
+//! The messages are part of the command's interface: transcripts in tests/ quote them.
 
 use thiserror::Error;
 
-/// Why a table cannot be made as asked. Every message says what would do.
+/// Why a table is not possible as requested. Every message names a value that works.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TableError {
-    /// A number that means nothing here.
+    /// A number is outside the range that makes sense for it.
     #[error("{parameter} is {value}: {needed} is needed")]
     Unusable {
-        /// Its name.
+        /// The name of the parameter.
         parameter: &'static str,
-        /// What it is.
+        /// Its value.
         value: f64,
-        /// What it may be.
+        /// The permitted range, in words.
         needed: &'static str,
     },
-    /// A number outside its range, limits not included below, included above.
+    /// A number is outside its range, which excludes 0 and includes `most`.
     #[error("{parameter} is {value}: over 0 and at most {most} is needed")]
     NotPositive {
-        /// Its name.
+        /// The name of the parameter.
         parameter: &'static str,
-        /// What it is.
+        /// Its value.
         value: f64,
-        /// The greatest that can be.
+        /// The greatest permitted value.
         most: f64,
     },
-    /// A count outside its range.
+    /// A count is outside its range.
     #[error("{parameter} is {value}: {least} to {most} is needed; the nearest is {}", nearest(*value, *least, *most))]
     Count {
-        /// Its name.
+        /// The name of the parameter.
         parameter: &'static str,
-        /// What it is.
+        /// Its value.
         value: u32,
-        /// The least that can be.
+        /// The least permitted value.
         least: u32,
-        /// The greatest that can be.
+        /// The greatest permitted value.
         most: u32,
     },
-    /// Nothing to rise to.
+    /// The top speed is not above the start frequency.
     #[error(
         "a top speed of {top} steps/s is not over the start frequency of {start} steps/s: \
          a top speed over {start} steps/s ({start_rpm} rpm) or a start frequency under {top} steps/s would do"
@@ -47,15 +49,15 @@ pub enum TableError {
         start: f64,
         /// Top speed, steps/s.
         top: f64,
-        /// The start frequency in rpm.
+        /// Start frequency, rpm.
         start_rpm: f64,
     },
-    /// The timer has no such prescaler.
+    /// The timer does not have the requested prescaler.
     #[error("the timer has no prescaler {prescaler}: it has {}", list(available))]
     Prescaler {
-        /// What was asked.
+        /// The requested prescaler.
         prescaler: u32,
-        /// What there is.
+        /// The prescalers of the timer.
         available: Vec<u32>,
     },
     /// A delay is longer than the timer can wait.
@@ -66,14 +68,14 @@ pub enum TableError {
     TooSlow {
         /// The longest delay, counts.
         counts: f64,
-        /// What the timer can wait, counts.
+        /// The longest wait of the timer, counts.
         most: u32,
-        /// Width of the timer.
+        /// Width of the timer, bits.
         bits: u32,
-        /// The smallest prescaler with which the whole table fits.
+        /// The smallest prescaler with which the whole table fits, if there is one.
         prescaler: Option<u32>,
-        /// The least start frequency that surely does with the best prescaler there is, steps/s; none
-        /// where the top speed itself is too slow.
+        /// A start frequency that works with the best prescaler of the timer, steps/s; `None` if
+        /// the top speed itself is too slow.
         start: Option<f64>,
     },
     /// A delay is shorter than the timer or the interrupt allows.
@@ -84,60 +86,60 @@ pub enum TableError {
     TooFast {
         /// The shortest delay, counts.
         counts: f64,
-        /// What the timer and the interrupt need, counts.
+        /// The shortest delay that the timer and the interrupt allow, counts.
         least: u32,
-        /// The smallest prescaler with which the whole table fits.
+        /// The smallest prescaler with which the whole table fits, if there is one.
         prescaler: Option<u32>,
-        /// The greatest top speed that surely does with the smallest prescaler, steps/s.
+        /// The greatest top speed that works with the smallest prescaler, steps/s.
         speed: f64,
     },
-    /// The entries or steps do not divide into the groups.
+    /// The number of entries or steps is not a multiple of the size of the groups.
     #[error("{length} {what} do not divide into groups of {unit}: {} would do", nearest_multiples(*length, *unit))]
     Groups {
-        /// "entries" or "ramp steps".
+        /// Either "entries" or "ramp steps".
         what: &'static str,
-        /// How many there are.
+        /// The number of entries or steps.
         length: u32,
-        /// What they must be a multiple of.
+        /// The number that it must be a multiple of.
         unit: u32,
     },
-    /// More entries than the player can count.
+    /// The table has more entries than the player can count.
     #[error("the table would have {entries} entries, at most {most} can be: more pulses per entry would do")]
     TooLong {
-        /// Entries.
+        /// Number of entries.
         entries: usize,
-        /// The greatest number that can be.
+        /// The greatest possible number of entries.
         most: u32,
     },
     /// The ramp has more pulses than the player can count.
     #[error("the ramp would have {pulses} pulses, at most {} can be: fewer pulses per entry would do", u32::MAX - 1)]
     TooManyPulses {
-        /// Pulses.
+        /// Number of pulses.
         pulses: u64,
     },
     /// An entry lasts more pulses than the player can count.
     #[error("an entry would last {pulses} pulses, at most 65535 can be: a time of at most {seconds:.6} s would do")]
     TooManyPerEntry {
-        /// Pulses.
+        /// Number of pulses.
         pulses: u32,
-        /// The longest time that surely does, seconds.
+        /// The longest time per entry that works, seconds.
         seconds: f64,
     },
-    /// The inverse table tells times from rest.
+    /// An inverse table is requested for a ramp that does not start from rest.
     #[error("the inverse table is for ramps from rest: start_frequency is {start}, 0 or no inverse table would do")]
     InverseFromRest {
         /// Start frequency, steps/s.
         start: f64,
     },
-    /// A name that C does not take.
+    /// The name is not a valid C identifier, or too long.
     #[error("{name:?} is no name for a table: a letter, then up to 47 letters, digits or underscores")]
     Name {
-        /// What was asked.
+        /// The requested name.
         name: String,
     },
 }
 
-/// Whether `value` is over 0 and at most `most`.
+/// Checks that `value` is over 0 and at most `most`.
 pub(crate) fn positive(parameter: &'static str, value: f64, most: f64) -> Result<(), TableError> {
     if value > 0.0 && value <= most { Ok(()) } else { Err(TableError::NotPositive { parameter, value, most }) }
 }

@@ -1,34 +1,37 @@
-//! What a user has to know before trusting a table.
+//! The figures of a table that a user needs to judge it.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use crate::groups::Group;
 use crate::request::TableRequest;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Figures of a table; those called real are of the rounded counts that the timer plays.
+/// Figures of a table. "Real" figures are those of the rounded counts that the timer plays.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct Figures {
-    /// Counts per second.
+    /// Timer counts per second.
     pub timer_hz: f64,
-    /// Entries.
+    /// Number of entries.
     pub entries: usize,
-    /// Pulses of the ramp, over all entries.
+    /// Number of pulses of the ramp, over all entries.
     pub ramp_pulses: u64,
-    /// Real length of the ramp, seconds.
+    /// Real duration of the ramp, seconds.
     pub ramp_seconds: f64,
-    /// Its length by the formula, seconds.
+    /// Duration of the ramp by the formula, seconds.
     pub ramp_seconds_ideal: f64,
-    /// Real speed of the first entry, steps/s: what the motor must take from rest.
+    /// Real speed of the first entry, steps/s, to which the motor jumps from rest.
     pub first_speed: f64,
-    /// Top speed as asked, steps/s.
+    /// Requested top speed, steps/s.
     pub top_speed_asked: f64,
-    /// Real top speed, steps/s: the nearest that whole counts allow.
+    /// Real top speed, steps/s: the nearest speed that whole counts allow.
     pub top_speed: f64,
-    /// The same in rpm.
+    /// Real top speed, rpm.
     pub top_rpm: f64,
-    /// Greatest share by which rounding changes the speed of an entry or of the cruise.
+    /// Greatest relative change of the speed of an entry or of the cruise by rounding.
     pub worst_speed_error: f64,
-    /// Greatest acceleration by the formula, between the middles of neighbouring entries, steps/s^2.
+    /// Greatest acceleration by the formula, between the middles of neighbouring entries,
+    /// steps/s^2.
     pub peak_acceleration: f64,
     /// Memory on the controller, bytes.
     pub bytes: usize,
@@ -66,7 +69,7 @@ impl Figures {
     }
 }
 
-/// (v2^2 - v1^2) / 2 over the steps between the middles of two entries.
+/// The acceleration (v2^2 - v1^2) / 2, divided by the steps between the middles of two entries.
 fn peak_acceleration(timer_hz: f64, ideal: &[f64], sizes: &[u32]) -> f64 {
     let entries: Vec<(f64, f64)> = ideal.iter().zip(sizes).map(|(c, &p)| (timer_hz / c, f64::from(p))).collect();
     let between = |pair: &[(f64, f64)]| {

@@ -1,7 +1,7 @@
-//! Pulses per entry: one, by group, or by time.
+//! The number of pulses of each entry: one, by group, or by time.
 //!
-//! The number of pulses of each entry is settled here, not counted on the controller, so that the player
-//! can walk back down the same pulses.
+//! The numbers are fixed here and stored in the table. The controller does not count time, so that
+//! the player can go back down the ramp through the same pulses.
 
 use crate::error::TableError;
 use crate::request::{MAX_ENTRIES, Pulses};
@@ -11,18 +11,19 @@ use serde::Serialize;
 /// A run of entries that all last the same number of pulses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Group {
-    /// The first entry behind it.
+    /// Index of the first entry after the run.
     pub end: u16,
-    /// Pulses of each of its entries, 1 or more.
+    /// Pulses of each entry of the run, 1 or more.
     pub pulses: u16,
 }
 
-/// How long an entry must last, in whole counts.
+/// The least duration of an entry, in whole counts.
 fn dwell(seconds: f64, timer: f64) -> u64 {
     (seconds * timer).round().max(1.0) as u64
 }
 
-/// Pulses of each of `counts.len()` entries that last `counts` a pulse: the entries stay, the ramp is stretched.
+/// Pulses of each entry, for entries whose delay per pulse is `counts`. The number of entries
+/// stays, and the ramp gets more pulses.
 pub(crate) fn stretch(counts: &[u32], pulses: &Pulses, timer: f64) -> Result<Vec<u32>, TableError> {
     match pulses {
         Pulses::One => Ok(vec![1; counts.len()]),
@@ -41,7 +42,8 @@ pub(crate) fn stretch(counts: &[u32], pulses: &Pulses, timer: f64) -> Result<Vec
     }
 }
 
-/// Pulses of each entry where a ramp has `delays.len()` steps (delays in counts): the ramp stays, an entry covers several.
+/// Pulses of each entry, for a ramp of `delays.len()` steps with the given delays in counts. The
+/// number of steps stays, and an entry covers several of them.
 pub(crate) fn merge(delays: &[f64], pulses: &Pulses, timer: f64) -> Result<Vec<u32>, TableError> {
     match pulses {
         Pulses::One => Ok(vec![1; delays.len()]),
@@ -57,12 +59,12 @@ pub(crate) fn merge(delays: &[f64], pulses: &Pulses, timer: f64) -> Result<Vec<u
     }
 }
 
-/// Equal runs: each number `times` times.
+/// Repeats each number `times` times.
 fn spread(groups: &[u32], times: usize) -> Vec<u32> {
     groups.iter().flat_map(|&p| std::iter::repeat_n(p, times)).collect()
 }
 
-/// Cuts the steps into entries that each last at least `dwell` counts, but for the last.
+/// Divides the steps into entries that each last at least `dwell` counts, except for the last one.
 fn chunks(delays: &[f64], dwell: f64) -> Vec<u32> {
     let mut sizes = Vec::new();
     let (mut size, mut sum) = (0, 0.0);
@@ -80,7 +82,7 @@ fn chunks(delays: &[f64], dwell: f64) -> Vec<u32> {
     sizes
 }
 
-/// The mean delay of each entry's steps.
+/// The mean delay of the steps of each entry.
 pub(crate) fn means(delays: &[f64], sizes: &[u32]) -> Vec<f64> {
     let mut rest = delays;
     let mut mean = |&size: &u32| {
@@ -91,7 +93,8 @@ pub(crate) fn means(delays: &[f64], sizes: &[u32]) -> Vec<f64> {
     sizes.iter().map(&mut mean).collect()
 }
 
-/// Equal neighbours become one group.
+/// Combines neighbouring entries with equal numbers of pulses into groups. `longest` returns the
+/// duration in seconds for the error message.
 pub(crate) fn runs(sizes: &[u32], longest: impl Fn(u32) -> f64) -> Result<Vec<Group>, TableError> {
     if sizes.len() > MAX_ENTRIES as usize {
         return Err(TableError::TooLong { entries: sizes.len(), most: MAX_ENTRIES });
@@ -122,14 +125,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_entry_lasts_at_least_its_time() {
+    fn entry_lasts_at_least_the_requested_time() {
         let sizes = stretch(&[396, 250, 126, 125, 124, 19], &Pulses::ByTime(1e-3), 250_000.0).unwrap();
         assert_eq!(sizes, [1, 1, 2, 2, 3, 14]);
         assert_eq!(chunks(&[300.0, 200.0, 60.0, 100.0, 20.0], 250.0), [1, 2, 2]);
     }
 
     #[test]
-    fn groups_must_divide() {
+    fn entries_that_do_not_divide_into_groups_are_refused() {
         let groups = Pulses::ByGroup(vec![5, 10]);
         assert_eq!(stretch(&[9; 4], &groups, 1.0).unwrap(), [5, 5, 10, 10]);
         assert_eq!(merge(&[9.0; 30], &groups, 1.0).unwrap(), [5, 5, 10, 10]);
@@ -139,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_run_together() {
+    fn neighbours_with_equal_pulses_form_one_group() {
         let groups = runs(&[1, 1, 2, 2, 2, 1], |_| 0.0).unwrap();
         let pairs: Vec<_> = groups.iter().map(|g| (g.end, g.pulses)).collect();
         assert_eq!(pairs, [(2, 1), (5, 2), (6, 1)]);

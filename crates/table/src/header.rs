@@ -1,4 +1,6 @@
-//! A table as a C header.
+//! Writes a table as a C header, from `templates/table.h`.
+//!
+//! Transcripts in tests/ quote the generated text.
 
 use crate::error::TableError;
 use crate::request::{Arithmetic, Kind, Pulses, Speed, TableRequest};
@@ -9,7 +11,7 @@ use std::fmt::Write;
 
 const TEMPLATE: &str = include_str!("../templates/table.h");
 
-/// How a header is written.
+/// The options of a header.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Options {
     name: String,
@@ -18,10 +20,11 @@ pub struct Options {
 }
 
 impl Options {
-    /// A header whose names begin with `name`: a letter, then up to 47 letters, digits or underscores.
+    /// A header whose identifiers begin with `name`: a letter, then up to 47 letters, digits or
+    /// underscores.
     ///
     /// # Errors
-    /// C would not take the name.
+    /// [`TableError::Name`] if the name has another form.
     pub fn new(name: impl Into<String>) -> Result<Self, TableError> {
         let name = name.into();
         let body = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
@@ -32,29 +35,29 @@ impl Options {
         }
     }
 
-    /// Keeps the arrays in the program memory of an AVR (`PROGMEM`).
+    /// Whether the arrays are placed in the program memory of an AVR (`PROGMEM`); off by default.
     #[must_use]
     pub fn program_memory(mut self, yes: bool) -> Self {
         self.program_memory = yes;
         self
     }
 
-    /// Whether the header makes a `carrystep_table` for the player (it does unless told otherwise) or has
-    /// the bare array only.
+    /// Whether the header defines a `carrystep_table` for the player (the default), or only the
+    /// array of compare values.
     #[must_use]
     pub fn player(mut self, yes: bool) -> Self {
         self.player = yes;
         self
     }
 
-    /// The name.
+    /// The name with which the identifiers begin.
     pub fn name(&self) -> &str {
         &self.name
     }
 }
 
 impl Table {
-    /// The table as a C99 header, self-contained but for the player's.
+    /// The text of the table as a C99 header. It needs no other file than the player's header.
     pub fn header(&self, options: &Options) -> String {
         let request = self.request();
         let figures = self.figures();
@@ -136,13 +139,13 @@ fn pulses(request: &TableRequest) -> String {
     }
 }
 
-/// Twelve values a line.
+/// Formats the values, twelve on a line.
 fn rows(values: &[u16]) -> String {
     let mut text = String::new();
     for row in values.chunks(12) {
         text.push_str("\n    ");
         for value in row {
-            // Writing to a String does not fail.
+            // Writing to a String cannot fail.
             let _ = write!(text, "{value:>5},");
         }
     }

@@ -1,12 +1,13 @@
-//! The inverse of the sine curve as a small table, for ramps that are made on the controller.
+//! The inverse of the sine curve as a small table, for ramps that are computed on the controller.
 //!
-//! The source tabulates u against s, at even distances, and interpolates: near rest u goes like the fourth
-//! root of s, and 256 entries are 17 ms wrong in a ramp of 0.2 s. Against s^(1/4) the curve is nearly
-//! straight: the same 256 entries are 2.3 us wrong.
+//! The source tabulates u against s at even distances and interpolates. Near rest u grows with the
+//! fourth root of s, so that 256 entries are 17 ms wrong in a ramp of 0.2 s. Against s^(1/4) the
+//! curve is nearly straight, and the same 256 entries are 2.3 us wrong.
 
 use crate::sine::Sine;
 
-/// u = t / T against the fourth root of the share s of the ramp's distance, in equal intervals.
+/// The table of u = t / T against the fourth root of s, the fraction of the ramp's distance, in
+/// equal intervals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InverseTable {
     knots: Vec<f64>,
@@ -21,12 +22,12 @@ impl InverseTable {
         Self { knots: knots.collect() }
     }
 
-    /// u at the knots, 0 to 1.
+    /// The values of u at the knots, 0 to 1.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
 
-    /// u where the share `s` (0 to 1) of the ramp is done, interpolated.
+    /// The interpolated u at the fraction `s` (0 to 1) of the ramp's distance.
     pub fn u(&self, s: f64) -> f64 {
         let place = s.clamp(0.0, 1.0).powf(0.25) * (self.knots.len() - 1) as f64;
         let left = place as usize;
@@ -36,7 +37,7 @@ impl InverseTable {
         }
     }
 
-    /// The knots in 16 bits, u 65535 rounded, as `sine.c` reads them.
+    /// The knots as 16-bit words, u x 65535 rounded, in the form that `carrystep_sine.c` reads.
     pub fn words(&self) -> Vec<u16> {
         self.knots.iter().map(|u| (u * f64::from(u16::MAX)).round() as u16).collect()
     }

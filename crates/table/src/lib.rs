@@ -1,9 +1,10 @@
-//! Timer compare tables for microcontrollers, and the portable C player that runs them.
+//! Timer compare tables for microcontrollers, and the portable C player that plays them.
 //!
-//! A table holds one compare value per entry of a speed ramp, in the domain of the step index: entry
-//! `i` says how long the timer waits before the next pulse. (The curves over time are in
-//! `carrystep-profile`.) [`Table::new`] turns a [`TableRequest`] into numbers that fit the timer or
-//! into a [`TableError`] that says what would; [`Table::header`] prints them as C; [`PLAYER`] plays them.
+//! A table holds one compare value for each entry of a speed ramp. Entry `i` gives the time that
+//! the timer waits before the next pulse; the curves are functions of the step index. (The curves
+//! over time are in `carrystep-profile`.) [`Table::new`] computes the compare values of a
+//! [`TableRequest`], or returns a [`TableError`] that names a value that works. [`Table::header`]
+//! writes the table as C, and [`PLAYER`] holds the C files that play it.
 //!
 //! ```
 //! use carrystep_table::{Kind, Mode, Motor, Options, Pulses, Speed, Table, TableRequest, Timer};

@@ -1,51 +1,54 @@
-//! What a table is made from, and whether it can be.
+//! The request for a table, and the check of its values.
+//!
+//! The structs here are part of `--json`; their names may not change.
 
 use crate::error::{TableError, positive};
 use crate::timer::Timer;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Most steps in a ramp; a table with one pulse per entry is limited to 65 535 entries besides.
+/// The greatest number of steps in a ramp. A table with one pulse per entry is also limited to 65
+/// 535 entries.
 pub(crate) const MAX_RAMP: u32 = 1_000_000;
 
-/// Most entries in a table: the player counts them in 16 bits.
+/// The greatest number of entries in a table: the player counts them in 16 bits.
 pub(crate) const MAX_ENTRIES: u32 = u16::MAX as u32;
 
-/// Speeds that make sense for a table, steps/s.
+/// The permitted range of speeds, steps/s.
 const SPEEDS: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
 
-/// Everything that a table is made from.
+/// Everything that determines a table.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct TableRequest {
-    /// The timer that will play it.
+    /// The timer that plays the table.
     pub timer: Timer,
     /// The motor, for speeds in rpm.
     pub motor: Motor,
-    /// Speed that the ramp rises from, steps/s; 0 or more.
+    /// Speed at the start of the ramp, steps/s; 0 or more.
     pub start_frequency: f64,
-    /// Speed of the cruise; over the start frequency.
+    /// Speed of the cruise; above the start frequency.
     pub top_speed: Speed,
-    /// The curve between the two.
+    /// The curve between the two speeds.
     #[serde(flatten)]
     pub kind: Kind,
-    /// Pulses that each entry lasts.
+    /// The number of pulses that each entry lasts.
     pub pulses: Pulses,
 }
 
-/// Step angle and microsteps.
+/// Step angle and microsteps of a motor.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct Motor {
     /// Angle of a full step, degrees; over 0, at most 180.
     pub step_angle_deg: f64,
-    /// Microsteps in a full step; 1 or more. A step of the table is one microstep.
+    /// Microsteps in a full step; 1 to 65 536. A step of the table is one microstep.
     pub microsteps: u32,
 }
 
-/// A speed, in the terms of the source.
+/// A speed, in the unit in which the user gives it.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Speed {
-    /// Revolutions per minute of the motor shaft.
+    /// Revolutions of the motor shaft per minute.
     Rpm(f64),
     /// Steps (microsteps) per second.
     StepsPerSecond(f64),
@@ -55,27 +58,31 @@ pub enum Speed {
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Kind {
-    /// [`crate::logistic`]: frequency logistic in the entry index.
+    /// [`crate::logistic`]: the frequency is a logistic function of the entry index.
     Logistic {
-        /// Entries, 1 to 65 535; with one pulse each, the steps of the ramp.
+        /// Number of entries, 1 to 65 535; with one pulse per entry also the steps of the ramp.
         entries: u32,
-        /// Fle, the source's "curve": over 0. At 6 the ends are 0.25 % of the rise away from the limits.
+        /// The steepness Fle, which the source calls "curve"; over 0, at most 1000. With 6, the
+        /// ends are 0.25 % of the speed change away from the limits.
         steepness: f64,
-        /// Entry at which half the rise is done, over 0 and at most `entries`; absent: `entries / 2`.
+        /// The entry at which half the speed change is reached, over 0 and at most `entries`;
+        /// absent: `entries / 2`.
         centre: Option<f64>,
     },
     /// [`crate::austin`]: constant acceleration by the recurrence of Austin and AVR446.
     Avr446 {
-        /// Steps of the ramp, 1 to 1 000 000; they and the speeds fix the acceleration.
+        /// Steps of the ramp, 1 to 1 000 000; together with the speeds they determine the
+        /// acceleration.
         ramp_steps: u32,
-        /// Float, or integer with the remainder kept.
+        /// Float, or integer with the remainder carried over.
         arithmetic: Arithmetic,
     },
     /// [`crate::sine`]: the S-curve whose acceleration is 1 - cos.
     Sine {
-        /// Steps of the ramp, 1 to 1 000 000; they and the speeds fix its time.
+        /// Steps of the ramp, 1 to 1 000 000; together with the speeds they determine its duration.
         ramp_steps: u32,
-        /// Intervals of the inverse table that goes into the header too, 2 to 4096; from rest only.
+        /// Number of intervals of an inverse table in the header, 2 to 4096; only for ramps from
+        /// rest.
         inverse: Option<u32>,
     },
 }
@@ -84,42 +91,43 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Arithmetic {
-    /// In f64; rounded to counts at the end.
+    /// In f64, rounded to counts at the end.
     Float,
-    /// In integers, as AVR446 does on the controller, the remainder of each division kept.
+    /// In integers, as AVR446 does on the controller, with the remainder of each division carried
+    /// over.
     Integer,
 }
 
-/// How many pulses an entry lasts.
+/// The number of pulses that an entry lasts.
 ///
-/// Logistic entries are stretched: their number stays and the ramp has more pulses. In the other kinds the steps of the
-/// ramp stay, and an entry takes the mean delay of the steps that it covers.
+/// Logistic entries are stretched: their number stays, and the ramp gets more pulses. For the other
+/// kinds the number of steps of the ramp stays, and an entry has the mean delay of its steps.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Pulses {
     /// One pulse per entry.
     One,
-    /// As many groups as there are numbers, all with the same number of entries; the number is the
+    /// One group for each number, all with the same count of entries. The number is that of the
     /// pulses of each entry in the group, 1 to 65 535.
     ByGroup(Vec<u32>),
-    /// As many pulses as it takes to last at least this long, seconds.
+    /// As many pulses as an entry needs to last at least this time, seconds; over 0, at most 1000.
     ByTime(f64),
 }
 
 impl Motor {
-    /// Steps/s at `rpm`: 6 rpm microsteps / angle, the angle in degrees.
+    /// Steps/s at `rpm`: 6 rpm microsteps / angle, with the angle in degrees.
     pub fn steps_per_second(&self, rpm: f64) -> f64 {
         6.0 * rpm * f64::from(self.microsteps) / self.step_angle_deg
     }
 
-    /// The inverse of [`Self::steps_per_second`].
+    /// The speed in rpm, the inverse of [`Self::steps_per_second`].
     pub fn rpm(&self, steps_per_second: f64) -> f64 {
         steps_per_second * self.step_angle_deg / (6.0 * f64::from(self.microsteps))
     }
 }
 
 impl Kind {
-    /// Its name on the command line.
+    /// The name of the kind on the command line.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Logistic { .. } => "logistic",

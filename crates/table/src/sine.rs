@@ -1,7 +1,11 @@
-//! The S-curve whose acceleration is 1 - cos: speed v0 + (v1 - v0) (u - sin(2 pi u) / 2 pi), u = t / T.
+//! The S-curve whose acceleration is 1 - cos: the speed is v0 + (v1 - v0) (u - sin(2 pi u) / 2 pi),
+//! with u = t / T.
 //!
-//! Distance: T (v0 u + (v1 - v0) S(u)), S(u) = u^2/2 + (cos(2 pi u) - 1) / 4 pi^2, S(1) = 1/2. Near rest S
-//! grows with u^4: the first step takes as long as the next dozen, and S as printed cancels to noise.
+//! The distance is T (v0 u + (v1 - v0) S(u)), with S(u) = u^2/2 + (cos(2 pi u) - 1) / 4 pi^2 and
+//! S(1) = 1/2. Near rest S grows with u^4: the first step takes as long as the next dozen steps,
+//! and the printed form of S loses all digits to cancellation. A series is used there.
+//!
+//! The golden numbers in `tests/golden/` fix the formulas; only their numerical form may change.
 
 use std::f64::consts::PI;
 
@@ -10,14 +14,14 @@ use std::f64::consts::PI;
 pub struct Sine {
     /// v0, steps/s, 0 or more.
     pub start: f64,
-    /// v1, steps/s, over v0.
+    /// v1, steps/s, above v0.
     pub top: f64,
-    /// N, over 0.
+    /// N, the number of steps, over 0.
     pub steps: f64,
 }
 
 impl Sine {
-    /// T = 2 N / (v0 + v1), seconds.
+    /// Duration T = 2 N / (v0 + v1), seconds.
     pub fn time(&self) -> f64 {
         2.0 * self.steps / (self.start + self.top)
     }
@@ -32,7 +36,8 @@ impl Sine {
         2.0 * (self.top - self.start) / self.time()
     }
 
-    /// u of step n: Newton's method inside a bracket, begun where the curve would be if it were u^4 alone.
+    /// The value of u at step n, by Newton's method inside a bracket. The start value assumes that
+    /// the distance grows with u^4 alone.
     fn inverse(&self, n: f64) -> f64 {
         if n <= 0.0 {
             return 0.0;
@@ -62,22 +67,22 @@ impl Sine {
     }
 }
 
-/// S(u), 0 to 1/2 for u from 0 to 1; with x = pi u, (x^2 - sin^2 x) / 2 pi^2.
+/// S(u), 0 to 1/2 for u from 0 to 1. With x = pi u it is (x^2 - sin^2 x) / 2 pi^2.
 pub fn distance(u: f64) -> f64 {
     let x = PI * u;
     let difference = if x < 1.0 { alternating(x.powi(4) / 3.0, 4, 4.0 * x * x) } else { (x - x.sin()) * (x + x.sin()) };
     difference / (2.0 * PI * PI)
 }
 
-/// dS/du = u - sin(2 pi u) / 2 pi, 0 to 1.
+/// dS/du = u - sin(2 pi u) / 2 pi, 0 to 1 for u from 0 to 1.
 pub fn speed(u: f64) -> f64 {
     let x = 2.0 * PI * u;
     let difference = if x < 1.0 { alternating(x.powi(3) / 6.0, 3, x * x) } else { x - x.sin() };
     difference / (2.0 * PI)
 }
 
-/// The rest of a sine's or cosine's series from the term of `degree` on: each term is the last one
-/// times -y / ((degree + 1) (degree + 2)). Where the closed form would be a difference of equals.
+/// The series of a sine or cosine from the term of `degree` on, where the closed form would cancel.
+/// Each term is the previous one times -y / ((degree + 1) (degree + 2)).
 fn alternating(first: f64, degree: u32, y: f64) -> f64 {
     let (mut sum, mut term, mut degree) = (first, first, f64::from(degree));
     while term.abs() > sum.abs() * f64::EPSILON / 4.0 {

@@ -1,4 +1,6 @@
-//! A request becomes compare values.
+//! Converts a request to compare values.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use crate::austin::{ConstantAcceleration, FloatRecurrence, IntegerRecurrence};
 use crate::error::TableError;
@@ -25,25 +27,25 @@ pub struct Table {
     ideal: Vec<f64>,
 }
 
-/// Entries before they are compare values.
+/// The entries before they are converted to compare values.
 struct Entries {
-    /// Delays as the formula has them, counts.
+    /// Delays of the formula, counts, not rounded.
     ideal: Vec<f64>,
     /// Delays in whole counts.
     counts: Vec<u32>,
-    /// Pulses of each.
+    /// Pulses of each entry.
     sizes: Vec<u32>,
 }
 
 impl Table {
     /// Computes a table.
     ///
-    /// Each delay is rounded to the nearest count by itself, as in the source methods: after n pulses a move
-    /// is at most n / 2 counts away from its curve.
+    /// Each delay is rounded to the nearest count by itself, as in the source methods. After n
+    /// pulses a move is at most n / 2 counts away from its curve.
     ///
     /// # Errors
-    /// [`TableError`] says which parameter cannot be, and the nearest that can; for a delay that does not fit
-    /// the timer, the prescaler with which it would.
+    /// A [`TableError`] names the parameter and the nearest value that works. For a delay that does
+    /// not fit the timer it names a prescaler that works, if there is one.
     pub fn new(request: TableRequest) -> Result<Self, TableError> {
         request.check()?;
         let timer = &request.timer;
@@ -76,12 +78,12 @@ impl Table {
         Ok(Self { request, figures, compare, cruise, groups, inverse, ideal })
     }
 
-    /// What it was made from.
+    /// The request from which the table was computed.
     pub fn request(&self) -> &TableRequest {
         &self.request
     }
 
-    /// What a user has to know before trusting it.
+    /// The figures that a user needs to judge the table.
     pub fn figures(&self) -> &Figures {
         &self.figures
     }
@@ -101,17 +103,17 @@ impl Table {
         &self.groups
     }
 
-    /// The inverse table of the sine curve, where one was asked for.
+    /// The inverse table of the sine curve, if it was requested.
     pub fn inverse(&self) -> Option<&[u16]> {
         self.inverse.as_deref()
     }
 
-    /// Delays of the entries as the formula has them, counts, not rounded.
+    /// Delays of the entries by the formula, counts, not rounded.
     pub fn ideal_delays(&self) -> &[f64] {
         &self.ideal
     }
 
-    /// The entry of each pulse of the ramp.
+    /// The index of the entry of each pulse of the ramp.
     pub fn ramp_entries(&self) -> impl Iterator<Item = usize> + '_ {
         let starts = std::iter::once(0).chain(self.groups.iter().map(|group| group.end));
         starts.zip(&self.groups).flat_map(|(start, group)| {
@@ -119,10 +121,12 @@ impl Table {
         })
     }
 
-    /// The delays before each pulse of a move of `steps` steps, counts: what the player must play.
+    /// The delays before each pulse of a move of `steps` steps, counts: the values that the player
+    /// has to play.
     ///
-    /// Delay j of N is that of ramp pulse min(j, N - 1 - j), or the cruise where the ramp is over: up, cruise
-    /// and down, or up and down where the move is shorter than two ramps, the same both ways.
+    /// Delay j of N is that of ramp pulse min(j, N - 1 - j), or that of the cruise if the ramp has
+    /// fewer pulses. A long move goes up, cruises and goes down. A move shorter than two ramps goes
+    /// up and down. Both are symmetric.
     pub fn delays(&self, steps: u32) -> impl Iterator<Item = u32> + '_ {
         let needed = steps.div_ceil(2) as usize;
         let ramp: Vec<u16> = self.ramp_entries().take(needed).filter_map(|e| self.compare.get(e).copied()).collect();
@@ -142,7 +146,7 @@ fn logistic(request: &TableRequest, entries: u32, curve: &Logistic) -> Result<En
     Ok(Entries { ideal, counts, sizes })
 }
 
-/// Steps' delays by the float recurrence and, where asked for, by the integer one.
+/// Delays of the steps by the float recurrence, and by the integer recurrence if it is requested.
 fn avr446(
     request: &TableRequest,
     ramp_steps: u32,
@@ -151,7 +155,8 @@ fn avr446(
     let timer = &request.timer;
     let (start, top) = (request.start_frequency, request.top_frequency());
     let curve = ConstantAcceleration::between(timer.frequency(), start, top, f64::from(ramp_steps));
-    // Integers know quarters of a step, 4 n + 1; floats begin there too, so that both are one curve.
+    // The integer recurrence counts n in quarters of a step. The float recurrence starts at the
+    // same n, so that both follow one curve.
     let quarters = (4.0 * curve.steps_at(start)).round();
     let n = quarters / 4.0;
     let first = curve.delay(n);
@@ -160,18 +165,19 @@ fn avr446(
     timer.fit(cruise, longest(&ideal))?;
     let whole = || {
         let recurrence = IntegerRecurrence::new(round(first), quarters as u64);
-        // As AVR446 does: never faster than the cruise.
+        // The delay is never shorter than that of the cruise, as in AVR446.
         recurrence.take(ramp_steps as usize).map(|c| c.max(round(cruise))).collect()
     };
     Ok((ideal, (arithmetic == Arithmetic::Integer).then(whole)))
 }
 
-/// Steps' delays along the sine curve, counts.
+/// Delays of the steps along the sine curve, counts.
 fn sine(request: &TableRequest, ramp_steps: u32) -> Vec<f64> {
     let curve = Sine { start: request.start_frequency, top: request.top_frequency(), steps: f64::from(ramp_steps) };
     let crossings: Vec<f64> = (0..=ramp_steps).map(|n| curve.crossing(f64::from(n))).collect();
     let cruise = 1.0 / curve.top;
-    // The last steps are a cruise but for the rounding of two times.
+    // The last steps have nearly the delay of the cruise; the rounding of two times must not make
+    // it shorter.
     let delay = |t: &[f64]| (t[1] - t[0]).max(cruise) * request.timer.frequency();
     crossings.windows(2).map(delay).collect()
 }

@@ -1,4 +1,6 @@
-//! The timer: what it counts, how long it can wait, and which prescaler would do.
+//! The timer: its counts, its longest and shortest wait, and the choice of the prescaler.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use crate::error::TableError;
 use schemars::JsonSchema;
@@ -7,18 +9,18 @@ use serde::Serialize;
 /// The prescalers of timers 0 and 1 of an AVR.
 pub const AVR_PRESCALERS: [u32; 5] = [1, 8, 64, 256, 1024];
 
-/// A compare timer.
+/// A timer with a compare register.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Timer {
-    /// Clock in front of the prescaler, Hz; 1 to 10^10.
+    /// Frequency of the clock before the prescaler, Hz; 1 to 10^10.
     pub clock_hz: u64,
-    /// Clocks in a count; one of `prescalers`.
+    /// Clocks per count; one of `prescalers`.
     pub prescaler: u32,
-    /// The prescalers that it has.
+    /// The prescalers that the timer has.
     pub prescalers: Vec<u32>,
-    /// Width of its counter.
+    /// Width of the counter.
     pub width: Width,
-    /// What happens at a match.
+    /// What happens at a compare match.
     pub mode: Mode,
     /// Clocks that the interrupt needs from one pulse to the next; 0: not checked.
     pub interrupt_clocks: u32,
@@ -34,18 +36,18 @@ pub enum Width {
     Bits16,
 }
 
-/// What the counter does at a match, and so what a compare value means.
+/// What the counter does at a compare match, which determines the meaning of a compare value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mode {
-    /// Clear timer on compare: a period is the compare value plus one.
+    /// Clear timer on compare (CTC): a period is the compare value plus one.
     Ctc,
-    /// The counter runs on; the interrupt adds the value to the compare register.
+    /// The counter runs on, and the interrupt adds the value to the compare register.
     FreeRunning,
 }
 
 impl Width {
-    /// Bits.
+    /// The width in bits.
     pub const fn bits(self) -> u32 {
         match self {
             Self::Bits8 => 8,
@@ -55,7 +57,7 @@ impl Width {
 }
 
 impl Timer {
-    /// A 16-bit AVR timer.
+    /// A 16-bit AVR timer, whose interrupt time is not checked.
     pub fn avr16(clock_hz: u64, prescaler: u32, mode: Mode) -> Self {
         let prescalers = AVR_PRESCALERS.to_vec();
         Self { clock_hz, prescaler, prescalers, width: Width::Bits16, mode, interrupt_clocks: 0 }
@@ -66,7 +68,8 @@ impl Timer {
         self.clock_hz as f64 / f64::from(self.prescaler)
     }
 
-    /// Longest wait, counts: 2^width with CTC, one less in a free run (2^width would be no change).
+    /// The longest wait, counts: 2^width with CTC, one less with a free-running counter, where
+    /// adding 2^width would not change the compare register.
     pub const fn most_counts(&self) -> u32 {
         let full = 1 << self.width.bits();
         match self.mode {
@@ -75,12 +78,13 @@ impl Timer {
         }
     }
 
-    /// Shortest wait, counts: 1, or what the interrupt needs.
+    /// The shortest wait, counts: 1, or the time that the interrupt needs.
     pub fn least_counts(&self) -> u32 {
         self.least_counts_with(self.prescaler)
     }
 
-    /// The compare value for a wait of `counts`, if it fits: `counts` in a free run, one less with CTC.
+    /// The compare value for a wait of `counts`: `counts` with a free-running counter, one less
+    /// with CTC. `None` if it does not fit.
     pub fn compare(&self, counts: u32) -> Option<u16> {
         if counts == 0 || counts > self.most_counts() {
             return None;
@@ -88,7 +92,7 @@ impl Timer {
         u16::try_from(counts - self.offset()).ok()
     }
 
-    /// [`Self::compare`], or the error that says why not.
+    /// [`Self::compare`], or the error that names the reason.
     pub(crate) fn word(&self, counts: u32) -> Result<u16, TableError> {
         let counts_f64 = f64::from(counts);
         self.compare(counts).ok_or_else(|| {
@@ -102,7 +106,7 @@ impl Timer {
         })
     }
 
-    /// The wait, in counts, for a compare value.
+    /// The wait in counts that belongs to a compare value.
     pub fn counts(&self, compare: u16) -> u32 {
         u32::from(compare) + self.offset()
     }
@@ -130,7 +134,7 @@ impl Timer {
         Ok(())
     }
 
-    /// Whether waits between `shortest` and `longest` (counts, not yet rounded) fit.
+    /// Checks that waits between `shortest` and `longest` (counts, not yet rounded) fit.
     pub(crate) fn fit(&self, shortest: f64, longest: f64) -> Result<(), TableError> {
         let fits = |prescaler: &u32| {
             let scale = f64::from(self.prescaler) / f64::from(*prescaler);
@@ -174,7 +178,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ctc_is_one_less() {
+    fn compare_value_of_ctc_is_one_less_than_the_counts() {
         let ctc = Timer::avr16(16_000_000, 64, Mode::Ctc);
         let free = Timer { mode: Mode::FreeRunning, ..ctc.clone() };
         assert_eq!(
@@ -190,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn the_smallest_prescaler_that_does_is_named() {
+    fn error_names_the_smallest_prescaler_that_works() {
         let timer = Timer::avr16(16_000_000, 1, Mode::Ctc);
         let advice = |shortest, longest| match timer.fit(shortest, longest) {
             Err(TableError::TooSlow { prescaler, .. } | TableError::TooFast { prescaler, .. }) => prescaler,

@@ -51,13 +51,13 @@ static const uint16_t {{ name }}_compare[{{ entries }}]{{ " PROGMEM" if program_
 };
 {%- if inverse %}
 
-/* 65535 t / T against the fourth root of the distance done, for carrystep_sine.c. */
+/* t / T x 65535 against the fourth root of the travelled distance, for carrystep_sine.c. */
 static const uint16_t {{ name }}_inverse[{{ inverse_length }}]{{ " PROGMEM" if program_memory }} = { {{- inverse }}
 };
 {%- endif %}
 {%- if player %}
 
-/* Runs of entries with as many pulses each: {end, pulses}. */
+/* Runs of entries: {index after the last entry, pulses of each entry}. */
 static const carrystep_group {{ name }}_groups[{{ groups | length }}]{{ " PROGMEM" if program_memory }} = {
 {%- for end, pulses in groups %}
     { {{- end }}u, {{ pulses }}u},
@@ -69,7 +69,7 @@ static const carrystep_table {{ name }}_table = {
 };
 {%- endif %}
 
-/* A compiler that does not accept one of these has a table with a hole or a 16-bit type that is none. */
+/* If the compiler rejects a line below, the array lacks values or uint16_t is not 16 bits wide. */
 typedef char {{ name }}_check_length[sizeof {{ name }}_compare / sizeof {{ name }}_compare[0] == {{ upper }}_ENTRIES ? 1 : -1];
 typedef char {{ name }}_check_width[(uint16_t)-1 == 65535u ? 1 : -1];
 

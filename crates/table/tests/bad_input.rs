@@ -1,4 +1,5 @@
-//! What cannot be is refused, with the nearest that can; nothing panics and nothing is clipped.
+//! Tests that an impossible request is refused with the nearest possible value, and that nothing
+//! panics or is clipped.
 
 mod support;
 
@@ -15,7 +16,7 @@ fn refusal(change: impl FnOnce(&mut TableRequest)) -> String {
 }
 
 #[test]
-fn every_refusal_says_what_would_do() {
+fn every_refusal_names_a_value_that_works() {
     let logistic = |entries, steepness, centre| Kind::Logistic { entries, steepness, centre };
     let said = [
         (refusal(|r| r.kind = logistic(0, 6.0, None)), "entries is 0: 1 to 65535 is needed; the nearest is 1"),
@@ -81,7 +82,7 @@ fn every_refusal_says_what_would_do() {
 }
 
 #[test]
-fn a_value_that_does_not_fit_names_the_prescaler() {
+fn value_that_does_not_fit_names_a_prescaler_that_works() {
     assert_eq!(
         refusal(|r| {
             r.timer.prescaler = 1;
@@ -99,7 +100,7 @@ fn a_value_that_does_not_fit_names_the_prescaler() {
 }
 
 #[test]
-fn where_no_prescaler_does_a_speed_does() {
+fn start_frequency_is_named_where_no_prescaler_works() {
     let mut request = source(Mode::Ctc, 1000, Pulses::One);
     request.timer.width = Width::Bits8;
     request.start_frequency = 2.0;
@@ -116,9 +117,9 @@ fn where_no_prescaler_does_a_speed_does() {
 }
 
 #[test]
-fn the_interrupt_needs_its_time() {
+fn top_speed_too_fast_for_the_interrupt_is_refused() {
     let mut request = source(Mode::Ctc, 1000, Pulses::One);
-    request.timer.interrupt_clocks = 1500; // 24 counts; the top speed has 18.75
+    request.timer.interrupt_clocks = 1500; // 24 counts; the top speed needs 18.75
     let Err(TableError::TooFast { prescaler: None, least: 24, speed, .. }) = Table::new(request.clone()) else {
         panic!("{:?}", Table::new(request));
     };
@@ -181,7 +182,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 6000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_input_panics(request in any_request(), steps in 0_u32..500) {
+    fn no_request_panics(request in any_request(), steps in 0_u32..500) {
         match Table::new(request) {
             Ok(table) => {
                 let header = table.header(&Options::new("t").unwrap());

@@ -1,4 +1,5 @@
-//! Every golden value of the timer tables, the Austin recurrence and the small inverse table.
+//! Tests all golden values of the timer tables, of the Austin recurrence and of the small inverse
+//! table.
 
 use carrystep_table::austin::{ConstantAcceleration, FIRST_DELAY, FloatRecurrence, IntegerRecurrence};
 use carrystep_table::logistic::Logistic;
@@ -34,7 +35,8 @@ fn close(value: f64, golden: &Value) {
     assert!((value - golden).abs() <= 1e-12 * golden.abs(), "{value:?}, golden {golden:?}");
 }
 
-/// Differences of nearly equal numbers: the golden digits hold to the rounding of the operands.
+/// For differences of nearly equal numbers the golden digits hold only to the rounding of the
+/// operands.
 #[track_caller]
 fn close_to(value: f64, golden: &Value, absolute: f64) {
     let golden = number(golden);
@@ -65,7 +67,7 @@ fn counts(table: &Table) -> Vec<u32> {
 }
 
 #[test]
-fn speeds_and_compare_values() {
+fn speeds_and_compare_values_equal_the_golden_values() {
     let golden = &timer_table()["ocr"];
     let full = Motor { microsteps: 1, ..MOTOR };
     close(F / full.steps_per_second(300.0), &golden["300rpm_div1_exact"]);
@@ -75,7 +77,7 @@ fn speeds_and_compare_values() {
     close(MOTOR.rpm(F / 20.0), &golden["real_rpm_if_OCR1A=19 (CTC period OCR+1=20)"]);
     assert_eq!(golden["integer_OCR_500rpm"], (F / MOTOR.steps_per_second(500.0)).round() as u32);
     close(MOTOR.rpm(40_000.0 / 3.0), &timer_table()["wrong_lines"]["rpm_check_13333.33Hz_1.8_div8"]);
-    // What the source's 9.55 and 31.4 make of it.
+    // The values that follow from the constants 9.55 and 31.4 of the source.
     let share = 9.55 * PI / 30.0;
     close(250.0 * share, &golden["300rpm_div1_9.55"]);
     close(18.75 * share, &golden["500rpm_div8_9.55"]);
@@ -86,7 +88,7 @@ fn speeds_and_compare_values() {
 }
 
 #[test]
-fn logistic_table() {
+fn logistic_table_equals_the_golden_values() {
     let golden = &timer_table()["table_Fle_6"];
     let curve = Logistic { start: 500.0, top: MOTOR.steps_per_second(500.0), steepness: 6.0, centre: 500.0 };
     for i in [0, 500, 999] {
@@ -109,20 +111,21 @@ fn logistic_table() {
     let hash: String = Sha256::digest(text.join(",")).iter().map(|byte| format!("{byte:02x}")).collect();
     assert_eq!(golden["sha256_0..999"], hash);
 
-    // The same delays for CTC: each value one less. Values for a free run would make the ramp 4 ms longer.
+    // The same delays for CTC: each value is one less. The values of a free-running timer would
+    // make the ramp 4 ms longer.
     let ctc = logistic(500.0, 1000, Mode::Ctc, Pulses::One);
     assert!(ctc.compare().iter().zip(&ocr).all(|(&c, &f)| u32::from(c) + 1 == f));
     close(ctc.figures().ramp_seconds, &golden["ramp_time_OCR_s"]);
     close(ctc.figures().ramp_seconds + 1000.0 / F, &golden["ramp_time_if_OCR+1_s"]);
     close(ctc.figures().ramp_seconds_ideal, &golden["ramp_time_float_s"]);
-    // The integral of di / f from 0 to 1000, by Simpson.
+    // The integral of di / f from 0 to 1000, by Simpson's rule.
     let slowness = |i: u32| 1.0 / curve.frequency(f64::from(i) / 8.0);
     let inner: f64 = (1..8000).map(|i| slowness(i) * if i % 2 == 1 { 4.0 } else { 2.0 }).sum();
     close((slowness(0) + inner + slowness(8000)) / 24.0, &golden["ramp_time_integral_s"]);
 }
 
 #[test]
-fn pulses_by_group_and_by_time() {
+fn pulses_by_group_and_by_time_equal_the_golden_values() {
     let golden = &timer_table()["update_2018_08"];
     let bands = logistic(600.0, 600, Mode::Ctc, Pulses::ByGroup(whole(&golden["bands"])));
     assert_eq!(golden["total_pulses_bands"], bands.figures().ramp_pulses);
@@ -133,7 +136,7 @@ fn pulses_by_group_and_by_time() {
     table.ramp_entries().for_each(|entry| sizes[entry] += 1);
     assert_eq!(sizes[..10], whole(&golden["cstep_first10"]));
     assert_eq!(golden["cstep_last"], sizes[599]);
-    // The source's loop leaves before the last entry; ours plays it.
+    // The loop of the source ends before the last entry; the player here plays it.
     assert_eq!(golden["pulses_1ms"], sizes[..599].iter().sum::<u32>());
     assert_eq!(table.figures().ramp_pulses, 4479);
     let counts = counts(&table);
@@ -144,7 +147,7 @@ fn pulses_by_group_and_by_time() {
 }
 
 #[test]
-fn austin_recurrence() {
+fn austin_recurrence_equals_the_golden_values() {
     let file = austin();
     let golden = &file["austin"];
     let ramp = ConstantAcceleration { timer: 1e6, acceleration: 1000.0 };
@@ -166,16 +169,16 @@ fn austin_recurrence() {
     close(ramp.exact_delay(1.0) / c0, &golden["c1_over_c0_exact"]);
     close(FloatRecurrence::new(1.0, 0.0).nth(1).expect("c_1"), &golden["c1_over_c0_rec"]);
     close(0.6 / (2_f64.sqrt() - 1.0), &golden["c1_ratio_rec_over_exact"]);
-    // The closed form is the recurrence, from its own first delay on.
+    // The closed form equals the recurrence that starts from its own first delay.
     for (n, delay) in FloatRecurrence::new(FIRST_DELAY * c0, 0.0).take(3000).enumerate() {
         assert!((delay / ramp.delay(n as f64) - 1.0).abs() < 1e-12, "c_{n}");
     }
-    // Backwards, the same values: c_(m-1) = c_m (4 m + 1) / (4 m - 1).
+    // The deceleration has the same values in reverse: c_(m-1) = c_m (4 m + 1) / (4 m - 1).
     close(ramp.delay(7.0) * 29.0 / 27.0 / ramp.delay(6.0), &file["decel_mirror"]["check_m=7"]);
 }
 
 #[test]
-fn avr446_in_integers() {
+fn avr446_in_integers_equals_the_golden_values() {
     let golden = &austin()["avr446_integer"];
     let first = u32::try_from(golden["c0_int"].as_u64().expect("whole")).expect("32 bits");
     let delays: Vec<u32> = IntegerRecurrence::new(first, 0).take(1001).collect();
@@ -186,7 +189,7 @@ fn avr446_in_integers() {
     let printed = FloatRecurrence::new(0.676 * ramp.exact_delay(0.0), 0.0).nth(1000).expect("c_1000");
     close(printed, &golden["float_rec_0.676_c_1000"]);
     assert!((f64::from(delays[1000]) - printed).abs() < 2.0, "the remainder is kept: {}", delays[1000]);
-    // Without the remainder.
+    // The recurrence without the remainder.
     let lossy: Vec<u32> = (1..=1000)
         .scan(first, |c, n| {
             *c -= 2 * *c / (4 * n + 1);
@@ -198,7 +201,7 @@ fn avr446_in_integers() {
 }
 
 #[test]
-fn sine_curve() {
+fn sine_curve_equals_the_golden_values() {
     let file = sinusoid();
     let curve = Sine { start: 0.0, top: 1e4, steps: 1000.0 };
     close(curve.time(), &file["example"]["T_s"]);
@@ -218,7 +221,7 @@ fn sine_curve() {
 }
 
 #[test]
-fn inverse_tables() {
+fn inverse_tables_have_the_golden_errors() {
     let file = sinusoid();
     let curve = Sine { start: 0.0, top: 2.0, steps: 1.0 };
     let worst = |lookup: &dyn Fn(f64) -> f64| {
@@ -232,7 +235,7 @@ fn inverse_tables() {
         let (error, _) = worst(&|s| table.u(s));
         close_to(error, &golden["max_abs_err_u_at_steps_N1000"], 1e-15);
         close_to(error * 0.2e6, &golden["max_err_us_T0.2s"], 1e-9);
-        // As the source has it: against s itself.
+        // The table of the source, against s itself.
         let golden = &file["table_lookup_linear_interp"][&size];
         let (error, step) = worst(&|s| {
             let place = s * f64::from(intervals);

@@ -1,4 +1,4 @@
-//! What `--json` shows.
+//! Tests the names and values of `--json`, which scripts of users read.
 
 mod support;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use support::source;
 
 #[test]
-fn of_the_sources_table() {
+fn json_of_the_source_table_has_stable_names() {
     let table = Table::new(source(Mode::Ctc, 4, Pulses::ByGroup(vec![1, 3]))).unwrap();
     let mut value: Value = serde_json::to_value(&table).unwrap();
     let figures = value.as_object_mut().unwrap().remove("figures").unwrap();

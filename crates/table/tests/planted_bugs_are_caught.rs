@@ -1,11 +1,12 @@
-//! The player with one line wrong: each must fail on the bench that the right one passes.
+//! Tests that the simulated timer finds planted bugs: each wrong line in the player must fail the
+//! checks that the right player passes.
 
 mod support;
 
 use carrystep_table::{Mode, Options, PLAYER, Pulses, Table};
 use support::{Bench, Move, judge, lengths, source};
 
-/// Name, right text (it stands once in carrystep_player.c), wrong text.
+/// Name of the bug, the right text (which occurs once in carrystep_player.c), and the wrong text.
 const BUGS: [(&str, &str, &str); 12] = [
     ("first entry skipped", "player->entry = 0;", "player->entry = 1;"),
     ("short move overruns its middle", "player->left - 1 > player->at", "player->left > player->at"),
@@ -34,7 +35,7 @@ fn verdict(table: &Table, bench: &Bench) -> Result<(), String> {
 }
 
 #[test]
-fn in_the_player() {
+fn bugs_in_the_player_are_caught() {
     let table = table(Mode::Ctc);
     assert_eq!(verdict(&table, &Bench::of(&table)), Ok(()));
     let (file, text) = PLAYER[1];
@@ -49,9 +50,9 @@ fn in_the_player() {
 }
 
 #[test]
-fn in_the_table() {
+fn table_for_the_other_timer_mode_is_caught() {
     for (mode, other) in [(Mode::Ctc, Mode::FreeRunning), (Mode::FreeRunning, Mode::Ctc)] {
-        // A table for one mode on a timer in the other: every delay is off by one.
+        // A table for one mode on a timer in the other mode: every delay is off by one.
         let (right, wrong) = (table(mode), table(other));
         let header = wrong.header(&Options::new("ramp").unwrap());
         let ctc = |yes: bool| format!("#define RAMP_CTC {}\n", i32::from(yes));

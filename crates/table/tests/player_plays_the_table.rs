@@ -1,4 +1,5 @@
-//! The generated header and the player, in C on a simulated timer, give the formula's pulses.
+//! Tests that the generated header and the player, compiled from C and run on a simulated timer,
+//! emit the pulses of the formula.
 
 mod support;
 
@@ -7,7 +8,7 @@ use carrystep_table::{Timer, Width};
 use proptest::prelude::*;
 use support::{Bench, Move, ideal_delays, judge, lengths, source};
 
-/// Furthest that one rounded delay is from the formula's.
+/// The greatest difference of one rounded delay from that of the formula, counts.
 fn per_pulse(table: &Table) -> f64 {
     match table.request().kind {
         Kind::Avr446 { arithmetic: Arithmetic::Integer, .. } => 3.0,
@@ -38,18 +39,18 @@ fn check(table: &Table, extra: &[u32]) {
 }
 
 #[test]
-fn the_sources_table_in_both_modes() {
+fn source_table_is_played_exactly_in_both_modes() {
     for mode in [Mode::Ctc, Mode::FreeRunning] {
         let table = Table::new(source(mode, 1000, Pulses::One)).unwrap();
         check(&table, &[40_000]);
-        // Each delay is the rounded one, not merely near it.
+        // Each delay is the rounded one, and not only close to it.
         let rounded: Vec<u32> = ideal_delays(&table, 2500).iter().map(|c| c.round() as u32).collect();
         assert!(table.delays(2500).eq(rounded));
     }
 }
 
 #[test]
-fn pulses_by_group_and_by_time() {
+fn tables_by_group_and_by_time_are_played_exactly() {
     let bands = vec![5, 5, 10, 10, 20, 20, 30, 30, 40, 40];
     for pulses in [Pulses::ByGroup(bands), Pulses::ByTime(1e-3)] {
         for mode in [Mode::Ctc, Mode::FreeRunning] {
@@ -59,7 +60,7 @@ fn pulses_by_group_and_by_time() {
 }
 
 #[test]
-fn the_player_reads_nothing_outside_its_table() {
+fn player_reads_nothing_outside_its_table() {
     for pulses in [Pulses::One, Pulses::ByTime(1e-3), Pulses::ByGroup(vec![3, 1, 2])] {
         let table = Table::new(source(Mode::Ctc, 60, pulses)).unwrap();
         let moves: Vec<Move> = lengths(&table).into_iter().map(Move::of).collect();
@@ -69,13 +70,14 @@ fn the_player_reads_nothing_outside_its_table() {
 }
 
 #[test]
-fn a_stop_goes_down_the_ramp() {
+fn stop_follows_the_ramp_down() {
     let table = Table::new(source(Mode::Ctc, 100, Pulses::ByTime(1e-3))).unwrap();
     let ramp = u32::try_from(table.figures().ramp_pulses).unwrap();
     let stops = [1, 2, ramp / 2, ramp, ramp + 1, ramp + 50, 4 * ramp - 3, 4 * ramp];
     let moves: Vec<Move> = stops.iter().map(|&stop| Move { steps: 4 * ramp, stop: Some(stop) }).collect();
     for (stop, pulses) in stops.into_iter().zip(Bench::of(&table).play(0, &moves)) {
-        // The delay before pulse `stop` was the last of the way up: those under it follow, mirrored.
+        // The delay before pulse `stop` was the last one on the way up. The delays below it follow
+        // in reverse.
         let down = (stop - 1).min(ramp).min(4 * ramp - stop);
         let rising: Vec<u64> = pulses
             .iter()
@@ -91,7 +93,7 @@ fn a_stop_goes_down_the_ramp() {
 }
 
 #[test]
-fn an_8_bit_timer() {
+fn table_for_an_8_bit_timer_is_played_exactly() {
     for mode in [Mode::Ctc, Mode::FreeRunning] {
         let mut request = source(mode, 50, Pulses::One);
         request.timer = Timer { width: Width::Bits8, ..Timer::avr16(1_000_000, 8, mode) };
@@ -105,10 +107,10 @@ fn an_8_bit_timer() {
 }
 
 #[test]
-fn a_table_in_program_memory_is_read_through_pgm_read_word_only() {
+fn table_in_program_memory_is_read_with_pgm_read_word_only() {
     let table = Table::new(source(Mode::Ctc, 60, Pulses::ByTime(1e-3))).unwrap();
     let header = table.header(&Options::new("ramp").unwrap().program_memory(true));
-    // Every word in "program memory" is scrambled, and only pgm_read_word puts it right.
+    // Every word in "program memory" is scrambled, and only pgm_read_word restores it.
     let mut inside = false;
     let scrambled = header.lines().map(|line| {
         inside = (inside || line.contains("PROGMEM = {")) && !line.starts_with("};");
@@ -134,7 +136,7 @@ fn a_table_in_program_memory_is_read_through_pgm_read_word_only() {
 }
 
 #[test]
-fn a_header_that_does_not_belong_is_refused_by_the_compiler() {
+fn compiler_refuses_a_header_for_another_clock_or_memory() {
     let table = Table::new(source(Mode::Ctc, 20, Pulses::One)).unwrap();
     let options = || Options::new("ramp").unwrap();
     let words = |bench: Bench| bench.compile(&["timer_bench.c", "carrystep_player.c"]).unwrap_err();
@@ -146,11 +148,11 @@ fn a_header_that_does_not_belong_is_refused_by_the_compiler() {
     let plain = Bench::of(&table).flag("-DCARRYSTEP_PROGMEM");
     plain.write("avr/pgmspace.h", "#define pgm_read_word(word) (*(word))\n");
     assert!(words(plain).contains("compile all files without CARRYSTEP_PROGMEM"));
-    // A line lost from the array leaves a hole: C fills it with zeros without a word.
+    // A line lost from the array would leave a hole, which C fills with zeros without a message.
     let header = table.header(&options());
     let holed = header.replace("ramp_compare[20]", "ramp_compare[21]");
     assert!(words(Bench::new(&holed)).contains("ramp_check_length"));
-    // The bare array needs nothing else, in C and in C++.
+    // A header without the player needs no other file, in C and in C++.
     let bare = Bench::new(&table.header(&options().player(false)));
     bare.write(
         "bare.c",
@@ -186,7 +188,7 @@ fn requests() -> impl Strategy<Value = TableRequest> {
     })
 }
 
-/// The table, after taking whatever advice the errors give.
+/// The table of the request, after it was changed as the errors advise.
 fn advised(mut request: TableRequest) -> Option<Table> {
     for _ in 0..4 {
         match Table::new(request.clone()) {
@@ -213,7 +215,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_table_any_length(request in requests(), extra in prop::collection::vec(0_u32..3000, 6)) {
+    fn any_table_is_played_exactly_at_any_length(request in requests(), extra in prop::collection::vec(0_u32..3000, 6)) {
         if let Some(table) = advised(request) {
             check(&table, &extra);
         }

@@ -1,4 +1,4 @@
-//! What holds for every ramp, not only for the golden ones.
+//! Tests properties that hold for every ramp, not only for the golden ones.
 
 mod support;
 
@@ -11,9 +11,9 @@ use support::{Bench, run};
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// The bound that `IntegerRecurrence` states.
+    /// The bound that the documentation of `IntegerRecurrence` states.
     #[test]
-    fn integers_stay_with_floats(first in 1_u32..=65_536, quarters in prop_oneof![Just(0_u64), 0_u64..100_000]) {
+    fn integer_recurrence_stays_within_its_bound_of_the_float_recurrence(first in 1_u32..=65_536, quarters in prop_oneof![Just(0_u64), 0_u64..100_000]) {
         let floats = FloatRecurrence::new(f64::from(first), quarters as f64 / 4.0);
         for (n, (whole, float)) in IntegerRecurrence::new(first, quarters).zip(floats).take(20_000).enumerate() {
             let error = f64::from(whole) - float;
@@ -21,30 +21,32 @@ proptest! {
         }
     }
 
-    /// The recurrence, started right, keeps constant acceleration: 2.1 % at the second step, and always under 3 / 64 n^2.
+    /// With its own first delay, the recurrence keeps constant acceleration: the error is 2.1 % at
+    /// the second step and always below 3 / 64 n^2.
     #[test]
-    fn the_recurrence_keeps_its_acceleration(acceleration in 1.0..1e6, n in 1_u32..1_000_000) {
+    fn recurrence_keeps_constant_acceleration(acceleration in 1.0..1e6, n in 1_u32..1_000_000) {
         let ramp = ConstantAcceleration { timer: 1e6, acceleration };
         let n = f64::from(n);
         let error = ramp.delay(n) / ramp.exact_delay(n) - 1.0;
         prop_assert!(error.abs() <= 3.0 / (64.0 * n * n) + 1e-14, "{error} at {n}");
     }
 
-    /// A step's time, put back into the curve, is that step.
+    /// The time of a step, inserted into the curve, gives that step again.
     #[test]
-    fn crossings_invert_the_curve(start in prop_oneof![Just(0.0_f64), 0.0_f64..5000.0], rise in 1e-3_f64..1e5, steps in 1_u32..100_000, share in 0.0_f64..1.0) {
+    fn crossings_are_the_inverse_of_the_curve(start in prop_oneof![Just(0.0_f64), 0.0_f64..5000.0], rise in 1e-3_f64..1e5, steps in 1_u32..100_000, share in 0.0_f64..1.0) {
         let curve = Sine { start, top: start + rise, steps: f64::from(steps) };
         let n = (f64::from(steps) * share).ceil();
         let u = curve.crossing(n) / curve.time();
         let back = curve.time() * (start * u + rise * distance(u));
-        let slope = u * (start + rise * speed(u)) * curve.time(); // steps that one part of u is worth
+        // steps per unit of the relative error of u
+        let slope = u * (start + rise * speed(u)) * curve.time();
         prop_assert!((back - n).abs() <= 4.0 * f64::EPSILON * (slope + n), "{n} gives {back}");
         prop_assert!(n >= f64::from(steps) || curve.crossing(n) < curve.crossing(n + 1.0));
     }
 
-    /// Both arithmetics make one ramp, and it ends at the top speed.
+    /// Both arithmetics give one ramp, and it ends at the top speed.
     #[test]
-    fn avr446_ends_at_the_top(ramp_steps in 2_u32..2000, start in prop_oneof![Just(0.0), 10.0..400.0], top in 500.0..4000.0) {
+    fn avr446_ramp_ends_at_the_top_speed_in_both_arithmetics(ramp_steps in 2_u32..2000, start in prop_oneof![Just(0.0), 10.0..400.0], top in 500.0..4000.0) {
         let timer = Timer::avr16(2_000_000, 8, Mode::Ctc);
         let make = |arithmetic| Table::new(TableRequest {
             timer: timer.clone(),
@@ -60,17 +62,18 @@ proptest! {
         for (a, b) in float.compare().iter().zip(integer.compare()) {
             prop_assert!(a.abs_diff(*b) <= 3, "{a} {b}");
         }
-        // The last delay is the mean over the last step: half a step's acceleration under the top.
+        // The last delay is the mean over the last step, which is half a step's acceleration below
+        // the top speed.
         let last = 250_000.0 / float.ideal_delays()[ramp_steps as usize - 1];
         let expected = top * (1.0 - (top * top - start * start) / (top * top) / (4.0 * f64::from(ramp_steps)));
         prop_assert!((last / expected - 1.0).abs() < 0.5 / f64::from(ramp_steps), "{last} {expected}");
     }
 }
 
-/// The small inverse table, read in integers on the controller: within its own error, the rounding of its words
-/// and half a count of the curve.
+/// The controller reads the small inverse table in integers. Its ramp differs from the curve by at
+/// most the error of the table, the rounding of its words, and half a count.
 #[test]
-fn a_ramp_made_on_the_controller() {
+fn ramp_computed_on_the_controller_stays_within_its_error_bound() {
     let request = TableRequest {
         timer: Timer::avr16(16_000_000, 64, Mode::Ctc),
         motor: Motor { step_angle_deg: 1.8, microsteps: 8 },
@@ -99,7 +102,7 @@ fn a_ramp_made_on_the_controller() {
         }
         assert_eq!(sum, counts);
     }
-    // A first delay of 265 610 counts; more steps than counts; no steps.
+    // A first delay of 265 610 counts, more steps than counts, and no steps.
     for bad in [["1000", "2000000"], ["100", "50"], ["0", "1000"]] {
         assert_eq!(run(&program, &bad.map(str::to_owned)).unwrap(), "refused\n");
     }

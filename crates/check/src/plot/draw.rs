@@ -1,4 +1,6 @@
-//! The drawing itself: a panel for each axis, speed above, error below.
+//! Draws the plot: a panel for each axis, with the speed above and the error below.
+//!
+//! The look may change freely.
 
 use super::{Curves, Plot};
 use crate::error::TraceError;
@@ -10,7 +12,7 @@ use std::fmt::Display;
 
 type Area<'b> = DrawingArea<SVGBackend<'b>, Shift>;
 
-/// Size of a panel in pixels: one alone, and one of several.
+/// Size of a panel in pixels: of a single one, and of one among several.
 const ALONE: (u32, u32) = (960, 560);
 const PANEL: (u32, u32) = (560, 400);
 const HEAD: u32 = 64;
@@ -22,7 +24,7 @@ const SPEED: RGBColor = RGBColor(46, 134, 222);
 const ERROR: RGBColor = RGBColor(22, 150, 110);
 const BOUND: RGBColor = RGBColor(214, 69, 65);
 
-/// Points of the profile's line, beside its breakpoints.
+/// Number of points of the profile's line, without those at its breakpoints.
 const LINE: u32 = 600;
 
 fn failed(error: impl Display) -> TraceError {
@@ -81,7 +83,7 @@ fn heading(area: &Area<'_>, plot: &Plot<'_>, report: &Report) -> Result<(), Trac
     let right = label(18, colour).pos(Pos::new(HPos::Right, VPos::Top));
     let edge = area.dim_in_pixel().0 as i32 - 24;
     area.draw(&Text::new(verdict, (edge, 16), right)).map_err(failed)?;
-    // the legend, once for all panels
+    // The legend is drawn once for all panels.
     let y = 50;
     let dot = |x, colour: RGBColor| Circle::new((x, y), 3, colour.filled());
     let dash = |from, to, style: ShapeStyle| PathElement::new(vec![(from, y), (to, y)], style);
@@ -125,7 +127,7 @@ fn panel(
 fn summary(axis: &AxisReport) -> String {
     let pulses = format!("{} of {} pulses", axis.pulses_found, axis.pulses_expected);
     match (axis.error_min_ns, axis.error_max_ns) {
-        // adding zero makes minus zero plus
+        // Adding zero turns minus zero into plus zero.
         (Some(least), Some(greatest)) => {
             let [least, greatest] = [least, greatest].map(|ns| (ns * 10.0).round() / 10.0 + 0.0);
             format!("{pulses}, error {least:.1} to {greatest:.1} ns")
@@ -134,7 +136,7 @@ fn summary(axis: &AxisReport) -> String {
     }
 }
 
-/// Jitter and ripple, each of what is allowed.
+/// Jitter and ripple, each beside its allowed value.
 fn of_allowed(axis: &AxisReport) -> String {
     let of = |found: Option<f64>, most: f64| found.map_or("none".to_owned(), |x| format!("{x:.3} of {most:.3}"));
     let [jitter_most, ripple_most] = allowed(axis);
@@ -143,8 +145,9 @@ fn of_allowed(axis: &AxisReport) -> String {
     format!("jitter {jitter} ns, speed ripple {ripple} %")
 }
 
-/// The most jitter, ns, and ripple, percent, of edges within their bound: beside what the phase grid and the curvature
-/// allow, each of the two edges of a period may be off by the tolerance of a fit, one early and one late.
+/// The greatest jitter, ns, and ripple, percent, of edges within their bound. In addition to the
+/// phase grid and the curvature, a fit may shift both edges of a period by its tolerance, one early
+/// and one late.
 fn allowed(axis: &AxisReport) -> [f64; 2] {
     let jitter_ns = axis.period_jitter_theory_ns + 2.0 * axis.error_fit_ns;
     let phase_ns = axis.error_std_theory_ns * 12_f64.sqrt();
@@ -152,7 +155,7 @@ fn allowed(axis: &AxisReport) -> [f64; 2] {
     [jitter_ns, 100.0 * jitter_ns / (shortest_ns - jitter_ns).max(0.0)]
 }
 
-/// A range around all values, with room; never empty.
+/// A range around all values with some room; never empty.
 fn roomy(values: impl Iterator<Item = f64>, least_room: f64) -> (f64, f64) {
     let (low, high) = values.filter(|v| v.is_finite()).fold((0.0_f64, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
     let room = (0.08 * (high - low)).max(least_room);
@@ -232,7 +235,8 @@ fn error(
     Ok(())
 }
 
-/// The profile's speed: evenly spaced, and on both sides of each point where it bends or jumps.
+/// The speed of the profile: at even times, and on both sides of each point at which it bends or
+/// jumps.
 fn profile_line(plot: &Plot<'_>, curves: &Curves<'_>) -> Vec<(f64, f64)> {
     let end = plot.span_s / plot.tick_seconds;
     let even = (0..=LINE).map(|k| end * f64::from(k) / f64::from(LINE));
@@ -248,7 +252,7 @@ fn profile_line(plot: &Plot<'_>, curves: &Curves<'_>) -> Vec<(f64, f64)> {
     ticks.into_iter().map(|tick| (tick * plot.tick_seconds, curves.axis.timeline.speed_at(tick))).collect()
 }
 
-/// 12000 as 12 000; small numbers with what digits they need.
+/// Formats a number: 12000 as 12 000, and small numbers with as many digits as they need.
 fn thousands(value: f64) -> String {
     if value.abs() < 1000.0 {
         let rounded = (value * 100.0).round() / 100.0;

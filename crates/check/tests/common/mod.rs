@@ -1,5 +1,5 @@
 //! A machine with known profiles, and the pulse train that an ideal generator makes of them.
-#![allow(dead_code)] // each test binary uses its own part
+#![allow(dead_code)] // Each test binary uses a part of it.
 
 use carrystep_check::*;
 use carrystep_core::{Segment, StartPhase, Timebase};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 pub const ORIGIN_PS: i64 = 123_456_789;
 pub const NAMES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
-/// Width, gap, set-up, hold.
+/// Width, gap, set-up and hold, ns.
 pub const PINS_NS: [u64; 4] = [1000, 1000, 200, 200];
 pub const HIGH_PS: u64 = 1_041_667;
 
@@ -20,14 +20,15 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Out in 0.25 s and back in 0.25 s, each axis its own distance; axis i has 1000 / (i + 1) steps.
+    /// A move out in 0.25 s and back in 0.25 s, with a distance of 1000 / (i + 1) steps for axis i.
     pub fn there_and_back(axes: usize) -> Self {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         let timeline = |index: usize| {
             let steps = 1000 / (index as u64 + 1);
             let leg = |start_tick, backward, profile| Leg { start_tick, backward, steps, profile, fit_seconds: 0.0 };
             let out = Ramp::triangle(steps as f64, 0.25, 0.0, steps as f64 * 64.0);
-            // four times the distance in the time squared is the least; half as much again leaves a cruise
+            // The least acceleration is four times the distance divided by the time squared. Half
+            // as much again leaves time for a cruise.
             let acceleration = 6.0 * steps as f64 / 0.0625;
             let cruise = (0.0625 - 4.0 * steps as f64 / acceleration).sqrt();
             let top = 2.0 * steps as f64 / (0.25 + cruise);
@@ -39,7 +40,7 @@ impl Machine {
         Self { timebase, timelines: (0..axes).map(timeline).collect(), total_ticks: 500_000 }
     }
 
-    /// One axis at one speed: `steps` in a second.
+    /// One axis at constant speed: `steps` steps in one second.
     pub fn steady(steps: u64) -> Self {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         let profile = Arc::new(Constant::new(steps as f64, 1.0));
@@ -69,7 +70,8 @@ impl Machine {
         Setup { timebase, phase, axes: axes.collect(), lines, origin, slack_ps: 0 }
     }
 
-    /// The train of an ideal generator, rounding down to its grid: all axes, in time order.
+    /// The train of an ideal generator, which rounds down to its phase grid: all axes, in order of
+    /// time.
     pub fn train(&self) -> Vec<PinChange> {
         let mut all = Vec::new();
         for (index, timeline) in self.timelines.iter().enumerate() {
@@ -104,7 +106,7 @@ impl Machine {
         checker.finish()
     }
 
-    /// Segments of arbitrary content that fill the run: V is what they say, whatever the profile is.
+    /// Arbitrary segments that fill the run. V follows from them and is independent of the profile.
     pub fn segments(&self) -> Vec<(u64, Segment)> {
         let piece = self.total_ticks / 5;
         let segment = |k: u64| Segment {
@@ -166,19 +168,19 @@ pub fn play(train: &[PinChange], sink: &mut dyn PinSink) {
     sink.end(train.last().map_or(0, |change| change.ps) + 1_000_000).unwrap();
 }
 
-/// The place in the train of the `k`-th (from 1) rising STEP of an axis.
+/// The index in the train of the `k`-th rising edge of STEP of an axis, with k counted from 1.
 pub fn rise(train: &[PinChange], axis: u8, k: usize) -> usize {
     let rises = |c: &PinChange| c.axis == axis && c.pin == Pin::Step && c.level;
     (0..train.len()).filter(|&at| rises(&train[at])).nth(k - 1).unwrap()
 }
 
-/// The place of the falling STEP behind a rising one.
+/// The index of the falling edge of STEP after a rising one.
 pub fn fall(train: &[PinChange], rise: usize) -> usize {
     let axis = train[rise].axis;
     (rise..train.len()).find(|&at| train[at].axis == axis && train[at].pin == Pin::Step && !train[at].level).unwrap()
 }
 
-/// The place of the `k`-th change of DIR of an axis.
+/// The index of the `k`-th change of DIR of an axis, with k counted from 1.
 pub fn turn(train: &[PinChange], axis: u8, k: usize) -> usize {
     (0..train.len()).filter(|&at| train[at].axis == axis && train[at].pin == Pin::Dir).nth(k - 1).unwrap()
 }

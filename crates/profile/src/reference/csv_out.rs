@@ -1,4 +1,6 @@
-//! Profiles as CSV: one line a step.
+//! Writes profiles as CSV, one line per step.
+//!
+//! The names of the columns are part of the command's interface.
 
 use crate::reference::curve::Reference;
 use crate::reference::error::ReferenceError;
@@ -9,10 +11,10 @@ use thiserror::Error;
 /// Why a CSV cannot be written.
 #[derive(Debug, Error)]
 pub enum CsvError {
-    /// There is no such list.
+    /// A profile cannot be listed.
     #[error(transparent)]
     Reference(#[from] ReferenceError),
-    /// It cannot be written.
+    /// The writer fails.
     #[error("cannot write the CSV: {0}")]
     Write(#[from] io::Error),
 }
@@ -23,14 +25,16 @@ impl From<csv::Error> for CsvError {
     }
 }
 
-/// Writes all steps of all profiles, one after the other; with a clock delays in its counts too.
+/// Writes all steps of all profiles, one profile after the other. If the listing has a clock, each
+/// line also has the delay in counts of that clock.
 ///
-/// The numbers are the shortest that read back as the same double.
+/// Each number is the shortest decimal that reads back as the same double.
 ///
 /// # Errors
-/// A profile too long to list, a clock that is none, a writer that fails.
+/// [`CsvError::Reference`] if a profile has too many steps or the clock is out of range; nothing is
+/// written in that case. [`CsvError::Write`] if the writer fails.
 pub fn write_csv(out: impl Write, references: &[Reference], listing: &Listing) -> Result<(), CsvError> {
-    // Before the first byte: whether all can be listed.
+    // All profiles are checked before the first byte is written.
     references.iter().try_for_each(|reference| reference.rows(listing).map(|_| ()))?;
     let mut out = csv::Writer::from_writer(out);
     let counted = listing.clock_hz.map(|_| "delay_counts");

@@ -6,7 +6,7 @@ use crate::reference::row::{Listing, MOST_ROWS, Row};
 use crate::{Curve, Figures};
 use std::sync::Arc;
 
-/// A float profile and its kind.
+/// A float profile together with its kind.
 #[derive(Debug, Clone)]
 pub struct Reference {
     kind: Kind,
@@ -21,40 +21,42 @@ impl Reference {
         Self { kind, ramp, curve, figures }
     }
 
-    /// Its kind.
+    /// The kind of the profile.
     pub fn kind(&self) -> Kind {
         self.kind
     }
 
-    /// Whether it ends at speed, for a cruise to follow, rather than in rest.
+    /// Whether the profile is a ramp that ends at its top speed, and not a move that ends at rest.
     pub fn is_ramp(&self) -> bool {
         self.ramp
     }
 
-    /// The curve itself.
+    /// The curve of the profile.
     pub fn curve(&self) -> &dyn Curve<f64> {
         &*self.curve
     }
 
-    /// What a user has to know before trusting it.
+    /// The figures that a user needs to judge the profile.
     pub fn figures(&self) -> &Figures<f64> {
         &self.figures
     }
 
-    /// Steps in the list: a ramp that ends inside a step is listed to the end of that step.
+    /// Number of whole steps in the list. A ramp that ends inside a step is listed to the end of
+    /// that step.
     pub fn whole_steps(&self) -> f64 {
         let steps = self.figures.steps;
         let nearest = steps.round();
         if (steps - nearest).abs() <= 1e-9 * nearest { nearest } else { steps.ceil() }
     }
 
-    /// t_n, seconds. Beyond the end of a ramp at its end speed, as in the cruise that follows.
+    /// The time t_n at which step `n` is reached, seconds. Beyond the end of a ramp the end speed
+    /// continues, as in the cruise that follows.
     pub fn crossing(&self, n: f64) -> f64 {
         let beyond = n - self.figures.steps;
         if beyond <= 0.0 { self.curve.crossing(n) } else { self.figures.seconds + beyond / self.figures.end_speed }
     }
 
-    /// c_n = t_(n+1) - t_n, seconds, without the difference.
+    /// The delay c_n = t_(n+1) - t_n, seconds, computed without taking the difference.
     pub fn delay(&self, n: f64) -> f64 {
         let left = self.figures.steps - n;
         if left >= 1.0 {
@@ -65,10 +67,11 @@ impl Reference {
         inside + (1.0 - left.max(0.0)) / self.figures.end_speed
     }
 
-    /// All steps.
+    /// The rows of all steps.
     ///
     /// # Errors
-    /// More than [`MOST_ROWS`]; a clock that is none.
+    /// [`ReferenceError::TooLong`] for more than [`MOST_ROWS`] steps;
+    /// [`ReferenceError::OutOfRange`] for a clock that is not over 0 and at most 10^12 Hz.
     pub fn rows(&self, listing: &Listing) -> Result<impl Iterator<Item = Row> + '_, ReferenceError> {
         let steps = self.whole_steps();
         if steps > f64::from(MOST_ROWS) {

@@ -1,24 +1,26 @@
-//! From a motor's steps to degrees, turns and millimetres.
+//! Converts steps of a motor to degrees, turns and millimetres.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use crate::reference::error::ReferenceError;
 use crate::reference::quantity::Length;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// A motor, its driver, and what it moves. A step is always one microstep.
+/// A motor with its driver and the part that it moves. A step is always one microstep.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct Drive {
     /// Angle of a full step, degrees; over 0, at most 180.
     pub step_angle_deg: f64,
     /// Microsteps in a full step; 1 to 65 536.
     pub microsteps: u32,
-    /// Travel in one turn of the motor, millimetres, gears included; over 0.
+    /// Travel in one turn of the motor with all gears, millimetres; over 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub travel_per_rev_mm: Option<f64>,
 }
 
 impl Drive {
-    /// Steps in one degree: microsteps / angle.
+    /// Steps in one degree: microsteps / step angle.
     pub fn steps_per_degree(&self) -> f64 {
         f64::from(self.microsteps) / self.step_angle_deg
     }
@@ -28,10 +30,10 @@ impl Drive {
         360.0 * f64::from(self.microsteps) / self.step_angle_deg
     }
 
-    /// Steps in one of a unit.
+    /// Steps in one unit of length.
     ///
     /// # Errors
-    /// Millimetres without a travel per turn.
+    /// [`ReferenceError::NoTravel`] for millimetres if the drive has no travel per turn.
     pub fn steps_in(&self, length: Length) -> Result<f64, ReferenceError> {
         Ok(match length {
             Length::Step => 1.0,
@@ -57,9 +59,10 @@ impl Drive {
 mod tests {
     use super::*;
 
-    /// The examples of three sources: 400 steps a turn of 5 mm, 5/9 of a step a degree, 1600 steps a turn.
+    /// The examples of three sources: 400 steps for a turn of 5 mm, 5/9 of a step for a degree, and
+    /// 1600 steps for a turn.
     #[test]
-    fn the_sources_motors() {
+    fn drives_of_the_sources_have_their_steps_per_unit() {
         let sorn = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
         let steps = [Length::Step, Length::Degree, Length::Turn, Length::Millimetre].map(|unit| sorn.steps_in(unit));
         assert_eq!(steps, [Ok(1.0), Ok(2.0 / 1.8), Ok(400.0), Ok(80.0)]);
@@ -70,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_drive() {
+    fn drive_out_of_range_is_refused() {
         let good = Drive { step_angle_deg: 1.8, microsteps: 1, travel_per_rev_mm: None };
         assert_eq!(good.check(), Ok(()));
         for step_angle_deg in [0.0, -1.8, 180.1, f64::NAN, f64::INFINITY] {

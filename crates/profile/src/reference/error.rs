@@ -1,39 +1,41 @@
-//! Why there is no such profile, and the nearest that there is.
+//! The errors of this crate: why a profile does not exist, and the nearest one that does.
+//!
+//! The messages are part of the command's interface: transcripts in tests/ quote them.
 
 use crate::reference::kind::Kind;
 use crate::reference::row::MOST_ROWS;
 use crate::{BadRamp, Limit};
 use thiserror::Error;
 
-/// Why there is no such profile. Every message says what would do.
+/// Why there is no such profile. Every message names a value that works.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ReferenceError {
-    /// A number that means nothing where it stands.
+    /// A number is out of its range.
     #[error("{what} is {value}: it must be {must}")]
     OutOfRange {
-        /// Which one, in words.
+        /// The name of the number, in words.
         what: &'static str,
-        /// What it is.
+        /// Its value.
         value: f64,
-        /// What it must be, in words.
+        /// The permitted range, in words.
         must: &'static str,
     },
-    /// A length in millimetres, of a motor alone.
+    /// A length is in millimetres, but the drive has no travel per turn.
     #[error("millimetres need the travel per revolution of the motor; degrees, rpm and steps do without")]
     NoTravel,
-    /// Something that a kind cannot do without.
+    /// A kind lacks a value that it needs.
     #[error("{kind} needs {what}")]
     Missing {
         /// The kind.
         kind: Kind,
-        /// What it needs, and what would do.
+        /// The missing value and, if there is one, a suggestion.
         what: String,
     },
-    /// A ramp at one speed.
+    /// A ramp of constant speed was requested.
     #[error("constant has no ramp: it is for whole moves; give it a distance")]
     NoRamp,
-    /// No rise.
+    /// The top speed is not above the start speed.
     #[error(
         "the top speed of {top} steps/s is not over the start speed of {start}: a top speed over {start} \
          or a start speed under {top} steps/s would do"
@@ -44,60 +46,61 @@ pub enum ReferenceError {
         /// Top speed, steps/s.
         top: f64,
     },
-    /// A distance that ends between two steps.
+    /// A distance ends between two steps.
     #[error("{distance} {unit} is no whole number of steps: {below} or {above} {unit} would do")]
     NotWhole {
-        /// As it was given.
+        /// The distance as it was given.
         distance: f64,
-        /// The unit.
+        /// The unit of the distance.
         unit: String,
-        /// The greatest below that is whole.
+        /// The greatest whole number of steps below it, in the same unit.
         below: f64,
-        /// The least above that is whole.
+        /// The least whole number of steps above it, in the same unit.
         above: f64,
     },
-    /// The centre T_i fixes where a logistic ramp begins, and something else would too.
+    /// The centre T_i already fixes the start of a logistic ramp, and a second value contradicts
+    /// it.
     #[error("the centre T_i fixes a ramp together with its acceleration: {what} besides contradicts it; leave one out")]
     CentreAnd {
-        /// What else would.
+        /// The value that contradicts it.
         what: &'static str,
     },
-    /// A centre where no single logistic ramp is asked for.
+    /// A centre is given where no single logistic ramp is requested.
     #[error("the centre T_i is of a logistic ramp: {what}; leave it out")]
     CentreOf {
-        /// What is asked instead.
+        /// What is requested instead.
         what: &'static str,
     },
-    /// A limit that does not let a profile be done, or not in the time.
+    /// A limit does not allow the profile, or not in the given time.
     #[error("{kind} cannot be done with {limit} of {available} {unit}: {}", advice(limit, *wanted, unit, *least_time))]
     Refused {
         /// The kind.
         kind: Kind,
         /// The limit that fails, in words.
         limit: &'static str,
-        /// What it is.
+        /// The value of the limit, in `unit`.
         available: f64,
-        /// What would do; infinite where no finite value would.
+        /// The value that the profile needs, in `unit`; infinite where no finite value is enough.
         wanted: f64,
-        /// The unit of both.
+        /// The unit of both values.
         unit: String,
-        /// Least time that would do, seconds; `None` where no time would.
+        /// Least time that is long enough, seconds; `None` if no time is.
         least_time: Option<f64>,
     },
-    /// A ramp that contradicts itself.
+    /// The parameters of a ramp contradict each other.
     #[error("{kind} cannot be done: {bad}")]
     Bad {
         /// The kind.
         kind: Kind,
-        /// Why.
+        /// The contradiction.
         bad: BadRamp,
     },
-    /// Too much to list.
+    /// The profile has too many steps to be listed.
     #[error("{kind} has {steps} steps: a list holds at most {MOST_ROWS}; its figures and its plot can be had")]
     TooLong {
         /// The kind.
         kind: Kind,
-        /// Its steps.
+        /// Its number of steps.
         steps: f64,
     },
 }
@@ -113,12 +116,13 @@ fn advice(limit: &str, wanted: f64, unit: &str, least_time: Option<f64>) -> Stri
     }
 }
 
-/// Nine digits of a bound, rounded up: who takes them at their word is not refused again.
+/// Rounds a bound up to nine digits, so that a user who enters the printed value is not refused
+/// again.
 pub(crate) fn up(value: f64) -> f64 {
     rounded(value, 9, f64::ceil)
 }
 
-/// So many digits of a value.
+/// Rounds a value to a number of significant digits, with the given rounding function.
 pub(crate) fn rounded(value: f64, digits: i32, how: fn(f64) -> f64) -> f64 {
     let unit = digits - 1 - value.abs().log10().floor() as i32;
     let scaled = |unit: i32| {
@@ -131,7 +135,8 @@ pub(crate) fn rounded(value: f64, digits: i32, how: fn(f64) -> f64) -> f64 {
     if value.is_normal() && unit.abs() < 300 { scaled(unit) } else { value }
 }
 
-/// A limit in words; the command line has no keys of a machine file.
+/// The name of a limit in words and the power of seconds in its unit. The command line does not use
+/// the keys of the machine file.
 pub(crate) const fn in_words(limit: Limit) -> (&'static str, u32) {
     match limit {
         Limit::StartSpeed => ("a start speed", 1),

@@ -1,4 +1,6 @@
-//! The profiles by name.
+//! The kinds of profiles by name.
+//!
+//! The names are those of files and of the command line.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -9,26 +11,26 @@ use std::str::FromStr;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// One acceleration, from rest.
+    /// Constant acceleration from rest.
     Trapezoid,
-    /// One acceleration, from the start speed: Ranade's rule.
+    /// Constant acceleration from the start speed, by Ranade's rule.
     Ranade,
-    /// Seven segments: limits on acceleration and jerk.
+    /// Seven segments with limits on acceleration and jerk.
     Scurve,
-    /// Acceleration as 1 - cos.
+    /// An acceleration that follows 1 - cos over time.
     Sine,
-    /// The logistic S-curve of Sorn.
+    /// The logistic S-curve of M. Sorn (2019).
     Logistic,
-    /// One speed from end to end.
+    /// Constant speed from start to end.
     Constant,
 }
 
 impl Kind {
-    /// All of them.
+    /// All kinds, in the order in which they are listed.
     pub const ALL: [Self; 6] =
         [Self::Trapezoid, Self::Ranade, Self::Scurve, Self::Sine, Self::Logistic, Self::Constant];
 
-    /// Its name in files and on the command line.
+    /// The name of the kind in files and on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Trapezoid => "trapezoid",

@@ -1,4 +1,7 @@
-//! Speed, acceleration, jerk and delay of several profiles against time, as an SVG.
+//! Draws speed, acceleration, jerk and delay of several profiles against time, as an SVG.
+//!
+//! This file holds the page and its styles; `picture/panel.rs` draws the four panels, and
+//! `picture/sampled.rs` computes the points. The look may change freely.
 
 use crate::reference::curve::Reference;
 use crate::reference::kind::Kind;
@@ -16,7 +19,8 @@ mod sampled;
 
 type Area<'b> = DrawingArea<SVGBackend<'b>, Shift>;
 
-/// Pixels; the drawing library knows whole ones only, so all is drawn so many times as large.
+/// Width and height of the picture, pixels. The drawing library accepts whole pixels only;
+/// everything is therefore drawn larger by the factor `FINE`.
 const SIZE: (u32, u32) = (1180, 860);
 const FINE: u32 = 5;
 const HEAD: u32 = 74;
@@ -25,21 +29,21 @@ const INK: RGBColor = RGBColor(38, 44, 52);
 const GREY: RGBColor = RGBColor(110, 118, 128);
 const GRID: RGBColor = RGBColor(228, 231, 235);
 
-/// The unit that speeds, accelerations and jerks are drawn in.
+/// The unit in which speeds, accelerations and jerks are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// Its name.
+    /// The unit of length.
     pub unit: Length,
-    /// Steps in one.
+    /// Steps in one unit.
     pub steps: f64,
 }
 
 impl Scale {
-    /// In steps.
+    /// The scale that draws in steps.
     pub const STEPS: Self = Self { unit: Length::Step, steps: 1.0 };
 }
 
-/// The drawing library failed.
+/// The error of a drawing library that fails.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("cannot draw the plot: {0}")]
 pub struct PictureError(String);
@@ -48,10 +52,10 @@ fn failed(error: impl Display) -> PictureError {
     PictureError(error.to_string())
 }
 
-/// Draws the profiles in one picture.
+/// Draws the profiles in one picture and returns the SVG text.
 ///
 /// # Errors
-/// The drawing library fails.
+/// A [`PictureError`] if the drawing library fails.
 pub fn picture(references: &[Reference], scale: Scale) -> Result<String, PictureError> {
     let span = references.iter().map(|r| r.figures().seconds).fold(0.0, f64::max);
     let sampled: Vec<Sampled> = references.iter().map(|r| Sampled::new(r, span, scale.steps)).collect();
@@ -72,24 +76,24 @@ pub fn picture(references: &[Reference], scale: Scale) -> Result<String, Picture
     Ok(shown_small(&text))
 }
 
-/// The drawing at its real size.
+/// Replaces the size of the drawing by the size of the picture.
 fn shown_small(text: &str) -> String {
     let ((width, height), size) = (SIZE, |pixels: u32| pixels * FINE);
     let drawn = format!("width=\"{}\" height=\"{}\"", size(width), size(height));
     text.replacen(&drawn, &format!("width=\"{width}\" height=\"{height}\""), 1)
 }
 
-/// Pixels of the picture in those of the drawing.
+/// Converts pixels of the picture to pixels of the drawing.
 fn px(pixels: i32) -> i32 {
     pixels * FINE.cast_signed()
 }
 
-/// A line of `tenths` of a pixel.
+/// The style of a line of `tenths` tenths of a pixel.
 fn stroke(colour: impl Into<ShapeStyle>, tenths: u32) -> ShapeStyle {
     colour.into().stroke_width(tenths * FINE / 10)
 }
 
-/// What they have in common.
+/// The title: the distance or speed and the greatest acceleration of all profiles.
 fn title(references: &[Reference], scale: Scale) -> String {
     let unit = scale.unit.name();
     let several = if references.len() == 1 { "" } else { "s" };
@@ -103,7 +107,7 @@ fn title(references: &[Reference], scale: Scale) -> String {
     format!("Move{several} of {distance} {unit}, at most {acceleration} {unit}/s\u{b2}")
 }
 
-/// Title, then the names in their colours.
+/// Draws the title, and below it the names of the profiles in their colours.
 fn heading(area: &Area<'_>, title: &str, sampled: &[Sampled]) -> Result<(), PictureError> {
     area.draw(&Text::new(title.to_owned(), (px(28), px(14)), label(21, INK))).map_err(failed)?;
     for (index, curve) in (0..).zip(sampled) {
@@ -115,17 +119,18 @@ fn heading(area: &Area<'_>, title: &str, sampled: &[Sampled]) -> Result<(), Pict
     Ok(())
 }
 
-/// Text of `size` pixels.
+/// The style of a text of `size` pixels.
 fn label(size: u32, colour: RGBColor) -> TextStyle<'static> {
     (FONT, size * FINE).into_font().color(&colour)
 }
 
-/// That ends at its place.
+/// The style of a text that ends at its position.
 fn right_label(size: u32, colour: RGBColor) -> TextStyle<'static> {
     label(size, colour).pos(Pos::new(HPos::Right, VPos::Top))
 }
 
-/// Colours that differ for every eye (Okabe and Ito).
+/// The colour of a kind. The colours can be distinguished with every kind of colour vision (Okabe
+/// and Ito).
 fn colour(kind: Kind) -> RGBColor {
     match kind {
         Kind::Trapezoid => RGBColor(213, 94, 0),
@@ -154,7 +159,8 @@ impl Clock {
     }
 }
 
-/// 12000 as 12 000; millions and over as 1.5e6; small numbers with what digits they need.
+/// Formats a number: 12000 as 12 000, numbers from 10^6 on as 1.5e6, and small numbers with as many
+/// digits as they need.
 fn number(value: f64) -> String {
     let size = value.abs();
     if size >= 1e6 {

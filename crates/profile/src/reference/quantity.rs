@@ -1,23 +1,25 @@
-//! A distance, speed, acceleration or jerk in the unit that it was given in.
+//! Distances, speeds, accelerations and jerks in the unit in which the user gave them.
+//!
+//! Everything that the profiles compute is in steps and seconds; this file holds the conversions.
 
 use crate::reference::drive::Drive;
 use crate::reference::error::ReferenceError;
 
-/// What distances are measured in.
+/// The unit of a distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Length {
-    /// A step of the motor: one microstep.
+    /// A step of the motor, which is one microstep.
     Step,
-    /// A degree of its shaft.
+    /// A degree of the motor's shaft.
     Degree,
-    /// A turn of its shaft.
+    /// A turn of the motor's shaft.
     Turn,
-    /// A millimetre of what it moves.
+    /// A millimetre of the part that the motor moves.
     Millimetre,
 }
 
 impl Length {
-    /// As it is written after a number.
+    /// The name of the unit as it is written after a number.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Step => "steps",
@@ -28,8 +30,8 @@ impl Length {
     }
 }
 
-/// A value in its own unit: a length, over seconds to whatever power it has where it is used, or over
-/// one minute.
+/// A value in its own unit: a length over a power of seconds, or over one minute. The power
+/// depends on the use and is 0 to 3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
     value: f64,
@@ -43,13 +45,13 @@ impl Quantity {
         Self { value, length, per_minute: false }
     }
 
-    /// The same number as a speed in minutes: mm/min, turns a minute (rpm).
+    /// The same number as a speed per minute: mm/min, or turns per minute (rpm).
     #[must_use]
     pub const fn per_minute(self) -> Self {
         Self { per_minute: true, ..self }
     }
 
-    /// The number.
+    /// The number in its own unit.
     pub const fn value(&self) -> f64 {
         self.value
     }
@@ -59,7 +61,8 @@ impl Quantity {
         self.length
     }
 
-    /// Its unit, for a distance (0), a speed (1), an acceleration (2) or a jerk (3).
+    /// The name of the unit for a distance (`power` 0), a speed (1), an acceleration (2) or a jerk
+    /// (3).
     pub fn unit(&self, power: u32) -> String {
         match (power, self.per_minute, self.length) {
             (_, true, Length::Turn) => "rpm".to_owned(),
@@ -70,18 +73,20 @@ impl Quantity {
         }
     }
 
-    /// So many steps in the same unit.
+    /// Converts a number of steps (per power of seconds) to this unit.
     ///
     /// # Errors
-    /// Millimetres without a travel per turn.
+    /// [`ReferenceError::NoTravel`] if the unit is in millimetres and the drive has no travel per
+    /// turn.
     pub fn back(&self, steps: f64, drive: &Drive) -> Result<f64, ReferenceError> {
         Ok(steps / Self { value: 1.0, ..*self }.in_steps(drive)?)
     }
 
-    /// In steps and seconds.
+    /// The value in steps and seconds.
     ///
     /// # Errors
-    /// Millimetres without a travel per turn.
+    /// [`ReferenceError::NoTravel`] if the unit is in millimetres and the drive has no travel per
+    /// turn.
     pub fn in_steps(&self, drive: &Drive) -> Result<f64, ReferenceError> {
         let steps = self.value * drive.steps_in(self.length)?;
         Ok(if self.per_minute { steps / 60.0 } else { steps })
@@ -94,9 +99,9 @@ mod tests {
 
     const SORN: Drive = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
 
-    /// 1000 mm/min is 16.7 mm/s, 200 rpm, 1200 degrees/s: all 1333.3 steps/s.
+    /// 1000 mm/min is 16.7 mm/s, 200 rpm or 1200 degrees/s; each is 1333.3 steps/s.
     #[test]
-    fn one_speed_in_five_units() {
+    fn one_speed_in_five_units_has_one_value_in_steps() {
         let speeds = [
             Quantity::new(1000.0, Length::Millimetre).per_minute(),
             Quantity::new(1000.0 / 60.0, Length::Millimetre),
@@ -117,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn millimetres_need_a_travel() {
+    fn millimetres_without_a_travel_are_refused() {
         let motor = Drive { travel_per_rev_mm: None, ..SORN };
         assert_eq!(Quantity::new(1.0, Length::Millimetre).in_steps(&motor), Err(ReferenceError::NoTravel));
         assert_eq!(Quantity::new(1.0, Length::Turn).in_steps(&motor), Ok(400.0));

@@ -1,4 +1,6 @@
-//! What is asked for, checked and in steps.
+//! The request of a user, which is checked and converted to steps here.
+//!
+//! A new kind of profile is added to `ramp` and `whole` in this file.
 
 use crate::reference::curve::Reference;
 use crate::reference::drive::Drive;
@@ -10,43 +12,44 @@ use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-/// Most steps in a move: doubles count them one by one.
+/// The greatest number of steps in a move: up to 2^53 a double represents every whole number.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
 
-/// Speeds, accelerations, jerks and times that mean something; none of the formulas leaves the doubles.
+/// The permitted range of speeds, accelerations, jerks and times, in steps and seconds. Within it
+/// no formula overflows a double.
 const VALUES: RangeInclusive<f64> = 1e-9..=1e15;
 
-/// A profile, but for its kind.
+/// The request for a profile, without its kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     /// The motor.
     pub drive: Drive,
-    /// A ramp, or a whole move.
+    /// Whether a ramp or a whole move is requested.
     pub travel: Travel,
-    /// Length of it, seconds; absent: as fast as the limits allow.
+    /// Duration of the profile, seconds; `None`: as fast as the limits allow.
     pub time: Option<f64>,
-    /// Of a ramp: the speed that it goes to. Of a move: the speed limit.
+    /// For a ramp the speed that it reaches, for a move the speed limit.
     pub speed: Option<Quantity>,
-    /// Speed that the motor takes from rest; absent: 0.
+    /// The greatest speed to which the motor may jump from rest; `None`: 0.
     pub start_speed: Option<Quantity>,
-    /// Acceleration limit.
+    /// The acceleration limit.
     pub acceleration: Option<Quantity>,
-    /// Jerk limit.
+    /// The jerk limit.
     pub jerk: Option<Quantity>,
-    /// T_i of a logistic ramp, seconds.
+    /// The centre T_i of a logistic ramp, seconds.
     pub centre: Option<f64>,
 }
 
-/// How far a profile goes.
+/// The distance of a profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Travel {
-    /// To its top speed.
+    /// A ramp, which ends at its top speed.
     Ramp,
-    /// This far, and back to rest.
+    /// A move over this distance, which ends at rest.
     Move(Quantity),
 }
 
-/// The same in steps.
+/// The values of a request in steps and seconds.
 #[derive(Debug, Clone, Copy)]
 struct Steps {
     distance: Option<f64>,
@@ -55,7 +58,7 @@ struct Steps {
 }
 
 impl Request {
-    /// Nothing asked yet, but how far.
+    /// A request without any limits.
     pub const fn new(drive: Drive, travel: Travel) -> Self {
         let (time, centre) = (None, None);
         Self { drive, travel, time, speed: None, start_speed: None, acceleration: None, jerk: None, centre }
@@ -64,7 +67,7 @@ impl Request {
     /// The profiles of several kinds.
     ///
     /// # Errors
-    /// [`ReferenceError`] says what cannot be, of which kind, and what could.
+    /// A [`ReferenceError`] names the kind, what is wrong, and a value that works.
     pub fn references(&self, kinds: &[Kind]) -> Result<Vec<Reference>, ReferenceError> {
         if self.centre.is_some() && !kinds.contains(&Kind::Logistic) {
             return Err(ReferenceError::CentreOf { what: "none is asked for" });
@@ -75,7 +78,7 @@ impl Request {
     /// The profile of one kind.
     ///
     /// # Errors
-    /// [`ReferenceError`] says what cannot be, and what could.
+    /// A [`ReferenceError`] names what is wrong and a value that works.
     pub fn reference(&self, kind: Kind) -> Result<Reference, ReferenceError> {
         let steps = self.in_steps()?;
         let curve = match steps.distance {
@@ -117,7 +120,7 @@ impl Request {
         Ok(Steps { distance, top, limits: Limits { start_speed, speed, acceleration, jerk } })
     }
 
-    /// A distance in whole steps: only the rounding of its unit is taken away.
+    /// Converts a distance to whole steps. Only the rounding of its unit is removed.
     fn whole_steps(&self, distance: &Quantity) -> Result<f64, ReferenceError> {
         let steps = distance.in_steps(&self.drive)?;
         let nearest = steps.round();
@@ -201,7 +204,7 @@ impl Request {
         whole.map_err(refused)
     }
 
-    /// In the unit in which the limit was given.
+    /// Converts a refusal to the unit in which the user gave the limit.
     fn refused(&self, kind: Kind, refusal: Refusal) -> ReferenceError {
         let Refusal { limit, wanted, available, least_time } = refusal;
         let stated = match limit {
@@ -217,7 +220,8 @@ impl Request {
         ReferenceError::Refused { kind, limit, available, wanted, unit, least_time: least_time.map(up) }
     }
 
-    /// What to say to who has no jerk limit: that of the sine of the same speed and acceleration.
+    /// The advice to a user who gave no jerk limit: the jerk of the sine with the same speed and
+    /// acceleration.
     fn jerk_advice(&self, top: f64, limits: &Limits<f64>) -> String {
         let acceleration = self.time.map_or(limits.acceleration, |time| limits.acceleration.min(2.0 * top / time));
         if acceleration.is_infinite() {

@@ -1,27 +1,30 @@
-//! One step of a list, and what is listed.
+//! The rows of a list, and the choice of what is listed.
+//!
+//! The names of the fields are part of `--json` and may not change.
 
 use carrystep_core::StartPhase;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Most steps in a list.
+/// The greatest number of rows in a list.
 pub const MOST_ROWS: u32 = 1_000_000;
 
 /// What is listed of a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Listing {
-    /// Where in a step a pulse is: `Zero` lists t_0, t_1 ... as the sources do, `Half` the middles of the steps, as
-    /// the gateware emits them by default.
+    /// The position of a pulse in its step. `Zero` lists t_0, t_1 and so on, as the sources do;
+    /// `Half` lists the middles of the steps, at which the gateware emits the pulses by default.
     pub phase: StartPhase,
-    /// A timer's clock, Hz: delays in its counts too.
+    /// Frequency of a timer's clock, Hz. If it is given, delays are also listed in counts of this
+    /// clock.
     pub clock_hz: Option<f64>,
 }
 
 impl Listing {
-    /// As the sources list: t_0 = 0, t_1 ...
+    /// The listing of the sources, which begins with t_0 = 0.
     pub const SOURCES: Self = Self { phase: StartPhase::Zero, clock_hz: None };
 
-    /// Number of the first step, and how far before its end its pulse is.
+    /// The number of the first step, and the distance in steps from its pulse to its end.
     pub(crate) const fn first(&self) -> (u32, f64) {
         match self.phase {
             StartPhase::Zero => (0, 0.0),
@@ -30,18 +33,19 @@ impl Listing {
     }
 }
 
-/// Step n: when it is reached, how fast it is passed, and how long the next one takes.
+/// One step n: the time at which it is reached, the speed there, and the delay until the next step.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct Row {
-    /// n, from 0; from 1 where pulses are in the middle of their step.
+    /// The number n of the step, counted from 0, or from 1 if pulses are in the middle of their
+    /// steps.
     pub step: u32,
-    /// t_n, seconds.
+    /// The time t_n, seconds.
     pub time_s: f64,
     /// Speed at t_n, steps/s.
     pub speed_steps_per_s: f64,
-    /// c_n = t_(n+1) - t_n, seconds; none after the last step.
+    /// The delay c_n = t_(n+1) - t_n, seconds; absent after the last step.
     pub delay_s: Option<f64>,
-    /// c_n in counts of a timer, rounded to the nearest, where a clock was given.
+    /// The delay c_n in counts of the timer, rounded to the nearest, if a clock was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delay_counts: Option<u64>,
 }

@@ -1,10 +1,10 @@
-//! Sorn 2019: `logistic.json`.
+//! Tests the logistic S-curve (M. Sorn, 2019) against the golden numbers of `logistic.json`.
 
 use crate::{Golden, TIGHT};
 use carrystep_profile::{Curve, LogisticRamp, Profile, SHORTFALL, ScurveRamp};
 use std::f64::consts::PI;
 
-/// The example of the source, in its own terms.
+/// The example of the source, in the units of the source.
 struct Source {
     golden: Golden,
     /// Angle of a step, rad.
@@ -13,7 +13,7 @@ struct Source {
     omega: f64,
     /// Acceleration, rad/s^2.
     a: f64,
-    /// Centre, seconds.
+    /// Centre T_i, seconds.
     centre: f64,
 }
 
@@ -47,7 +47,7 @@ impl Source {
 }
 
 #[test]
-fn the_units_of_the_source() {
+fn converted_units_equal_those_of_the_source() {
     let source = Source::read();
     source.check("/alpha_rad", source.alpha);
     source.check("/omega_rad_s", source.omega);
@@ -56,9 +56,9 @@ fn the_units_of_the_source() {
     source.check("/a_steps_s2", source.a / source.alpha);
 }
 
-/// Figure 4 of the source draws the constant-acceleration ramp beside the curve.
+/// Figure 4 of the source draws the ramp of constant acceleration beside the curve.
 #[test]
-fn the_trapezoid_beside_it() {
+fn constant_acceleration_ramp_equals_figure_4() {
     let source = Source::read();
     let (v, a) = (source.number("/v_steps_s"), source.number("/a_steps_s2"));
     let ramp = ScurveRamp::new(0.0, v, a, f64::INFINITY).unwrap();
@@ -67,7 +67,8 @@ fn the_trapezoid_beside_it() {
     source.check("/trap/c0", ramp.delay(0.0));
     source.check("/trap/c1", ramp.delay(1.0));
     source.check("/trap/c2", ramp.delay(2.0));
-    // The source rounds the 138.9 steps of its ramp up; the last then ends past the top speed.
+    // The source rounds the 138.9 steps of its ramp up, so that the last step ends above the top
+    // speed.
     let n = source.number("/trap/n");
     assert_eq!(n, ramp.distance().ceil());
     let longer = ScurveRamp::new(0.0, (2.0 * a * n).sqrt(), a, f64::INFINITY).unwrap();
@@ -78,7 +79,7 @@ fn the_trapezoid_beside_it() {
 }
 
 #[test]
-fn start_and_end_of_the_curve() {
+fn start_and_end_of_the_ramp_equal_the_golden_numbers() {
     let source = Source::read();
     let ramp = source.ramp(0.995);
     let k = ramp.steepness();
@@ -100,9 +101,9 @@ fn start_and_end_of_the_curve() {
     assert_eq!(text.distance().round(), source.number("/sigmoid/text_1.005/n_rounded"));
 }
 
-/// Eq. 5 as printed: ln(1.005 w - 1), with the number of a speed in rad/s for a ratio.
+/// Eq. 5 is printed as ln(1.005 w - 1), with the value of a speed in rad/s in place of a ratio.
 #[test]
-fn the_printed_end_is_wrong() {
+fn equation_5_as_printed_ends_at_the_wrong_speed() {
     let source = Source::read();
     let q = 1.005 * source.omega - 1.0;
     let fraction = 1.0 / (1.0 + q);
@@ -116,9 +117,10 @@ fn the_printed_end_is_wrong() {
 }
 
 #[test]
-fn step_times_and_delays() {
+fn step_times_and_delays_equal_the_golden_numbers() {
     let source = Source::read();
-    // The listing rounds the ramp of 367.9 steps to 368: the last ends a little later than 99.5 %.
+    // The listing rounds the ramp of 367.9 steps to 368, so that the last step ends a little above
+    // 99.5 %.
     let ramp = source.ramp(0.9951);
     source.check("/sigmoid/profile_code/c0", ramp.delay(0.0));
     source.check("/sigmoid/profile_code/c1", ramp.delay(1.0));
@@ -129,7 +131,7 @@ fn step_times_and_delays() {
     source.check("/sigmoid/profile_code/c_total_s", end);
     source.check("/sigmoid/profile_code/omega_at_c_total_over_omega", ramp.speed(end) / ramp.asymptote());
     source.check("/sigmoid/profile_code/theta_check_quad_steps", ramp.position(end));
-    // What the listing itself prints, in doubles.
+    // The values that the listing itself prints, in doubles.
     source.golden.check("/seed_code_in_double/1000/sig_c0", ramp.delay(0.0), TIGHT);
     source.golden.check("/seed_code_in_double/1000/sig_clast", ramp.delay(n - 1.0), TIGHT);
     source.golden.check("/seed_code_in_double/1000/sig_total", end, TIGHT);
@@ -137,7 +139,7 @@ fn step_times_and_delays() {
 }
 
 #[test]
-fn the_symmetric_ramp() {
+fn symmetric_ramp_has_equal_shortfalls_at_both_ends() {
     let source = Source::read();
     let ramp = LogisticRamp::symmetric(source.number("/v_steps_s"), source.number("/a_steps_s2")).unwrap();
     source.check("/sigmoid/T_i_symmetric_0.5pct", ramp.centre());
@@ -148,9 +150,9 @@ fn the_symmetric_ramp() {
     assert!((1.0 - figures.end_speed / w - SHORTFALL).abs() < 1e-15, "{figures:?}");
 }
 
-/// Under 10.82 mm/min the e^(k T_i) of the source is over the greatest double.
+/// Below 10.82 mm/min the term e^(k T_i) of the source exceeds the greatest double.
 #[test]
-fn no_overflow_at_slow_speeds() {
+fn slow_ramps_do_not_overflow() {
     let source = Source::read();
     let least = 4.0 * source.a * source.centre / f64::MAX.ln();
     source.golden.check("/double_overflow/omega_min_rad_s", least, TIGHT);
@@ -158,7 +160,8 @@ fn no_overflow_at_slow_speeds() {
     for slower in [1.0, 0.99, 0.1, 1e-3, 1e-6] {
         let w = slower * least / source.alpha;
         let ramp = LogisticRamp::new(w, source.a / source.alpha, source.centre, SHORTFALL).unwrap();
-        // A relative error e of T_i is an error e k T_i of the distance so far; k T_i is 710 and over here.
+        // A relative error e of T_i is a relative error e k T_i of the distance travelled so far; k
+        // T_i is 710 or more here.
         let tolerance = 4.0 * f64::EPSILON * ramp.steepness() * ramp.centre();
         for part in [1e-3, 0.5, 0.999] {
             let n = part * ramp.distance();

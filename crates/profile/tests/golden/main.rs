@@ -1,4 +1,5 @@
-//! The golden numbers of the literature (`tests/golden/*.json`, 20 digits), to 1e-12 and better.
+//! Tests the profiles against the golden numbers of the literature (`tests/golden/*.json`, 20
+//! digits), with a relative tolerance of 10^-12 unless a test says otherwise.
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
 
@@ -8,7 +9,7 @@ mod trapezoid;
 
 use serde_json::Value;
 
-/// What one f64 computation of a few operations may lose.
+/// The relative error that a few operations in f64 may accumulate.
 const TIGHT: f64 = 1e-12;
 
 /// One file of golden numbers.
@@ -21,13 +22,13 @@ impl Golden {
         Self(serde_json::from_str(&text).unwrap())
     }
 
-    /// The number at a JSON pointer, written as a number or as a string.
+    /// The number at a JSON pointer. The file may contain it as a number or as a string.
     fn number(&self, pointer: &str) -> f64 {
         let value = self.0.pointer(pointer).unwrap_or_else(|| panic!("no {pointer}"));
         value.as_f64().unwrap_or_else(|| value.as_str().unwrap().parse().unwrap())
     }
 
-    /// `actual` is the number at `pointer`, to a relative `tolerance`.
+    /// Asserts that `actual` is the number at `pointer`, within a relative `tolerance`.
     #[track_caller]
     fn check(&self, pointer: &str, actual: f64, tolerance: f64) {
         let golden = self.number(pointer);

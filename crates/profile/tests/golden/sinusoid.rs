@@ -1,4 +1,4 @@
-//! The sinusoidal S-curve: `sinusoid.json`.
+//! Tests the sinusoidal S-curve against the golden numbers of `sinusoid.json`.
 
 use crate::{Golden, TIGHT};
 use carrystep_profile::{Curve, Profile, ScurveRamp, SineRamp};
@@ -11,7 +11,7 @@ fn example() -> (Golden, SineRamp<f64>) {
 }
 
 #[test]
-fn figures_of_the_ramp() {
+fn ramp_figures_equal_the_golden_numbers() {
     let (golden, ramp) = example();
     golden.check("/example/N_ramp_steps", ramp.distance(), TIGHT);
     golden.check("/example/peak_accel", ramp.peak_acceleration(), TIGHT);
@@ -25,7 +25,7 @@ fn figures_of_the_ramp() {
 }
 
 #[test]
-fn step_times_and_delays() {
+fn step_times_and_delays_equal_the_golden_numbers() {
     let (golden, ramp) = example();
     for n in [1, 2, 10, 500, 1000] {
         let t = ramp.crossing(f64::from(n));
@@ -39,9 +39,10 @@ fn step_times_and_delays() {
     golden.check("/small_u/value", (3.0 / (PI * PI * ramp.distance())).powf(0.25), TIGHT);
 }
 
-/// A trapezoid ramp of the same time and steps has half the peak acceleration, and its first step 4 times as early.
+/// A trapezoid ramp of the same duration and steps has half the peak acceleration, and its first
+/// step comes four times as early.
 #[test]
-fn the_trapezoid_of_the_same_time() {
+fn trapezoid_of_the_same_duration_steps_earlier() {
     let (golden, ramp) = example();
     let mean = ramp.top_speed() / ramp.duration();
     let trapezoid = ScurveRamp::new(0.0, ramp.top_speed(), mean, f64::INFINITY).unwrap();
@@ -49,9 +50,10 @@ fn the_trapezoid_of_the_same_time() {
     golden.check("/trapezoid_same_duration_t1_s", trapezoid.crossing(1.0), TIGHT);
 }
 
-/// The source puts step n where f(x) = x^2/2 + cos x - 1 = 2 pi n / N; f runs to 2 pi^2, not to 2 pi.
+/// The source puts step n where f(x) = x^2/2 + cos x - 1 equals 2 pi n / N. But f runs to 2 pi^2
+/// and not to 2 pi, so that its ramp ends early.
 #[test]
-fn the_printed_step_is_wrong() {
+fn step_formula_as_printed_ends_before_the_top_speed() {
     let (golden, ramp) = example();
     golden.check("/normalised/f(2pi)", 2.0 * PI * PI, TIGHT);
     golden.check("/normalised/2pi^2", 2.0 * PI * PI, TIGHT);
@@ -76,7 +78,7 @@ impl<'a> Table<'a> {
         Self { ramp, root, entries }
     }
 
-    /// How wrong its u is at position `x`.
+    /// The error of the table's u at position `x`.
     fn error(&self, x: f64) -> f64 {
         let last = self.entries.len() - 1;
         let at = (x / self.ramp.distance()).powf(f64::from(self.root).recip()) * last as f64;
@@ -85,16 +87,17 @@ impl<'a> Table<'a> {
         (low + (high - low) * (at - left as f64) - self.ramp.crossing(x) / self.ramp.duration()).abs()
     }
 
-    /// Its greatest error at the steps of the ramp, and the step.
+    /// The greatest error of the table at the steps of the ramp, and the number of that step.
     fn worst_step(&self) -> (f64, usize) {
         let steps = 1..=self.ramp.distance() as usize;
         steps.map(|n| (self.error(n as f64), n)).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
     }
 }
 
-/// The golden numbers of this test have 16 digits, and an error of 1e-7 is a difference of numbers near 1.
+/// The golden numbers of this test have 16 digits, and an error of 10^-7 is the difference of two
+/// numbers near 1, so that the tolerance is 10^-9.
 #[test]
-fn the_small_table_is_wrong_near_rest() {
+fn interpolation_error_of_a_small_table_equals_the_golden_numbers() {
     let (golden, ramp) = example();
     let milli = 1e3 * ramp.duration();
     for entries in [64, 256, 1024] {

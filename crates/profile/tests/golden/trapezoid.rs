@@ -1,10 +1,11 @@
-//! Trapezoid in a given time; Austin and AVR446: `trapezoid_austin.json`.
+//! Tests the trapezoid in a given time and the recurrences of Austin and AVR446 against the golden
+//! numbers of `trapezoid_austin.json`.
 
 use crate::{Golden, TIGHT};
 use carrystep_profile::rule::trapezoid;
 use carrystep_profile::{Limit, Limits, Profile, Ramp};
 
-/// The example of the source: 360 degrees at 1800 degrees/s^2 in a second, 200 steps a turn.
+/// The example of the source: 360 degrees at 1800 degrees/s^2 in one second, with 200 steps a turn.
 struct Source {
     golden: Golden,
     steps_per_degree: f64,
@@ -35,7 +36,7 @@ impl Source {
 }
 
 #[test]
-fn only_the_minus_root_is_a_move() {
+fn only_the_smaller_root_gives_a_move() {
     let source = Source::read();
     let ramp = source.move_in_time();
     let top = ramp.top_speed() / source.steps_per_degree;
@@ -43,7 +44,8 @@ fn only_the_minus_root_is_a_move() {
     source.check("/t0", ramp.breakpoints()[0]);
     source.check("/t1", ramp.breakpoints()[1]);
     source.check("/t0_plus_t1", ramp.breakpoints()[0] + ramp.breakpoints()[1]);
-    // The roots add up to alpha t_d. The other would begin to slow down before it has sped up.
+    // The sum of the roots is alpha t_d. With the other root, the deceleration would begin before
+    // the acceleration ends.
     let plus = 1800.0 - top;
     source.check("/omega_plus_invalid", plus);
     source.check("/plus_root/t0", plus / 1800.0);
@@ -51,7 +53,7 @@ fn only_the_minus_root_is_a_move() {
 }
 
 #[test]
-fn too_short_a_time_names_the_acceleration_that_would_do() {
+fn too_short_a_time_names_the_acceleration_that_is_needed() {
     let source = Source::read();
     let least = source.golden.number("/alpha_min_for_td");
     let acceleration = least * source.steps_per_degree;
@@ -63,9 +65,10 @@ fn too_short_a_time_names_the_acceleration_that_would_do() {
     source.check("/alpha_min_for_td", refusal.wanted / source.steps_per_degree);
 }
 
-/// The source's third segment, -alpha (t - t1), jumps to 0 at t1 and loses most of the way down.
+/// The source's third segment, -alpha (t - t1), jumps to 0 at t1. Its area is negative, so that
+/// most of the distance of the deceleration is lost.
 #[test]
-fn the_printed_third_segment_is_wrong() {
+fn third_segment_as_printed_jumps_and_loses_distance() {
     let source = Source::read();
     let ramp = source.move_in_time();
     let (degrees, [t0, t1]) = (1.0 / source.steps_per_degree, [ramp.breakpoints()[0], ramp.breakpoints()[1]]);
@@ -79,7 +82,7 @@ fn the_printed_third_segment_is_wrong() {
 }
 
 #[test]
-fn equations_6_and_7_are_steps_not_times() {
+fn equations_6_and_7_give_step_numbers_and_not_times() {
     let source = Source::read();
     let ramp = source.move_in_time();
     let [t0, t1] = [ramp.breakpoints()[0], ramp.breakpoints()[1]];
@@ -91,9 +94,9 @@ fn equations_6_and_7_are_steps_not_times() {
     source.check("/units/t1_true_s", t1);
 }
 
-/// c_n = c_0 (sqrt(n + 1) - sqrt(n)) against c_n = c_(n-1) - 2 c_(n-1) / (4 n + 1).
+/// Compares c_n = c_0 (sqrt(n + 1) - sqrt(n)) with c_n = c_(n-1) - 2 c_(n-1) / (4 n + 1).
 #[test]
-fn delays_and_their_recurrence() {
+fn delays_and_their_recurrence_equal_the_golden_numbers() {
     let source = Source::read();
     let timer = source.golden.number("/example/f_timer_Hz");
     let ramp = source.move_in_time();
@@ -104,7 +107,7 @@ fn delays_and_their_recurrence() {
     for n in [0, 1, 2, 10] {
         source.check(&format!("/austin/exact_c_n/{n}"), delay(n));
     }
-    // Step 100 is past the ramp of this move: the same acceleration, in its least time.
+    // Step 100 is beyond the ramp of this move. A longer move with the same acceleration has it.
     let acceleration = source.limits.acceleration;
     let long: Ramp<f64> = Ramp::triangle(1000.0, 2.0 * (1000.0 / acceleration).sqrt(), 0.0, acceleration);
     source.check("/austin/exact_c_n/100", (long.crossing(101.0) - long.crossing(100.0)) * timer);
@@ -117,7 +120,8 @@ fn delays_and_their_recurrence() {
     source.check("/austin/c1_over_c0_exact", delay(1) / c0);
     source.check("/austin/c1_over_c0_rec", recurrence(1.0, 1));
     source.check("/austin/c1_ratio_rec_over_exact", recurrence(c0, 1) / delay(1));
-    // 2 Gamma(3/4) / Gamma(1/4), as the limit of exact delay over recurrence; the error is of order 1/n^2.
+    // 2 Gamma(3/4) / Gamma(1/4) is the limit of the quotient of exact delay and recurrence. The
+    // error is of order 1/n^2.
     let n = 1_000_000;
     let exact = 1.0 / (f64::from(n + 1).sqrt() + f64::from(n).sqrt());
     let factor = exact / recurrence(1.0, n);
@@ -126,9 +130,10 @@ fn delays_and_their_recurrence() {
     source.golden.check("/austin/rel_diff_of_0.676", 0.676 / factor - 1.0, 1e-4);
 }
 
-/// AVR446 in integers: with the remainder carried on, and with it dropped.
+/// The integer recurrence of AVR446, with the remainder carried over and with the remainder
+/// dropped.
 #[test]
-fn the_remainder_must_be_kept() {
+fn recurrence_without_remainder_is_57_percent_too_slow_at_step_1000() {
     let source = Source::read();
     let start = source.golden.number("/avr446_integer/c0_int") as i64;
     let kept = |n: i64| {

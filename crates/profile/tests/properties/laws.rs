@@ -1,12 +1,12 @@
-//! Position, speed, acceleration, jerk and crossing time say the same thing.
+//! Checks that position, speed, acceleration, jerk and crossing time of a curve are consistent.
 
 use carrystep_profile::{Curve, Real};
 
-/// How far a law may be missed, in units of the float's epsilon.
+/// The permitted deviation from a law, in units of the float's epsilon.
 pub struct Slack {
-    /// By rounding, relative to the quantity.
+    /// Deviation by rounding, relative to the quantity.
     pub rounding: f64,
-    /// By the quadrature, in parts of a piece.
+    /// Deviation by the quadrature, relative to the greatest value of the quantity within one part.
     pub quadrature: f64,
 }
 
@@ -18,7 +18,7 @@ fn float<F: Real>(x: f64) -> F {
     F::from(x).unwrap()
 }
 
-/// All laws of a move or a ramp.
+/// Checks all laws of a move or a ramp.
 #[track_caller]
 pub fn hold<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
     ends(curve, slack);
@@ -41,7 +41,7 @@ fn ends<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
     assert!(breakpoints.windows(2).all(|pair| pair[0] < pair[1]), "{breakpoints:?}");
 }
 
-/// Nodes and weights of Gauss and Legendre's rule of 5 points on -1..1.
+/// Nodes and weights of the five-point Gauss-Legendre rule on -1..1.
 const GAUSS: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
     (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
@@ -55,7 +55,8 @@ fn mean<F: Real>(from: F, to: F, f: impl Fn(F) -> F) -> f64 {
     GAUSS.iter().map(|&(node, weight)| wide(f(at(node))) * weight / 2.0).sum()
 }
 
-/// Between breakpoints each is the integral of the next.
+/// Checks that between breakpoints each quantity is the integral of the next: position of speed,
+/// speed of acceleration, acceleration of jerk.
 #[track_caller]
 fn integrals<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
     let (duration, distance) = (curve.duration(), wide(curve.distance()));
@@ -64,15 +65,16 @@ fn integrals<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
     ends.push(duration);
     let epsilon = wide(F::epsilon());
     let (top, steepest, sharpest) = (wide(curve.top_speed()), wide(curve.peak_acceleration()), wide(curve.peak_jerk()));
-    // What a time has been rounded by, and what a sum of a few numbers has.
+    // `late` is the rounding of a time, and `few` the relative rounding of a sum of a few numbers.
     let (late, few) = (slack.rounding * epsilon * wide(duration), slack.rounding * epsilon);
     for piece in ends.windows(2) {
         const PARTS: u32 = 64;
         if wide(piece[1] - piece[0]) < 1e3 * late {
-            continue; // too short for its times to be told apart
+            continue; // The piece is too short for its times to be distinguished.
         }
         let step = (piece[1] - piece[0]) / float(f64::from(PARTS));
-        // Not the breakpoints themselves: there acceleration and jerk have two values.
+        // The breakpoints themselves are left out, because acceleration and jerk have two values
+        // there.
         let near = |i: u32| piece[0] + step * float(f64::from(i).clamp(0.1, f64::from(PARTS) - 0.1));
         for i in 0..PARTS {
             let (from, to) = (near(i), near(i + 1));
@@ -96,7 +98,8 @@ fn integrals<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
     }
 }
 
-/// A position is passed when the curve is there, as near to rest as one likes; and later positions later.
+/// Checks that `crossing` is the inverse of `position`, even very near to rest, and that later
+/// positions are passed later.
 #[track_caller]
 fn crossings<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
     let (duration, distance) = (curve.duration(), curve.distance());
@@ -109,8 +112,8 @@ fn crossings<F: Real>(curve: &impl Curve<F>, slack: &Slack) {
         assert!(t >= last && t <= duration, "{x:?} at {t:?} after {last:?}");
         last = t;
         let error = (wide(curve.position(t)) - wide(x)).abs();
-        // From the start an error of t is relative to t, from the end to the duration. Without a ramp up
-        // there is no rest to be near to.
+        // In the first half the error of t is relative to t, in the second half to the duration. A
+        // move without a ramp up does not start near rest, so the second rule applies to all of it.
         let flying = curve.speed(F::zero()) == curve.top_speed();
         let allowed = if part <= 0.5 && !flying {
             wide(x) + wide(t) * wide(curve.speed(t))

@@ -1,11 +1,12 @@
-//! The least time is the least, and a refusal says what would do.
+//! Tests that the least time is the least one, and that a refusal names a value that works.
 
 use crate::decades;
 use carrystep_profile::rule::{logistic, logistic_least_time, scurve, scurve_least_time, sine, sine_least_time};
 use carrystep_profile::{Curve, Limit, Limits, Profile, RampedMove, Refusal};
 use proptest::prelude::*;
 
-/// A kind: its move in a given time, its least time.
+/// A kind of profile, with the function that plans a move in a given time and the one that returns
+/// the least time.
 trait Kind {
     type Ramp: Curve<f64>;
     fn least(&self, distance: f64, limits: &Limits<f64>) -> f64;
@@ -39,12 +40,14 @@ kind!(Logistic, LogisticRamp, logistic, logistic_least_time);
 kind!(Sine, SineRamp, sine, sine_least_time);
 kind!(Scurve, ScurveRamp, scurve, scurve_least_time);
 
-/// In its least time a move touches a limit all the way; in less it is refused, and the value it then wants does.
+/// Checks that a move in its least time reaches a limit, that a shorter time is refused, and that
+/// the value which the refusal names allows the shorter time.
 fn refusals<K: Kind>(kind: &K, distance: f64, limits: &Limits<f64>, hurry: f64) {
     let least = kind.least(distance, limits);
     let fastest = kind.plan(distance, least, limits).unwrap();
     let figures = fastest.figures();
-    // A top speed that is hardly over the start speed is known to an epsilon of itself, not of the difference.
+    // A top speed just above the start speed is known to an epsilon of itself and not of the
+    // difference.
     let gain = figures.top_speed - figures.start_speed;
     let blur = 1e-7 + 4.0 * f64::EPSILON * figures.top_speed / gain;
     let touches = |value: f64, limit: f64| (value / limit - 1.0).abs() < blur;
@@ -78,7 +81,7 @@ fn refusals<K: Kind>(kind: &K, distance: f64, limits: &Limits<f64>, hurry: f64) 
 
 proptest! {
     #[test]
-    fn refusals_name_what_would_do(
+    fn refusals_name_a_value_that_works_and_99_percent_of_the_raise_does_not(
         distance in decades(1.0, 1e7).prop_map(f64::round),
         speed in decades(1.0, 1e6),
         start in prop_oneof![Just(0.0), 0.0..1.0],
@@ -93,9 +96,10 @@ proptest! {
         refusals(&Scurve, distance, &limits, hurry);
     }
 
-    /// More time, less speed: to the last bit of the time, and never a limit passed on the way.
+    /// In a longer time a move has a lower or equal top speed, for any two times; no limit is
+    /// exceeded.
     #[test]
-    fn more_time_is_less_speed(distance in decades(1.0, 1e7), times in prop::collection::vec(decades(1.0, 100.0), 2)) {
+    fn longer_time_never_has_a_higher_top_speed(distance in decades(1.0, 1e7), times in prop::collection::vec(decades(1.0, 100.0), 2)) {
         let limits = Limits { start_speed: 100.0, speed: 1e5, acceleration: 1e6, jerk: 1e8 };
         let [short, long] = [times[0].min(times[1]), times[0].max(times[1])];
         let slower = |kind_least: f64, top: &dyn Fn(f64) -> f64| top(kind_least * short) >= top(kind_least * long);
@@ -104,7 +108,7 @@ proptest! {
     }
 
     #[test]
-    fn nonsense(numbers in prop::array::uniform6(any::<f64>()), at in any::<f64>()) {
+    fn invalid_limits_never_panic(numbers in prop::array::uniform6(any::<f64>()), at in any::<f64>()) {
         let [start_speed, speed, acceleration, jerk, distance, time] = numbers;
         let limits = Limits { start_speed, speed, acceleration, jerk };
         fn ask<R: Curve<f64>>(answer: Result<RampedMove<f64, R>, Refusal>, at: f64) {
@@ -123,16 +127,17 @@ proptest! {
 }
 
 #[test]
-fn a_move_of_no_distance_rests() {
+fn move_without_distance_is_at_rest() {
     let limits = Limits { start_speed: 0.0, speed: 1e4, acceleration: 1e5, jerk: 1e7 };
     let rest = Sine.plan(0.0, 0.5, &limits).unwrap();
     assert_eq!((rest.duration(), rest.distance(), rest.speed(0.2), rest.position(0.2)), (0.5, 0.0, 0.0, 0.0));
     assert_eq!(Sine.least(0.0, &limits), 0.0);
 }
 
-/// Slower than the jump that the motor takes anyway: one speed, as in Ranade's rule.
+/// A move slower than the start speed, to which the motor jumps anyway, has constant speed, as in
+/// Ranade's rule.
 #[test]
-fn an_scurve_under_the_start_speed_is_constant() {
+fn scurve_below_the_start_speed_has_constant_speed() {
     let limits = Limits { start_speed: 500.0, speed: 1e4, acceleration: 1e5, jerk: 1e7 };
     let slow = Scurve.plan(100.0, 1.0, &limits).unwrap();
     assert_eq!((slow.shape(), slow.speed(0.3), slow.peak_acceleration()), ("constant", 100.0, 0.0));

@@ -1,4 +1,4 @@
-//! What is true of every curve, over all that a stepper can be asked to do.
+//! Tests properties that hold for every curve, over the whole range of stepper moves.
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the message")]
 
@@ -9,7 +9,7 @@ mod ramps;
 
 use proptest::prelude::*;
 
-/// A number from `low` to `high`, every decade as likely as the next.
+/// A number from `low` to `high`, with every decade equally likely.
 fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low.ln()..high.ln()).prop_map(f64::exp)
 }

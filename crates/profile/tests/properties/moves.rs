@@ -1,4 +1,5 @@
-//! Moves of every kind, from a crawl to 10 million steps/s and from one step to 2^31.
+//! Properties of moves of every kind, from 0.001 to 10 million steps/s and from one step to 2^31
+//! steps.
 
 use crate::decades;
 use crate::laws::{Slack, hold};
@@ -8,7 +9,7 @@ use carrystep_profile::{Curve, Limits, Profile, RampedMove, Real};
 use proptest::prelude::*;
 
 fn limits() -> impl Strategy<Value = Limits<f64>> {
-    // A start speed of 0 is a case of its own; so is no limit of jerk.
+    // A start speed of 0 and an unlimited jerk are separate cases.
     let start = prop_oneof![Just(0.0), decades(1e-6, 1.0)];
     let bend = prop_oneof![Just(f64::INFINITY), decades(1e-3, 1e6)];
     (decades(1e-3, 1e7), start, decades(1e-3, 1e5), bend).prop_map(|(speed, start, per_second, bend)| Limits {
@@ -23,7 +24,7 @@ fn steps() -> impl Strategy<Value = f64> {
     prop_oneof![Just(1.0), decades(1.0, 2.0_f64.powi(31)).prop_map(f64::round), Just(2.0_f64.powi(31))]
 }
 
-/// How much longer than the least time.
+/// A time as a multiple of the least time.
 fn patience() -> impl Strategy<Value = f64> {
     prop_oneof![Just(1.0), decades(1.0 + 1e-9, 1.001), decades(1.0, 1e4)]
 }
@@ -35,7 +36,7 @@ fn check<F: Real, R: Curve<F>>(ramped: &RampedMove<F, R>, distance: F, time: F, 
     keeps(ramped, limits);
 }
 
-/// No limit is passed, by the figures and by samples.
+/// Asserts that no limit is exceeded, by the figures and by samples.
 #[track_caller]
 fn keeps<F: Real, R: Curve<F>>(ramped: &RampedMove<F, R>, limits: &Limits<F>) {
     let loose = F::one() + F::from(16.0).unwrap() * F::epsilon();
@@ -51,7 +52,7 @@ fn keeps<F: Real, R: Curve<F>>(ramped: &RampedMove<F, R>, limits: &Limits<F>) {
     }
 }
 
-/// The way down is the way up, seen in a mirror.
+/// Asserts that the ramp down is the ramp up mirrored in time.
 #[track_caller]
 fn mirrored<R: Curve<f64>>(ramped: &RampedMove<f64, R>) {
     let (duration, distance) = (ramped.duration(), ramped.distance());
@@ -67,7 +68,7 @@ fn mirrored<R: Curve<f64>>(ramped: &RampedMove<f64, R>) {
 
 proptest! {
     #[test]
-    fn logistic_moves(distance in steps(), limits in limits(), patience in patience()) {
+    fn logistic_moves_obey_all_laws_and_limits(distance in steps(), limits in limits(), patience in patience()) {
         let time = logistic_least_time(distance, &limits) * patience;
         let ramped = logistic(distance, time, &limits).unwrap();
         check(&ramped, distance, time, &limits);
@@ -78,7 +79,7 @@ proptest! {
     }
 
     #[test]
-    fn sine_moves(distance in steps(), limits in limits(), patience in patience()) {
+    fn sine_moves_obey_all_laws_and_limits(distance in steps(), limits in limits(), patience in patience()) {
         let time = sine_least_time(distance, &limits) * patience;
         let ramped = sine(distance, time, &limits).unwrap();
         check(&ramped, distance, time, &limits);
@@ -88,7 +89,7 @@ proptest! {
     }
 
     #[test]
-    fn scurve_moves(distance in steps(), limits in limits(), patience in patience()) {
+    fn scurve_moves_obey_all_laws_and_limits(distance in steps(), limits in limits(), patience in patience()) {
         let time = scurve_least_time(distance, &limits) * patience;
         let ramped = scurve(distance, time, &limits).unwrap();
         check(&ramped, distance, time, &limits);
@@ -97,7 +98,7 @@ proptest! {
     }
 
     #[test]
-    fn scurve_moves_with_another_end(distance in steps(), limits in limits(), patience in patience(), end in 0.0..1.0) {
+    fn scurve_moves_with_another_end_speed_obey_all_laws_and_limits(distance in steps(), limits in limits(), patience in patience(), end in 0.0..1.0) {
         let end_speed = end * limits.speed;
         let time = scurve_to_least_time(distance, end_speed, &limits) * patience;
         let ramped = scurve_to(distance, time, end_speed, &limits).unwrap();
@@ -107,7 +108,7 @@ proptest! {
     }
 
     #[test]
-    fn all_in_f32(distance in decades(1.0, 1e6), limits in limits(), patience in 1.0..3.0) {
+    fn moves_computed_in_f32_obey_all_laws_and_limits(distance in decades(1.0, 1e6), limits in limits(), patience in 1.0..3.0) {
         let [distance, patience] = [distance.round(), patience].map(|x: f64| x as f32);
         let limits = Limits {
             start_speed: limits.start_speed as f32,

@@ -1,4 +1,4 @@
-//! Single ramps with parameters of every size, and parameters that are none.
+//! Properties of single ramps with parameters of every size, and with invalid parameters.
 
 use crate::decades;
 use crate::laws::{Slack, hold};
@@ -9,9 +9,10 @@ const SLACK: Slack = Slack { rounding: 64.0, quadrature: 1e4 };
 
 proptest! {
     #[test]
-    fn logistic(w in decades(1e-3, 1e7), a in decades(1e-3, 1e9), centre in 0.1..40.0, shortfall in decades(1e-6, 0.3)) {
+    fn logistic_ramps_obey_all_laws(w in decades(1e-3, 1e7), a in decades(1e-3, 1e9), centre in 0.1..40.0, shortfall in decades(1e-6, 0.3)) {
         let ramp = LogisticRamp::new(w, a, centre * w / (4.0 * a), shortfall).unwrap();
-        // e^(k T_i) is known to k T_i epsilons, and the quadrature to (k T / 64)^10.
+        // The relative precision of e^(k T_i) is k T_i epsilons, and that of the quadrature is (k T
+        // / 64)^10.
         hold(&ramp, &Slack { rounding: 64.0 + 4.0 * centre, quadrature: 1e6 });
         let figures = ramp.figures();
         prop_assert!((figures.end_speed / (w * (1.0 - shortfall)) - 1.0).abs() < 1e-12);
@@ -19,20 +20,21 @@ proptest! {
     }
 
     #[test]
-    fn sine(top in decades(1e-3, 1e7), time in decades(1e-6, 1e4)) {
+    fn sine_ramps_obey_all_laws(top in decades(1e-3, 1e7), time in decades(1e-6, 1e4)) {
         hold(&SineRamp::new(top, time).unwrap(), &SLACK);
     }
 
     #[test]
-    fn scurve(top in decades(1e-3, 1e7), start in 0.0..0.999, a in decades(1e-3, 1e9), j in decades(1e-3, 1e12)) {
+    fn scurve_ramps_obey_all_laws(top in decades(1e-3, 1e7), start in 0.0..0.999, a in decades(1e-3, 1e9), j in decades(1e-3, 1e12)) {
         hold(&ScurveRamp::new(start * top, top, a, j).unwrap(), &SLACK);
         hold(&ScurveRamp::new(start * top, top, a, f64::INFINITY).unwrap(), &SLACK);
         hold(&ScurveRamp::new(0.0, top, f64::INFINITY, j).unwrap(), &SLACK);
     }
 
-    /// 1 / c_n is a mean speed, between the speeds at its ends; however late the step.
+    /// 1 / c_n is a mean speed, so it lies between the speeds at both ends of the step, however
+    /// late the step is.
     #[test]
-    fn delays(top in decades(10.0, 1e6), time in decades(0.1, 1e4), at in 0.0..1.0_f64) {
+    fn delay_lies_between_the_speeds_at_its_ends(top in decades(10.0, 1e6), time in decades(0.1, 1e4), at in 0.0..1.0_f64) {
         let ramp = SineRamp::new(top, time).unwrap();
         prop_assume!(ramp.distance() > 2.0);
         let n = (at * (ramp.distance() - 1.0)).floor();
@@ -41,9 +43,9 @@ proptest! {
         prop_assert!(mean >= slow * (1.0 - 1e-12) && mean <= fast * (1.0 + 1e-12), "{slow} {mean} {fast}");
     }
 
-    /// Nonsense is refused or answered, never a panic and never without end.
+    /// Invalid parameters are refused or computed with. They cause no panic and no endless loop.
     #[test]
-    fn nonsense(numbers in prop::array::uniform4(any::<f64>()), at in any::<f64>()) {
+    fn invalid_ramp_parameters_never_panic(numbers in prop::array::uniform4(any::<f64>()), at in any::<f64>()) {
         let [a, b, c, d] = numbers;
         let ask = |curve: &dyn Curve<f64>| {
             let _ = (curve.position(at), curve.speed(at), curve.acceleration(at), curve.jerk(at), curve.crossing(at));
@@ -57,7 +59,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_wrong_and_what_would_do() {
+fn errors_name_the_parameter_and_a_value_that_works() {
     let late = LogisticRamp::new(1000.0, 5000.0, -0.3, 0.005).unwrap_err();
     let BadRamp::NoRampTime { least, .. } = late else { panic!("{late:?}") };
     assert!((least + 199.0_f64.ln() / 20.0).abs() < 1e-12);

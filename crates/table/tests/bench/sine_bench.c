@@ -1,4 +1,5 @@
-/* sine_bench STEPS COUNTS: the delays of a ramp made from the small inverse table, for CTC. */
+/* sine_bench STEPS COUNTS prints the delays of a ramp of STEPS steps in COUNTS timer counts,
+ * computed from the small inverse table for CTC, or "refused". */
 #include <stdio.h>
 #include <stdlib.h>
 

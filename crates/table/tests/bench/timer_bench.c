@@ -1,7 +1,8 @@
-/* A simulated compare timer that counts one clock at a time, and a move played on it.
+/* Plays moves on a simulated compare timer, which counts one clock at a time.
  *
- * timer_bench LATENCY MOVE...   each MOVE is STEPS or STEPS:STOP, stopped from outside at pulse STOP.
- * Prints, for each move, the clock of every pulse, then "end". The handler runs LATENCY counts late. */
+ * timer_bench LATENCY MOVE...   Each MOVE is STEPS or STEPS:STOP; the bench stops the latter at
+ * pulse STOP. For each move it prints the clock of every pulse and then "end". The interrupt
+ * handler runs LATENCY counts after its match. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +21,7 @@ static uint32_t next_match(uint32_t before, uint16_t compare)
 static void play(uint32_t latency, uint32_t steps, uint32_t stop)
 {
     uint32_t counter = RAMP_CTC ? 0 : UINT32_C(0xFFF3) & MASK;
-    uint32_t handler = 0; /* counts until it runs, from 1; 0: not called */
+    uint32_t handler = 0; /* counts until the handler runs; 0: none is pending */
     uint32_t pulses = 0;
     uint16_t compare;
     uint32_t match;

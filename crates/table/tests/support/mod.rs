@@ -1,4 +1,5 @@
-//! The generated header and the player, compiled with a C compiler and run on a simulated timer.
+//! Compiles the generated header and the player with a C compiler, and runs them on a simulated
+//! timer.
 #![allow(dead_code)]
 
 use carrystep_table::{Kind, Mode, Motor, Options, PLAYER, Pulses, Speed, Table, TableRequest, Timer};
@@ -10,7 +11,7 @@ use tempfile::TempDir;
 pub const FLAGS: [&str; 8] =
     ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion", "-Wshadow"];
 
-/// A move: steps, and the pulse at which it is stopped from outside.
+/// A move: its steps, and the pulse at which it is stopped from outside.
 #[derive(Debug, Clone, Copy)]
 pub struct Move {
     pub steps: u32,
@@ -30,7 +31,7 @@ impl fmt::Display for Move {
     }
 }
 
-/// A folder with the player and a table, to be compiled.
+/// A folder with the player and a table, in which they are compiled.
 pub struct Bench {
     folder: TempDir,
     flags: Vec<String>,
@@ -66,7 +67,7 @@ impl Bench {
         self
     }
 
-    /// Compiles; the compiler's words where it refuses.
+    /// Compiles the sources. The error is the output of the compiler.
     pub fn compile(&self, sources: &[&str]) -> Result<PathBuf, String> {
         let compiler = std::env::var("CC").unwrap_or_else(|_| "gcc".to_owned());
         let program = self.path("bench");
@@ -77,7 +78,7 @@ impl Bench {
         if output.status.success() { Ok(program) } else { Err(String::from_utf8_lossy(&output.stderr).into_owned()) }
     }
 
-    /// The clocks of all pulses of each move; compiles where that was not done yet.
+    /// The clocks of all pulses of each move. Compiles the bench first if that was not done yet.
     pub fn play(&self, latency: u32, moves: &[Move]) -> Vec<Vec<u64>> {
         if !self.path("bench").exists() {
             let sources = ["timer_bench.c", "carrystep_player.c", "carrystep_sine.c"];
@@ -86,7 +87,7 @@ impl Bench {
         self.try_play(latency, moves).unwrap_or_else(|words| panic!("{words}"))
     }
 
-    /// The same; what went wrong where the player does not even come to an end.
+    /// The same as [`Self::play`], but returns an error if the player does not end as it should.
     pub fn try_play(&self, latency: u32, moves: &[Move]) -> Result<Vec<Vec<u64>>, String> {
         let mut arguments = vec![latency.to_string()];
         arguments.extend(moves.iter().map(Move::to_string));
@@ -97,7 +98,7 @@ impl Bench {
     }
 }
 
-/// What a compiled bench prints.
+/// The output of a compiled bench.
 pub fn run(program: &Path, arguments: &[String]) -> Result<String, String> {
     let output = Command::new(program).args(arguments).output().expect("the bench runs");
     if !output.status.success() {
@@ -106,7 +107,7 @@ pub fn run(program: &Path, arguments: &[String]) -> Result<String, String> {
     String::from_utf8(output.stdout).map_err(|error| error.to_string())
 }
 
-/// The formula's delay of each pulse of a move, counts, not rounded.
+/// The delay of each pulse of a move by the formula, counts, not rounded.
 pub fn ideal_delays(table: &Table, steps: u32) -> Vec<f64> {
     let request = table.request();
     let ramp: Vec<f64> = table.ramp_entries().map(|entry| table.ideal_delays()[entry]).collect();
@@ -114,8 +115,8 @@ pub fn ideal_delays(table: &Table, steps: u32) -> Vec<f64> {
     (0..steps).map(|j| *ramp.get(j.min(steps - 1 - j) as usize).unwrap_or(&cruise)).collect()
 }
 
-/// What is wrong with the pulses of a move, if anything: their number, or a time that is further from the
-/// formula's than `per_pulse` counts for each pulse before it.
+/// Checks the pulses of a move: their number, and their times, which may differ from those of the
+/// formula by `per_pulse` counts for each pulse up to it.
 pub fn judge(table: &Table, steps: u32, pulses: &[u64], per_pulse: f64) -> Result<(), String> {
     if pulses.len() != steps as usize {
         return Err(format!("{} pulses in a move of {steps}", pulses.len()));
@@ -131,7 +132,7 @@ pub fn judge(table: &Table, steps: u32, pulses: &[u64], per_pulse: f64) -> Resul
     Ok(())
 }
 
-/// Lengths around every turn that a move can take.
+/// Lengths of moves just below, at and above every limit at which a move changes its form.
 pub fn lengths(table: &Table) -> Vec<u32> {
     let ramp = u32::try_from(table.figures().ramp_pulses).expect("a short ramp");
     let mut lengths = vec![0, 1, 2, 3, 4, 5, ramp - 1, ramp, ramp + 1, ramp + ramp / 2];
@@ -139,7 +140,7 @@ pub fn lengths(table: &Table) -> Vec<u32> {
     lengths
 }
 
-/// The source's own table: 500 to 13 333 Hz, 1000 entries, 16 MHz / 64.
+/// The table of the source: 500 to 13 333 Hz, 1000 entries, 16 MHz / 64.
 pub fn source(mode: Mode, entries: u32, pulses: Pulses) -> TableRequest {
     TableRequest {
         timer: Timer::avr16(16_000_000, 64, mode),

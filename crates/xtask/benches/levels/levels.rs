@@ -1,4 +1,4 @@
-//! Every level on the same move: clock cycles a second.
+//! Measures every level on the same move, in clock cycles per second.
 
 use crate::moves::Moves;
 use crate::stopwatch;
@@ -7,10 +7,10 @@ use carrystep_simulators::engine::run::EngineJob;
 use carrystep_simulators::{Job, Level, LevelError, fast};
 use std::time::Instant;
 
-/// Seconds that a level of this process is measured for.
+/// Time for which a level of this process is measured, seconds.
 const BUDGET: f64 = 0.3;
 
-/// Counts all edges and hashes clock, axis, kind and direction of each.
+/// Counts all edges, and hashes the clock, axis, kind and direction of each.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub struct Consumer {
     pub pulses: u64,
@@ -29,7 +29,8 @@ impl Edges for Consumer {
     }
 }
 
-/// Seconds for the whole move on the fast model, and what its consumer has heard.
+/// Returns the seconds that the fast model needs for the whole move, and the edges that its
+/// consumer counted.
 pub fn fast(moves: &Moves) -> Result<(f64, Consumer), String> {
     let (seconds, result) = stopwatch::least(BUDGET, || {
         let mut listener = fast::EdgesOnly(Consumer::default());
@@ -38,7 +39,8 @@ pub fn fast(moves: &Moves) -> Result<(f64, Consumer), String> {
     result.map(|consumer| (seconds, consumer)).map_err(|error| error.to_string())
 }
 
-/// How many times faster than its clock an engine of 80 MHz runs on the fast model; it must make the same pulses.
+/// Returns how many times faster than real time the fast model runs an engine of 80 MHz. It is an
+/// error if the engine has a fault, or counts other pulses or reversals than the core (`heard`).
 pub fn engine(moves: &Moves, heard: &Consumer) -> Result<f64, String> {
     let job = EngineJob::new(&moves.engine, &moves.program, moves.plan.total_ticks());
     let (seconds, result) = stopwatch::least(BUDGET, || {
@@ -52,8 +54,8 @@ pub fn engine(moves: &Moves, heard: &Consumer) -> Result<f64, String> {
     Ok(outcome.clocks as f64 / moves.engine.timebase.clock_hz() as f64 / seconds)
 }
 
-/// Clock cycles a second of a slower level over the first `clocks` of a move: in processor time, or by the clock on
-/// the wall where the level runs in a process of its own.
+/// Returns the clock cycles per second of a slower level over the first `clocks` clocks of a move.
+/// The time is processor time, or elapsed time if the level runs in a process of its own.
 pub fn clocks_per_second(level: Level, moves: &Moves, clocks: u64) -> Result<f64, String> {
     let run = |clocks: u64| {
         let (begin, wall) = (stopwatch::now(), Instant::now());
@@ -66,7 +68,7 @@ pub fn clocks_per_second(level: Level, moves: &Moves, clocks: u64) -> Result<f64
             Err(error) => Err(error.to_string()),
         }
     };
-    // What starting takes is in both, and not in their difference.
+    // The time to start is contained in both runs and cancels in their difference.
     let few = run(clocks / 10)?;
     Ok((clocks - clocks / 10) as f64 / (run(clocks)? - few).max(1e-9))
 }

@@ -1,7 +1,7 @@
-//! `cargo xtask bench`: every level on the same moves, side by side in one run.
+//! `cargo xtask bench` measures every level on the same moves, side by side in one run.
 //!
-//! The fast model and Verilator are measured in processor time over the whole move, each at its best; the
-//! other levels over the beginning of it.
+//! The fast model and Verilator are measured in processor time over the whole move, each in its
+//! fastest configuration. The other levels are measured over the beginning of the move.
 
 mod levels;
 mod moves;
@@ -20,10 +20,11 @@ use std::process::ExitCode;
 use std::time::Instant;
 use verilator::Verilated;
 
-/// Verilator below this, in clock cycles a second, is not at its best: the run shows nothing.
+/// If Verilator runs below this speed, clock cycles per second, the machine is disturbed and the
+/// run is invalid.
 const VERILATOR_AT_LEAST: f64 = 5e6;
 
-/// An edge costs no more where the fast model jumps.
+/// The greatest time per edge of the fast model on the busy move, ns.
 const NS_PER_EDGE_AT_MOST: f64 = 15.0;
 
 /// Side by side: the fast model, the tick model, Rust-HDL, Icarus and Verilator.
@@ -42,7 +43,7 @@ fn main() -> ExitCode {
         Ok((if arguments.json { format!("{json}\n") } else { report.to_string() }, report.passed))
     });
     let (text, passed) = text.unwrap_or_else(|error| (format!("bench: {error}\n"), false));
-    // Nobody is left to tell if this fails.
+    // If this write fails, there is no way left to report it.
     let _ = std::io::stdout().write_all(text.as_bytes());
     if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
@@ -133,7 +134,7 @@ fn row(density: &Density, moves: &Moves, toggling: &Verilated, failures: &mut Ve
     })
 }
 
-/// What it ran on.
+/// The processor and the number of its cores, for the report.
 fn machine() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));

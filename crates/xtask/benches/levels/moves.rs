@@ -1,4 +1,4 @@
-//! The three moves that every level runs: `sim/bench/`.
+//! The moves that every level runs, from `sim/bench/`.
 
 use carrystep_core::ports::Inputs;
 use carrystep_core::{Command, EngineBuild, Program, Timebase};
@@ -9,41 +9,44 @@ use carrystep_simulators::{Job, Outcome, fast};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// How dense the edges of a move are.
+/// A move with a certain density of edges.
 #[derive(Debug, Clone, Copy)]
 pub struct Density {
-    /// The move file, and the ratio's name: `ratio_NAME`.
+    /// The name of the move file without its extension, and of the ratio `ratio_NAME` in the
+    /// report.
     pub name: &'static str,
     pub what: &'static str,
-    /// How many times Verilator's speed is to be reached.
+    /// The required ratio of the fast model's speed to that of Verilator.
     pub wanted: f64,
 }
 
-/// From the densest to the sparsest.
+/// The moves of the comparison, from the densest to the sparsest.
 pub const DENSITIES: [Density; 3] = [
     Density { name: "busy", what: "all axes near 100 000 steps/s", wanted: 300.0 },
     Density { name: "typical", what: "all axes near 10 000 steps/s", wanted: 1_000.0 },
     Density { name: "rest", what: "mostly at rest", wanted: 10_000.0 },
 ];
 
-/// Edges as dense as those of the typical move, with hardly a load: what an edge costs, and what a load.
+/// A move with edges as dense as those of the typical move, but with few loads of segments. The
+/// difference of the two gives the cost of an edge and that of a load.
 pub const STEADY: Density = Density { name: "steady", what: "all axes at 10 000 steps/s, few loads", wanted: 0.0 };
 
-/// The clock in which an engine of six axes has time for all their turns in a tick of 1 us.
+/// A clock, Hz, at which an engine of six axes finishes the time slots of all axes within a tick of
+/// 1 us.
 const ENGINE_HZ: u64 = 80_000_000;
 
-/// A planned move, ready to be run.
+/// A planned move, ready to run.
 pub struct Moves {
     pub plan: Plan,
     /// The engine that makes the same pulses.
     pub engine: EngineBuild,
     pub program: Program,
-    /// How the run ends on the fast model.
+    /// The end of the run on the fast model.
     pub outcome: Outcome,
 }
 
 impl Moves {
-    /// Reads and plans one of the files.
+    /// Reads and plans one of the move files.
     pub fn load(density: &Density) -> Result<Self, String> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new("."));
         let path = root.join("sim/bench").join(density.name).with_extension("toml");
@@ -59,17 +62,17 @@ impl Moves {
         Ok(Self { plan, engine, program, outcome })
     }
 
-    /// As any level runs it.
+    /// The move as the job of any level.
     pub fn job(&self) -> Job<'_> {
         Job::new(&self.plan.build, &self.program, self.plan.total_ticks())
     }
 
-    /// How many segments are loaded.
+    /// Number of segments that are loaded.
     pub fn loads(&self) -> usize {
         self.program.iter().filter(|command| matches!(command, Command::Segment { .. })).count()
     }
 
-    /// In which cycle each command is taken: the feed of a bench that knows no host.
+    /// The commands with the cycle in which each is taken, as text for a harness without a host.
     pub fn feed(&self) -> String {
         let mut core = Fast::new(&self.plan.build);
         let mut text = String::new();

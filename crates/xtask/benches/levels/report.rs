@@ -1,34 +1,39 @@
-//! What a run of the bench came to, as JSON and as a table.
+//! The report of the bench, as JSON and as a table.
+//!
+//! The names of the fields are those of the JSON document.
 
 use serde::Serialize;
 use std::fmt;
 
-/// Everything measured, one row a move.
+/// All measurements, with one row per move.
 #[derive(Debug, Serialize)]
 pub struct Report {
     pub passed: bool,
     pub machine: String,
-    /// Times Verilator's clock cycles a second, in this run.
+    /// Clock cycles per second of the fast model divided by those of Verilator, in the same run.
     pub ratio_busy: f64,
     pub ratio_typical: f64,
     pub ratio_rest: f64,
     pub rows: Vec<Row>,
-    /// At the density of the typical move, without its loads.
+    /// Time per edge on the steady move, which has the density of the typical move but few loads,
+    /// ns.
     pub steady_ns_per_edge: f64,
-    /// What the typical move takes beyond that, by its loads: each ends a window of all axes.
+    /// Time that the typical move takes in addition, per load of a segment, ns. A load ends the
+    /// current window of all axes.
     pub typical_ns_per_load: f64,
-    /// The engine at 80 MHz on the busy move.
+    /// Speed of the 80 MHz engine on the busy move, as a multiple of real time.
     pub engine_times_real_time: f64,
-    /// A tick of six axes where every tick is added.
+    /// Time of a tick of six axes when every tick is computed, ns.
     pub ticked_ns_one_after_the_other: f64,
     pub ticked_ns_side_by_side: f64,
-    /// The core's ports, as Verilator's trace has them.
+    /// Writing speed for the ports of the core, which are the signals of Verilator's trace, MB/s.
     pub vcd_mb_per_s: f64,
-    /// The product's waveform: pins and registers beside the float profile.
+    /// Writing speed for the waveform of the product: pins and registers beside the float profile,
+    /// MB/s.
     pub waveform_mb_per_s: f64,
     pub verilator_vcd_mb_per_s: f64,
     pub measured_s: f64,
-    /// What is wrong with the run; empty where it passed.
+    /// What is wrong with the run; empty if it passed.
     pub failures: Vec<String>,
 }
 
@@ -39,10 +44,10 @@ pub struct Row {
     pub what: &'static str,
     pub clocks: u64,
     pub pulses: u64,
-    /// Of clock, axis, kind and direction of every edge.
+    /// The hash of clock, axis, kind and direction of every edge.
     pub hash: String,
     pub fast_ns_per_edge: f64,
-    /// Clock cycles a second.
+    /// Clock cycles per second, for this level and the following ones.
     pub fast: f64,
     pub model: f64,
     pub rust_hdl: f64,

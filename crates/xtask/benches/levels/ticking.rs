@@ -1,15 +1,16 @@
-//! Ticking where edges are dense: one axis after the other, as the fast model does, or all axes side by side.
+//! Compares two ways to compute ticks where edges are dense: one axis after the other, as the fast
+//! model does, and all axes side by side.
 
 use crate::stopwatch;
 use carrystep_core::AXES;
 
-/// Seconds that each is measured for.
+/// Time for which each way is measured, seconds.
 const BUDGET: f64 = 0.2;
 
-/// Ticks of a run: its edges stay in the cache.
+/// Number of ticks of a run, so small that its edges stay in the cache.
 const TICKS: usize = 4096;
 
-/// Registers of all axes.
+/// The registers of all axes.
 #[derive(Clone, Copy)]
 struct Axes {
     p: [u64; AXES],
@@ -18,15 +19,16 @@ struct Axes {
     j: [u64; AXES],
 }
 
-/// The ticks that step, with P and V before them, of each axis; room for one more is at the end.
+/// The ticks in which each axis steps, with the values of P and V before them. The last element is
+/// room for one more entry.
 struct Found {
     steps: Vec<[(u32, u64, u64); TICKS + 1]>,
     count: [usize; AXES],
 }
 
-/// ns a tick of all axes: one after the other, side by side.
+/// The time per tick of all axes, ns: one axis after the other, and side by side.
 pub fn measure() -> Result<[f64; 2], String> {
-    // About a step in four ticks, each axis its own; slowly faster.
+    // Each axis steps in about one tick of four, at a speed of its own that rises slowly.
     let speed = |axis: usize| (1 << 62) + ((axis as u64) << 57);
     let axes = Axes { p: [1 << 63; AXES], v: std::array::from_fn(speed), a: [1 << 44; AXES], j: [1 << 20; AXES] };
     let mut found = [(); 2].map(|()| Found { steps: vec![[(0, 0, 0); TICKS + 1]; AXES], count: [0; AXES] });
@@ -47,7 +49,8 @@ impl Found {
             let (mut p, mut v, mut a, j) = (axes.p[axis], axes.v[axis], axes.a[axis], axes.j[axis]);
             let mut count = 0;
             for tick in 0..TICKS {
-                // No branch: what does not step is overwritten by the next.
+                // There is no branch: an entry for a tick without a step is overwritten by the next
+                // one.
                 steps[count] = (tick as u32, p, v);
                 let (next, carry) = p.overflowing_add(v);
                 count += usize::from(carry);

@@ -1,4 +1,5 @@
-//! The exported Verilog in Verilator at its best: compiled outside the timing, its clock toggled.
+//! Runs the exported Verilog in Verilator in its fastest configuration: compiled without timing,
+//! with a clock that the harness toggles.
 
 use carrystep_core::AXES;
 use carrystep_tools::programs::VERILATOR;
@@ -7,7 +8,7 @@ use std::process::Command;
 
 const HARNESS: &str = include_str!("harness/toggle.cpp");
 
-/// Without this one g++ 12 packs single bits into vectors and is half as fast.
+/// Without this flag, g++ 12 packs single bits into vectors and the program is half as fast.
 const NO_SLP: &str = "-fno-tree-slp-vectorize";
 
 /// A compiled simulation.
@@ -16,7 +17,7 @@ pub struct Verilated {
     binary: PathBuf,
 }
 
-/// What a run gave.
+/// The result of a run.
 pub struct Run {
     pub seconds: f64,
     pub positions: [i32; AXES],
@@ -46,7 +47,7 @@ impl Verilated {
         Ok(Self { folder, binary })
     }
 
-    /// Runs so many clocks; `trace` is the file that is written on the way.
+    /// Runs a number of clocks. If `trace` names a file, the trace is written to it.
     pub fn run(&self, feed: &str, clocks: u64, trace: Option<&Path>) -> Result<Run, String> {
         let file = self.folder.path().join("feed.txt");
         std::fs::write(&file, feed).map_err(|error| error.to_string())?;

@@ -1,4 +1,5 @@
-//! Bytes a second of a waveform: ours, and Verilator's own trace.
+//! Measures how many bytes per second the writers of waveforms produce: those of carrystep, and
+//! Verilator's own trace.
 
 use crate::moves::Moves;
 use crate::stopwatch;
@@ -12,23 +13,23 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
-/// Seconds that each is measured for.
+/// Time for which each writer is measured, seconds.
 const BUDGET: f64 = 0.3;
 
-/// What writing took beyond simulating.
+/// The bytes that were written, and the time of writing without that of the simulation.
 pub struct Written {
     pub bytes: u64,
     pub seconds: f64,
 }
 
 impl Written {
-    /// Millions of bytes a second.
+    /// Writing speed, millions of bytes per second.
     pub fn megabytes_per_second(&self) -> f64 {
         self.bytes as f64 / self.seconds.max(1e-9) / 1e6
     }
 }
 
-/// The output ports of the core, as Verilator's trace has them.
+/// Writes the output ports of the core, which are the signals of Verilator's trace.
 pub fn ports(moves: &Moves, folder: &Path) -> Result<Written, String> {
     let path = folder.join("ports.vcd");
     let simulate = |observer: &mut dyn FnMut(u64, &Outputs)| {
@@ -51,7 +52,8 @@ pub fn ports(moves: &Moves, folder: &Path) -> Result<Written, String> {
     Ok(Written { bytes: length(&path)?, seconds: with - without })
 }
 
-/// STEP, DIR, position and V of each axis beside the float profile, as `carrystep simulate --vcd` writes it.
+/// Writes STEP, DIR, position and V of each axis beside the float profile, like `carrystep simulate
+/// --vcd`.
 pub fn waveform(moves: &Moves, folder: &Path) -> Result<Written, String> {
     let path = folder.join("waveform.vcd");
     let simulate = |sink: &mut dyn PinSink| {
@@ -83,7 +85,7 @@ pub fn waveform(moves: &Moves, folder: &Path) -> Result<Written, String> {
     Ok(Written { bytes: length(&path)?, seconds: with - without })
 }
 
-/// Verilator's trace of the ports, dumped once a clock.
+/// Lets Verilator write its trace of the ports, with one dump per clock.
 pub fn verilators(
     tracing: &Verilated,
     feed: &str,
@@ -100,7 +102,7 @@ fn length(path: &Path) -> Result<u64, String> {
     std::fs::metadata(path).map(|file| file.len()).map_err(|error| error.to_string())
 }
 
-/// Hears everything, writes nothing.
+/// A sink that accepts all changes and writes nothing.
 struct Nothing;
 
 impl PinSink for Nothing {
@@ -109,14 +111,14 @@ impl PinSink for Nothing {
     }
 }
 
-/// Writes the output ports wherever one of them changes.
+/// Writes the output ports whenever one of them changes.
 struct PortDump {
     out: vcd::Writer<BufWriter<File>>,
     ids: [vcd::IdCode; 5],
     before: Option<[Vec<u32>; 5]>,
 }
 
-/// Name and bits of each.
+/// Name and width of each port.
 const PORTS: [(&str, u32); 5] = [("step", 6), ("dir", 6), ("idle", 1), ("position", 192), ("discarded", 192)];
 
 impl PortDump {
@@ -152,7 +154,8 @@ impl PortDump {
     }
 }
 
-/// A vector of words, the highest first, in one piece: the library's own way is to format each bit.
+/// Writes a vector of words, the highest word first, in one piece, because the library formats each
+/// bit by itself.
 fn vector(out: &mut vcd::Writer<BufWriter<File>>, id: vcd::IdCode, words: &[u32], bits: u32) -> std::io::Result<()> {
     let mut text = vec![b'b'];
     for word in words {

@@ -1,4 +1,6 @@
-//! The four panels.
+//! Draws the four panels of the picture.
+//!
+//! The look may change freely.
 
 use super::sampled::{Point, Sampled};
 use super::{Area, Clock, GREY, GRID, INK, PictureError, colour, failed, label, number, px, right_label, stroke};
@@ -7,7 +9,7 @@ use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-/// What a panel shows against time.
+/// The quantity that a panel shows against time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Panel {
     Speed,
@@ -70,7 +72,7 @@ impl Panel {
             return lines.try_for_each(|(curve, width)| delays(&mut chart, curve, width, clock));
         }
         let (low, high) = values().fold((0.0_f64, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
-        // Nothing but 0, or but impulses, has a scale too.
+        // A panel without any values but 0 gets a scale too.
         let (low, high) = if high > low { (low, high) } else { (-1.0, 1.0) };
         let room = 0.09 * (high - low);
         let bottom = if low < 0.0 { low - room } else { low - room / 4.0 };
@@ -103,12 +105,13 @@ impl Panel {
     }
 }
 
-/// Tenths of a pixel, from wide to narrow: of lines on top of each other all can be seen.
+/// Line widths in tenths of a pixel, from wide to narrow, so that lines on top of each other stay
+/// visible.
 fn widths(lines: usize) -> impl Iterator<Item = u32> {
     (0..lines).rev().map(|under| 20 + 6 * under as u32)
 }
 
-/// Grid, labels and the name of the time axis.
+/// Draws the grid, the labels and the name of the time axis.
 fn mesh<Y>(chart: &mut Chart<'_, '_, Y>, clock: &Clock) -> Result<(), PictureError>
 where
     Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
@@ -131,7 +134,7 @@ where
         .map_err(failed)
 }
 
-/// A line, and a dot for each step where steps can be told apart.
+/// Draws the line of the delays, and a dot for each of the first steps, which lie far apart.
 fn delays<Y: Ranged<ValueType = f64>>(
     chart: &mut Chart<'_, '_, Y>,
     curve: &Sampled,
@@ -146,7 +149,7 @@ fn delays<Y: Ranged<ValueType = f64>>(
     Ok(())
 }
 
-/// An arrow for each impulse; the greatest reaches the edge of the panel.
+/// Draws an arrow for each impulse. The greatest one reaches the edge of the panel.
 fn impulses(
     chart: &mut Chart<'_, '_, RangedCoordf64>,
     sampled: &[Sampled],

@@ -1,31 +1,31 @@
-//! A curve as points: enough of them, and on both sides of each corner.
+//! Samples a curve as points for the picture, with points on both sides of each corner.
 
 use crate::Curve;
 use crate::reference::curve::Reference;
 use crate::reference::kind::Kind;
 
-/// Points of a line, beside its corners.
+/// Number of points of a line, without those at its corners.
 const LINE: u32 = 240;
-/// Delays that are drawn, at most.
+/// The greatest number of delays that are drawn.
 const DELAYS: u32 = 300;
 
-/// A point: seconds, value.
+/// A point: time in seconds, and value.
 pub type Point = (f64, f64);
 
-/// What is drawn of one profile, seconds and the unit of the picture.
+/// The points of one profile, in seconds and the unit of the picture.
 #[derive(Debug, Clone)]
 pub struct Sampled {
     pub kind: Kind,
-    /// Name and length.
+    /// Name and duration.
     pub legend: String,
     pub speed: Vec<Point>,
     /// The end speed of a ramp, from its end to the end of the picture.
     pub cruise: Option<[Point; 2]>,
     pub acceleration: Vec<Point>,
     pub jerk: Vec<Point>,
-    /// Sudden changes of acceleration: impulses of jerk.
+    /// Sudden changes of the acceleration, which are impulses of the jerk.
     pub impulses: Vec<Point>,
-    /// Seconds from one step to the next, in the middle between them.
+    /// Seconds from one step to the next, drawn in the middle between them.
     pub delay: Vec<Point>,
 }
 
@@ -50,17 +50,17 @@ impl Sampled {
     }
 }
 
-/// Up from 0 at the start, down to 0 at the end.
+/// Adds points at 0 at the start and at the end of the curve.
 fn from_nothing(line: Vec<Point>, end: f64) -> Vec<Point> {
     [(0.0, 0.0)].into_iter().chain(line).chain([(end, 0.0)]).collect()
 }
 
-/// A moment, for the two sides of a corner.
+/// The distance in time from a corner to the points on its two sides, seconds.
 fn moment(curve: &dyn Curve<f64>) -> f64 {
     1e-7 * curve.duration()
 }
 
-/// Corners, the ends included.
+/// The times of the corners, with both ends.
 fn corners(curve: &dyn Curve<f64>) -> impl Iterator<Item = f64> + '_ {
     [0.0, curve.duration()].into_iter().chain(curve.breakpoints().iter().copied())
 }
@@ -74,23 +74,25 @@ fn times(curve: &dyn Curve<f64>) -> Vec<f64> {
     times
 }
 
-/// Where acceleration jumps, and by how much. Outside the curve it is 0.
+/// The times at which the acceleration jumps, and the size of each jump. The acceleration is 0
+/// outside the curve.
 fn impulses(curve: &dyn Curve<f64>) -> Vec<Point> {
     let (end, moment) = (curve.duration(), moment(curve));
     let at = |t: f64| if t > 0.0 && t < end { curve.acceleration(t) } else { 0.0 };
     let jumps = corners(curve).map(|t| (t, at(t + moment) - at(t - moment)));
-    // What changes gently changes a little in two moments too.
+    // A continuous acceleration also changes a little between the two points; only larger changes
+    // count.
     jumps.filter(|(_, jump)| jump.abs() > 1e-4 * curve.peak_acceleration()).collect()
 }
 
-/// All delays, or as many as can be told apart, evenly in time.
+/// The delays of all steps, or of a selection that is even in time if there are too many.
 fn delays(reference: &Reference) -> Vec<Point> {
     let (curve, steps) = (reference.curve(), reference.whole_steps());
     let chosen: Vec<f64> = if steps <= f64::from(DELAYS) {
         (0..steps as u32).map(f64::from).collect()
     } else {
         let even = (0..DELAYS).map(|k| curve.position(curve.duration() * f64::from(k) / f64::from(DELAYS)).floor());
-        // The first steps are far apart in delay.
+        // The delays of the first and the last steps differ much, so these steps are all included.
         let ends = (0..40).flat_map(|n| [f64::from(n), steps - 1.0 - f64::from(n)]);
         let mut chosen: Vec<f64> = even.chain(ends).collect();
         chosen.sort_by(f64::total_cmp);

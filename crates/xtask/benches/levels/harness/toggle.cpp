@@ -1,7 +1,8 @@
-// The clock of carrystep_six_axis, toggled; nothing else is done in a cycle in which nothing is fed.
-// Arguments: FEED CLOCKS [TRACE.vcd]. A line of the feed: `cycle kind who ticks v a j last`, kind 0 a segment
-// for axis `who`, 1 a start of mask `who`; numbers but the cycle in hex. Prints seconds of processor time
-// and the positions.
+// Runs carrystep_six_axis by toggling its clock. A cycle without a command only toggles.
+//
+// Arguments: FEED CLOCKS [TRACE.vcd]. Each line of the feed is `cycle kind who ticks v a j last`.
+// Kind 0 is a segment for axis `who`, kind 1 a start of the mask `who`. All numbers but the cycle,
+// kind and last are in hex. The program prints the seconds of processor time and the positions.
 #include "Vcarrystep_six_axis.h"
 #include "verilated.h"
 #if VM_TRACE

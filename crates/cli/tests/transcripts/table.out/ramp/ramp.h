@@ -80,7 +80,7 @@ static const uint16_t ramp_compare[500] PROGMEM = {
       201,  200,  200,  200,  200,  200,  199,  199,
 };
 
-/* Runs of entries with as many pulses each: {end, pulses}. */
+/* Runs of entries: {index after the last entry, pulses of each entry}. */
 static const carrystep_group ramp_groups[1] PROGMEM = {
     {500u, 1u},
 };
@@ -89,7 +89,7 @@ static const carrystep_table ramp_table = {
     ramp_compare, ramp_groups, RAMP_PULSES, RAMP_CRUISE
 };
 
-/* A compiler that does not accept one of these has a table with a hole or a 16-bit type that is none. */
+/* If the compiler rejects a line below, the array lacks values or uint16_t is not 16 bits wide. */
 typedef char ramp_check_length[sizeof ramp_compare / sizeof ramp_compare[0] == RAMP_ENTRIES ? 1 : -1];
 typedef char ramp_check_width[(uint16_t)-1 == 65535u ? 1 : -1];
 
