@@ -1,4 +1,5 @@
-//! The command line, once: it feeds the parser and the help.
+//! The definition of the command line. The parser and the help are both made from it, so every
+//! change here changes tests/transcripts/help.md.
 
 mod machine;
 mod port;
@@ -30,10 +31,11 @@ pub struct Arguments {
     pub command: Subcommand,
 }
 
-/// The subcommands.
+/// The subcommands; each has its own file in `commands`.
 #[derive(Debug, clap::Subcommand)]
 pub enum Subcommand {
-    /// The main job on the shipped six-axis machine: plan, Verilog, simulation, check, waveform, plot.
+    /// The main job on the shipped six-axis machine: plan, Verilog, simulation, check, waveform,
+    /// plot.
     Demo(Demo),
     /// Step times, delays and speeds of the curves of the literature: figures, CSV, JSON, plot.
     Profile(Profile),
@@ -49,20 +51,23 @@ pub enum Subcommand {
     Verilog(Verilog),
     /// Run many machines and moves over all cores and report the worst of each figure.
     Sweep(Sweep),
-    /// Make the moves of a file on a board: plan, stream, keep its queues full; Ctrl-C stops by ramps.
+    /// Make the moves of a file on a board: plan, stream, keep its queues full; Ctrl-C stops by
+    /// ramps.
     Run(Run),
     /// Move one axis of a board.
     Jog(Jog),
-    /// Home axes by their limit switches: move off, seek fast, back off, approach slowly, pull off. A switch that is
-    /// still closed after moving off is not seen where one wire serves both ends of an axis, or all axes (docs/homing.md).
+    /// Home axes by their limit switches: move off, seek fast, back off, approach slowly, pull off.
+    /// A switch that is still closed after moving off is not seen where one wire serves both ends
+    /// of an axis, or all axes (docs/homing.md).
     Home(Home),
     /// Say what a board does, where its axes are, and why it stands.
     Status(Status),
-    /// Stop what moves on a board, also while another terminal's `run`, `jog` or `home` drives it; resume after a stop
-    /// (--clear), take the power away (--off).
+    /// Stop what moves on a board, also while another terminal's `run`, `jog` or `home` drives it;
+    /// resume after a stop (--clear), take the power away (--off).
     Stop(Stop),
-    /// Be a board: the gateware of a machine behind a pseudo-terminal, for `run` and the others. On standard input
-    /// `estop 1`, `min x 1`, `max x 0` press and release switches; Ctrl-C or `end` ends it.
+    /// Be a board: the gateware of a machine behind a pseudo-terminal, for `run` and the others. On
+    /// standard input `estop 1`, `min x 1`, `max x 0` press and release switches; Ctrl-C or `end`
+    /// ends it.
     #[cfg(unix)]
     VirtualBoard(VirtualBoard),
     /// Machine files: write a new one.
@@ -80,20 +85,20 @@ pub enum Subcommand {
     Schemas(Schemas),
 }
 
-/// Which gateware.
+/// The core that the gateware is built from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Core {
-    /// One adder for all axes, with queues and a guard: for boards.
+    /// One adder for all axes, with queues and a guard. Boards use this core.
     Engine,
-    /// An adder an axis: what the engine is compared with.
+    /// One adder per axis. The engine is compared with this core.
     Parallel,
 }
 
 impl Core {
-    /// All cores.
+    /// Both cores.
     const ALL: [Self; 2] = [Self::Engine, Self::Parallel];
 
-    /// Its name on the command line.
+    /// The name of the core on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Engine => "engine",
@@ -122,7 +127,8 @@ pub struct Plan {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
-    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
+    /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
     /// List every segment: ticks, V, A, J.
@@ -145,7 +151,8 @@ pub struct Simulate {
     /// Where the gateware runs.
     #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
     pub level: Level,
-    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
+    /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
     /// Write the waveform: pins, position and V beside the float profile.
@@ -177,13 +184,15 @@ pub struct Check {
     /// The move file that the pulses should follow.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
-    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
+    /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
     /// Where a signal is in the capture: x.step=top.la.D0. Repeat for each pin.
     #[arg(long = "map", value_name = "AXIS.PIN=SIGNAL")]
     pub map: Vec<String>,
-    /// Time of the move's start in the capture; default: found from the pulses, or, in our own captures, known.
+    /// Time of the move's start in the capture; default: found from the pulses, or, in our own
+    /// captures, known.
     #[arg(long, value_name = "PS", allow_negative_numbers = true)]
     pub origin_ps: Option<i64>,
     /// How uncertain the capture's times are (a logic analyser: one sample period).
@@ -203,14 +212,15 @@ pub struct Verilog {
     /// Which gateware: one adder for all axes, with queues and a guard, or an adder an axis.
     #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
     pub core: Core,
-    /// All gateware of a board instead: a top level with clock, host link and engine, constraints, a build script.
+    /// All gateware of a board instead: a top level with clock, host link and engine, constraints,
+    /// a build script.
     #[arg(long, value_name = "BOARD", conflicts_with = "core")]
     pub board: Option<String>,
     /// Which of the board's parts; default: its first.
     #[arg(long, value_name = "PART", requires = "board")]
     pub part: Option<String>,
-    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped machine of the core, or
-    /// for a board the shipped machine at the board's clock.
+    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped
+    /// machine of the core, or for a board the shipped machine at the board's clock.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
     /// Folder for all files; default: hdl-out/core, or sim/out/BOARD.
@@ -239,7 +249,8 @@ pub struct Sweep {
     /// Make one report of the JSON reports of all shards.
     #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "sample", "seed", "shard"])]
     pub merge: Vec<PathBuf>,
-    /// Also write the result as JUnit XML, a test case for the whole and one for each case that failed.
+    /// Also write the result as JUnit XML, a test case for the whole and one for each case that
+    /// failed.
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
     /// One JSON document instead of the table; shards are merged from these.
@@ -256,7 +267,8 @@ pub struct Build {
     /// Which of its parts; default: its first.
     #[arg(long, value_name = "PART")]
     pub part: Option<String>,
-    /// The machine whose gateware it is; default: the shipped machine at the board's clock and tick.
+    /// The machine whose gateware it is; default: the shipped machine at the board's clock and
+    /// tick.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
     /// Try a clock that is more than 10 % over what the board was measured to reach.

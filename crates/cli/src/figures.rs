@@ -1,4 +1,4 @@
-//! What a user has to know before trusting a curve, as a table with a column for each kind.
+//! The figures of a curve (jumps, greatest values, times), as a table with one column per curve.
 
 use carrystep_reference::{Drive, Length, Reference};
 use schemars::JsonSchema;
@@ -16,7 +16,7 @@ pub struct FiguresJson {
     top_speed_steps_per_s: f64,
     peak_acceleration_steps_per_s2: f64,
     acceleration_jump_steps_per_s2: f64,
-    /// `None`, with a reason, where all jerk is impulses: it has no greatest value.
+    /// `None`, with a reason, if all jerk is impulses and therefore has no greatest value.
     peak_jerk_steps_per_s3: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_jerk_reason: Option<&'static str>,

@@ -1,4 +1,4 @@
-//! `carrystep machine`
+//! The arguments of `carrystep machine`. The docstrings of the fields are the command's help.
 
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -28,10 +28,12 @@ pub struct MachineNew {
     /// The board that the machine is built with: its clock, tick and baud rate are written.
     #[arg(long, value_name = "BOARD", conflicts_with = "clock_hz")]
     pub board: Option<String>,
-    /// The FPGA's clock, where it is on no board that carrystep knows; the tick is the shortest that the engine takes.
+    /// The FPGA's clock, where it is on no board that carrystep knows; the tick is the shortest
+    /// that the engine takes.
     #[arg(long, value_name = "HZ")]
     pub clock_hz: Option<u64>,
-    /// How the limit switches are wired: two switches an axis, one an axis, one for all axes, or none.
+    /// How the limit switches are wired: two switches an axis, one an axis, one for all axes, or
+    /// none.
     #[arg(long, value_name = "WIRING", value_parser = ["pair", "each", "one", "none"])]
     pub limits: Option<String>,
     /// An axis: its name, then keys of [[machine.axis]]. Repeat for each axis.

@@ -1,4 +1,5 @@
-//! The arguments of the commands that talk to a board.
+//! The arguments of the commands that talk to a board. The docstrings of the fields are the
+//! command's help.
 
 use clap::Args;
 use std::path::PathBuf;
@@ -32,10 +33,12 @@ pub struct Run {
     pub file: PathBuf,
     #[command(flatten)]
     pub port: Port,
-    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
+    /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
-    /// Begin even where an axis goes further toward a limit that it has just met: today's gateware may not see its switch.
+    /// Begin even where an axis goes further toward a limit that it has just met: today's gateware
+    /// may not see its switch.
     #[arg(long)]
     pub into_limit: bool,
     /// One JSON document instead of the table.
@@ -46,7 +49,8 @@ pub struct Run {
 /// `carrystep home`
 #[derive(Debug, Args)]
 pub struct Home {
-    /// Axes to home, by their names; default: all that have `home = { ... }` in their table. They go in the order of home_order.
+    /// Axes to home, by their names; default: all that have `home = { ... }` in their table. They
+    /// go in the order of home_order.
     #[arg(value_name = "AXIS")]
     pub axes: Vec<String>,
     /// The machine.
@@ -74,7 +78,8 @@ pub struct Jog {
     /// In so many seconds; default: as fast as the axis' limits allow.
     #[arg(long, value_name = "SECONDS")]
     pub time: Option<f64>,
-    /// Jog further toward a limit that the axis has just met: today's gateware may not see its switch.
+    /// Jog further toward a limit that the axis has just met: today's gateware may not see its
+    /// switch.
     #[arg(long)]
     pub into_limit: bool,
     #[command(flatten)]
@@ -99,8 +104,8 @@ pub struct Status {
 pub struct Stop {
     #[command(flatten)]
     pub peer: Peer,
-    /// Then resume: queues empty, positions as they are. Whatever had stopped the machine is forgotten. A `run`, `jog` or
-    /// `home` that is stopped clears its own stop.
+    /// Then resume: queues empty, positions as they are. Whatever had stopped the machine is
+    /// forgotten. A `run`, `jog` or `home` that is stopped clears its own stop.
     #[arg(long)]
     pub clear: bool,
     /// Then take the drivers' power away.
@@ -111,7 +116,8 @@ pub struct Stop {
     pub json: bool,
 }
 
-/// What a virtual board is made of; values without a word each, or clap makes the help of all options twice as long.
+/// The implementation of a virtual board. The values have no docstrings, because clap would then
+/// print the help of all options in its long form.
 #[cfg(unix)]
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 pub enum BoardLevel {
@@ -135,7 +141,8 @@ pub struct VirtualBoard {
     /// Write the pins and positions, from the first start to the end: `carrystep check` reads it.
     #[arg(long, value_name = "FILE")]
     pub vcd: Option<PathBuf>,
-    /// A limit switch at the low end of an axis, at this position in steps: x=-200. Repeat for each axis.
+    /// A limit switch at the low end of an axis, at this position in steps: x=-200. Repeat for each
+    /// axis.
     #[arg(long = "min", value_name = "AXIS=STEPS")]
     pub min: Vec<String>,
     /// A limit switch at the high end of an axis, at this position in steps.

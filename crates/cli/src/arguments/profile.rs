@@ -1,4 +1,4 @@
-//! `carrystep profile`
+//! The arguments of `carrystep profile`. The docstrings of the fields are the command's help.
 
 use carrystep_reference::{Drive, Kind, Length, Listing, Quantity, Request, Travel};
 use carrystep_spec::StartPhase;
@@ -18,7 +18,8 @@ pub struct Profile {
     /// In exactly this time, seconds; default: as fast as the limits allow.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     time: Option<f64>,
-    /// Centre of a logistic ramp: half of its speed is reached after this time; default: the ramp is symmetric.
+    /// Centre of a logistic ramp: half of its speed is reached after this time; default: the ramp
+    /// is symmetric.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     ti: Option<f64>,
 
@@ -42,8 +43,8 @@ pub struct Profile {
     /// One JSON document, with each step, instead of the table.
     #[arg(long, help_heading = "Output")]
     pub json: bool,
-    /// Where in a step its pulse is: `zero` lists t_0, t_1 ... as the sources do, `half` the middle of each step, as the
-    /// gateware emits by default.
+    /// Where in a step its pulse is: `zero` lists t_0, t_1 ... as the sources do, `half` the middle
+    /// of each step, as the gateware emits by default.
     #[arg(long, value_name = "PHASE", default_value = "zero", value_parser = phase(), help_heading = "Output")]
     phase: StartPhase,
     /// Delays in counts of a timer with this clock, Hz, besides.
@@ -175,18 +176,18 @@ fn phase() -> impl clap::builder::TypedValueParser<Value = StartPhase> {
         .map(|name| if name == "half" { StartPhase::Half } else { StartPhase::Zero })
 }
 
-/// The one that was given.
+/// The option that was given, with its unit; `None` if there is none.
 fn given<const N: usize>(flags: [(Option<f64>, Length); N]) -> Option<Quantity> {
     flags.into_iter().find_map(|(value, length)| Some(Quantity::new(value?, length)))
 }
 
 impl Profile {
-    /// What is listed of each curve.
+    /// The settings of the listing of each step.
     pub fn listing(&self) -> Listing {
         Listing { phase: self.phase, clock_hz: self.timer_hz }
     }
 
-    /// What the flags ask for.
+    /// The request that the options describe.
     pub fn request(&self) -> Request {
         use Length::{Degree, Millimetre, Step, Turn};
         let Self { distance, speed, start, acceleration, jerk, motor, .. } = self;
