@@ -1,5 +1,5 @@
-//! The engine is its model, every output in every clock, and its memory keeps what the model knows: in Rust-HDL's
-//! simulation, in Icarus and in Verilator.
+//! Compares the engine with its model: every output in every clock, and the contents of its memory.
+//! The engine runs in Rust-HDL's simulation, in Icarus and in Verilator.
 
 use carrystep_hdl::EngineSim;
 use carrystep_levels::Level;
@@ -15,7 +15,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;
 
-/// Runs both until the program is over and both are quiet; the clocks it took.
+/// Runs both until the program is over and both are idle. Returns the number of clocks.
 fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Result<u64, TestCaseError> {
     let mut model = Engine::new(build);
     let mut engine = EngineSim::new(build).expect("a fine build");
@@ -50,7 +50,7 @@ fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Resu
     Ok(200_000)
 }
 
-/// P, positions and discarded steps, when nothing moves.
+/// Compares P, positions and discarded steps while nothing moves.
 fn assert_kept(build: &EngineBuild, model: &Engine, engine: &EngineSim) -> Result<(), TestCaseError> {
     for axis in 0..build.axes() {
         let shaper = model.shaper(axis);
@@ -62,12 +62,12 @@ fn assert_kept(build: &EngineBuild, model: &Engine, engine: &EngineSim) -> Resul
     Ok(())
 }
 
-/// Runs random programs until they have taken so many clocks.
+/// Runs random programs until they have taken the required number of clocks.
 fn run_programs(build: &EngineBuild, usual: u64, one: impl Fn(&Program, &Events) -> Result<u64, TestCaseError>) {
     let (clocks, enough) = (Cell::new(0), effort::clocks(usual));
     let mut config = Config { cases: 4, max_shrink_time: 20_000, failure_persistence: None, ..Config::default() };
     while clocks.get() < enough {
-        // From a given seed, other programs in each round too.
+        // A fixed seed is incremented, so that each round has other programs.
         if let RngSeed::Fixed(seed) = &mut config.rng_seed {
             *seed = seed.wrapping_add(1);
         }
@@ -128,19 +128,20 @@ fn in_verilog(level: Level, build: &EngineBuild, usual: u64) -> Seen {
     seen.get()
 }
 
-/// What happened in random programs: lock-step over nothing would prove nothing.
+/// Counts of what happened in random programs, because a lock-step in which nothing happens would
+/// prove nothing.
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
     clocks: u64,
     edges: u64,
-    /// Edges of several axes in one clock.
+    /// Clocks in which several axes have an edge.
     together: u64,
-    /// Stops by each cause.
+    /// Number of stops by each cause.
     causes: [u64; CAUSES.len()],
-    /// Edges after a stop was called: of ramps.
+    /// Edges after the call of a stop, which belong to ramps.
     ramped: u64,
     cleared: u64,
-    /// Axes that have met the limit that they waited for, while others waited on.
+    /// Axes that found their limit in homing while other axes were still waiting.
     homed: u64,
 }
 
@@ -201,7 +202,8 @@ fn random_programs_of_one_and_of_eight_axes_in_icarus() {
     in_verilog(Level::Icarus, &build(8, 112_000_000, 16, StartPhase::Zero, Limits::Pair), 100_000);
 }
 
-/// All golden cases of a phase, one an axis; started together, each to its last edge. The short ones in every run.
+/// All golden cases of one start phase, one per axis, are started together and run to their last
+/// edge. Only a long run includes the long cases.
 #[test]
 fn golden_vectors_in_verilator() {
     let vectors = golden::engine_vectors();
@@ -227,7 +229,8 @@ fn golden_vectors_in_verilator() {
     }
 }
 
-/// What fits into the queues, the start, and the rest as the queues have room.
+/// The segments that fit into the queues, then the start, then the other segments as the queues
+/// have room.
 fn golden_program(cases: &[&Case]) -> Program {
     let segments: Vec<Vec<Segment>> = cases.iter().map(|case| case.segments()).collect();
     let part = |rows: std::ops::Range<usize>| {
@@ -243,7 +246,7 @@ fn golden_program(cases: &[&Case]) -> Program {
     [part(0..QUEUE), vec![start], part(QUEUE..rows)].concat()
 }
 
-/// The edges of an axis: tick, phase and direction.
+/// The edges of an axis as tick, phase and direction.
 fn edges(build: &EngineBuild, recording: &Recording, axis: usize) -> Vec<Edge> {
     let time = &build.timebase;
     let started = recording.outputs.iter().find(|(_, outputs)| outputs.started).expect("a start").0;
@@ -264,7 +267,7 @@ fn edges(build: &EngineBuild, recording: &Recording, axis: usize) -> Vec<Edge> {
 }
 
 #[test]
-fn nothing_happens_to_an_engine_without_a_host() {
+fn engine_without_a_host_stays_idle() {
     let build = build(6, 80_000_000, 16, StartPhase::Half, Limits::None);
     let mut engine = EngineSim::new(&build).expect("a fine build");
     for _ in 0..1000 {

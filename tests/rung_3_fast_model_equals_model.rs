@@ -1,5 +1,5 @@
-//! Rung 3: the fast model is the clock-by-clock model: the same registers wherever it stops, the same edges
-//! (ten million of them and more), the same outputs in every clock.
+//! Rung 3: the fast model equals the clock-by-clock model: equal registers wherever it stops, equal
+//! edges (ten million and more) and equal outputs in every clock.
 
 use carrystep_levels::engine::Events;
 use carrystep_levels::{Job, Level};
@@ -44,7 +44,8 @@ fn the_demo() {
     lockstep::assert_equals_model(Level::Fast, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
 }
 
-/// On the pins: the cases of one start phase side by side, one on each axis.
+/// The cases of one start phase run side by side, one on each axis, and the edges are taken from
+/// the pins.
 #[test]
 fn golden_vectors_to_the_last_edge_and_phase() {
     let all = engine_vectors();
@@ -59,12 +60,12 @@ fn golden_vectors_to_the_last_edge_and_phase() {
     }
 }
 
-/// Lengths of leaps: to the end of what can be leapt over, and stops in any clock.
+/// Lengths of leaps: as far as possible, or ending in any clock.
 fn leaps() -> impl Strategy<Value = Vec<u64>> {
     prop_oneof![2 => Just(vec![u64::MAX]), 1 => prop::collection::vec(1_u64..5000, 1..20)]
 }
 
-/// Dense programs on a build; how many edges they made.
+/// Runs dense programs on a build; returns the number of edges.
 fn dense_programs(build: &Build, ticks: u32, cases: u32) -> u64 {
     let edges = Cell::new(0);
     let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 500, ..Config::default() });
@@ -78,7 +79,7 @@ fn dense_programs(build: &Build, ticks: u32, cases: u32) -> u64 {
     edges.get()
 }
 
-/// Pins that never delay a step: all edges of the accumulators come through.
+/// The pin timings never delay a step, so all edges of the accumulators appear on the pins.
 #[test]
 fn ten_million_edges_with_fast_pins() {
     let edges = dense_programs(&lockstep::quick_build(16, StartPhase::Half), 20_000, 400);
@@ -91,16 +92,16 @@ fn ten_million_edges_from_zero_phase() {
     assert!(edges >= 5_000_000, "only {edges} edges");
 }
 
-/// Pins that delay steps and turns, and overrun.
+/// The pin timings delay steps and changes of DIR, and cause overruns.
 #[test]
-fn registers_with_slow_pins() {
+fn registers_are_equal_with_slow_pins() {
     let slow = PinTiming { width: 12, gap: 20, setup: 30, hold: 70 };
     let build = Build { pins: [slow; AXES], ..lockstep::tight_build(16, StartPhase::Half) };
     let edges = dense_programs(&build, 500, 400);
     assert!(edges >= 10_000, "only {edges} edges");
 }
 
-/// The engine under programs and what happens around them; how far they came.
+/// Compares the engines under programs with events; returns the counts.
 fn engines(build: &EngineBuild, cases: u32, programs: impl Strategy<Value = (Program, Events)>) -> Came {
     let sum = Cell::new(Came::default());
     let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 300, ..Config::default() });
@@ -114,12 +115,13 @@ fn engines(build: &EngineBuild, cases: u32, programs: impl Strategy<Value = (Pro
     sum.get()
 }
 
-/// The e-stop, limits, stops and silence at any clock, whatever the host does.
+/// E-stop, limits, stops and silence of the host occur in any clock, whatever the host does.
 fn stops_at_any_clock(axes: usize, clock_hz: u64, phases: u32, limits: Limits, round: u32) {
     let build = engine_programs::build(axes, clock_hz, phases, StartPhase::Half, limits);
     let guard = Guard { round, watchdog: 80 / round, ..build.guard.clone() };
     let came = engines(&EngineBuild { guard, ..build }, 100, engine_programs::program(axes));
-    // An overspeed freezes first; promises of the rest are kept by others.
+    // Not every cause must occur, because an overspeed can freeze the engine before another cause;
+    // seven of the eight causes are required.
     let causes = came.faults.iter().filter(|count| **count > 0).count();
     assert!(came.leapt > came.clocks / 3 && came.edges > 1000 && causes >= 7, "{came:?}");
 }
@@ -130,12 +132,12 @@ fn an_engine_with_a_pair_of_limits_for_each_axis() {
 }
 
 #[test]
-fn an_engine_with_looks_far_between() {
+fn an_engine_with_many_ticks_between_samples_of_limits() {
     stops_at_any_clock(6, 79_000_000, 1, Limits::Pair, 16);
 }
 
 #[test]
-fn an_engine_that_limits_freeze() {
+fn an_engine_whose_limits_freeze_the_axes() {
     stops_at_any_clock(6, 80_000_000, 16, Limits::Each, 4);
 }
 
@@ -144,7 +146,7 @@ fn an_engine_of_eight_axes() {
     stops_at_any_clock(8, 112_000_000, 4, Limits::One, 2);
 }
 
-/// Each with something that an edge search can get wrong.
+/// Each program contains a situation that the search for edges could get wrong.
 #[test]
 fn an_engine_of_many_edges() {
     let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Zero, Limits::None);

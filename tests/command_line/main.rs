@@ -1,4 +1,4 @@
-//! The command from outside: what it says, its exit status, and what it leaves behind.
+//! Tests of the command from outside: its output, its exit status, and the files that it leaves.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
