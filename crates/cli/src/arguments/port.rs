@@ -17,10 +17,10 @@ pub struct Port {
 pub struct Peer {
     #[command(flatten)]
     pub port: Port,
-    /// The machine that the board's gateware must be made for; names the axes. Default: any.
+    /// The machine from which the board's gateware must be built; it names the axes. Default: any.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
-    /// The baud rate, where no machine says it.
+    /// The baud rate, if no machine is given.
     #[arg(long, value_name = "BAUD", conflicts_with = "machine", default_value_t = carrystep_spec::link::DEFAULT_BAUD)]
     pub baud: u32,
 }
@@ -37,8 +37,8 @@ pub struct Run {
     /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
-    /// Begin even where an axis goes further toward a limit that it has just met: today's gateware
-    /// may not see its switch.
+    /// Begin even if an axis moves further toward a limit that it has just met, although the
+    /// gateware may not detect the closed switch.
     #[arg(long)]
     pub into_limit: bool,
     /// One JSON document instead of the table.
@@ -69,17 +69,17 @@ pub struct Jog {
     /// The axis, by its name.
     #[arg(value_name = "AXIS")]
     pub axis: String,
-    /// How far, in units of the axis; negative is back.
+    /// Distance in units of the axis; negative is backward.
     #[arg(value_name = "DISTANCE", allow_negative_numbers = true)]
     pub distance: f64,
     /// The machine.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: PathBuf,
-    /// In so many seconds; default: as fast as the axis' limits allow.
+    /// Duration of the move; default: as fast as the axis' limits allow.
     #[arg(long, value_name = "SECONDS")]
     pub time: Option<f64>,
-    /// Jog further toward a limit that the axis has just met: today's gateware may not see its
-    /// switch.
+    /// Jog further toward a limit that the axis has just met, although the gateware may not detect
+    /// the closed switch.
     #[arg(long)]
     pub into_limit: bool,
     #[command(flatten)]
@@ -104,11 +104,11 @@ pub struct Status {
 pub struct Stop {
     #[command(flatten)]
     pub peer: Peer,
-    /// Then resume: queues empty, positions as they are. Whatever had stopped the machine is
-    /// forgotten. A `run`, `jog` or `home` that is stopped clears its own stop.
+    /// Then clear the stop and its cause: the queues are emptied, the positions stay. A `run`,
+    /// `jog` or `home` that is stopped clears its own stop.
     #[arg(long)]
     pub clear: bool,
-    /// Then take the drivers' power away.
+    /// Then switch the drivers off.
     #[arg(long)]
     pub off: bool,
     /// One JSON document instead of the table.
@@ -129,13 +129,13 @@ pub enum BoardLevel {
 #[cfg(unix)]
 #[derive(Debug, Args)]
 pub struct VirtualBoard {
-    /// The machine whose gateware it has.
+    /// The machine whose gateware the board runs.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: PathBuf,
-    /// What it is made of: models, or the exported Verilog, which is far slower than a real board.
+    /// The implementation: models, or the exported Verilog, which is far slower than a real board.
     #[arg(long, value_enum, default_value_t = BoardLevel::Model)]
     pub level: BoardLevel,
-    /// Do not wait for the clock on the wall, but for a host that is late.
+    /// Run as fast as possible and not in real time, and wait for a host that is late.
     #[arg(long)]
     pub fast: bool,
     /// Write the pins and positions, from the first start to the end: `carrystep check` reads it.
@@ -148,7 +148,7 @@ pub struct VirtualBoard {
     /// A limit switch at the high end of an axis, at this position in steps.
     #[arg(long = "max", value_name = "AXIS=STEPS")]
     pub max: Vec<String>,
-    /// One JSON document at the end; the port is told on standard error.
+    /// One JSON document at the end; the port is printed on standard error.
     #[arg(long)]
     pub json: bool,
 }
