@@ -12,7 +12,7 @@ const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/transcrip
 fn transcripts_equal_the_output_of_the_command() {
     trycmd::TestCases::new()
         .register_bin("carrystep", Path::new(env!("CARGO_BIN_EXE_carrystep")))
-        .env("COLUMNS", "100") // help is wrapped to it
+        .env("COLUMNS", "100") // The help is wrapped to this width.
         .case(format!("{FOLDER}/*.md"));
 }
 

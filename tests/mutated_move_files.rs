@@ -1,7 +1,7 @@
 //! Whatever the text of a move file is, reading and planning it neither panics nor hangs, and a
 //! refusal has a message.
 
-#![allow(clippy::unwrap_used)] // a test may panic
+#![allow(clippy::unwrap_used)] // Tests may panic.
 
 use carrystep_plan::plan;
 use carrystep_spec::{MoveFile, Source};

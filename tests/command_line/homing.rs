@@ -224,8 +224,8 @@ fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
         passed(&on(&folder, &board, "jog x 1"));
         passed(&jog("3"));
         passed(&jog("-1"));
-        // After it has moved far enough away, the axis meets the limit again. Only --into-limit then
-        // moves it toward the limit. On this board the axis can move beyond its switch.
+        // After it has moved far enough away, the axis meets the limit again. Only --into-limit
+        // then moves it toward the limit. On this board the axis can move beyond its switch.
         assert_eq!(jog("-5").status, 1);
         clear();
         jog("-0.1").refuses("--into-limit");

@@ -3,8 +3,8 @@
 use crate::command::{Folder, GOOD};
 use serde_json::Value;
 
-/// The moves of [`GOOD`] with varied driver, phases and distance. `drivers` is the list of drivers; two
-/// of them give 24 cases.
+/// The moves of [`GOOD`] with varied driver, phases and distance. `drivers` is the list of drivers;
+/// two of them give 24 cases.
 fn sweep(drivers: &str) -> Folder {
     let folder = Folder::new();
     let blanks =

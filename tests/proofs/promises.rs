@@ -35,8 +35,8 @@ impl Promises {
         numbers
     }
 
-    /// Names that stand for a signal inside the module, with that signal: `(* inside = "dut.busy"
-    /// *) wire [16:0] busy;`. A star stands for all axes, the highest first.
+    /// Names that stand for a signal inside the module, with that signal, as declared by
+    /// `(* inside = "dut.busy" *) wire [16:0] busy;`. A star stands for all axes, the highest first.
     pub fn inside(&self, axes: usize) -> Vec<(&'static str, String)> {
         let declared = self.text.lines().filter_map(|line| line.trim().strip_prefix("(* inside = \"")?.split_once('"'));
         declared

@@ -166,8 +166,8 @@ fn four_hundred_steps_in_a_million_seconds() {
     four_hundred_steps_in(1_000_000);
 }
 
-/// A triangular move of a million steps in a million seconds has too many slow pulses, and none that
-/// is slow enough to be planned by itself, so it would need too many segments.
+/// A triangular move of a million steps in a million seconds has too many slow pulses, and none
+/// that is slow enough to be planned by itself, so it would need too many segments.
 #[test]
 fn a_move_of_too_many_segments_is_refused_with_the_longest_time() {
     let text = |seconds: &str| {

@@ -107,7 +107,7 @@ impl Core {
     }
 }
 
-/// `carrystep demo`
+/// The arguments of `carrystep demo`.
 #[derive(Debug, Args)]
 pub struct Demo {
     /// Folder for everything that the demo writes.
@@ -121,7 +121,7 @@ pub struct Demo {
     pub json: bool,
 }
 
-/// `carrystep plan`
+/// The arguments of `carrystep plan`.
 #[derive(Debug, Args)]
 pub struct Plan {
     /// The move file.
@@ -139,7 +139,7 @@ pub struct Plan {
     pub json: bool,
 }
 
-/// `carrystep simulate`
+/// The arguments of `carrystep simulate`.
 #[derive(Debug, Args)]
 pub struct Simulate {
     /// The move file.
@@ -176,7 +176,7 @@ pub struct Simulate {
     pub json: bool,
 }
 
-/// `carrystep check`
+/// The arguments of `carrystep check`.
 #[derive(Debug, Args)]
 pub struct Check {
     /// The capture: a VCD.
@@ -207,7 +207,7 @@ pub struct Check {
     pub json: bool,
 }
 
-/// `carrystep verilog`
+/// The arguments of `carrystep verilog`.
 #[derive(Debug, Args)]
 pub struct Verilog {
     /// Which gateware: one adder for all axes, with queues and a guard, or one adder per axis.
@@ -232,7 +232,7 @@ pub struct Verilog {
     pub json: bool,
 }
 
-/// `carrystep sweep`
+/// The arguments of `carrystep sweep`.
 #[derive(Debug, Args)]
 pub struct Sweep {
     /// The sweep: a move file with blanks, and what they are filled with.
@@ -259,7 +259,7 @@ pub struct Sweep {
     pub json: bool,
 }
 
-/// `carrystep build`
+/// The arguments of `carrystep build`.
 #[derive(Debug, Args)]
 pub struct Build {
     /// The board, by its name or by the file of your own board.
@@ -283,7 +283,7 @@ pub struct Build {
     pub json: bool,
 }
 
-/// `carrystep boards`
+/// The arguments of `carrystep boards`.
 #[derive(Debug, Args)]
 pub struct Boards {
     /// One board in full, by its name or by the file of your own board.
@@ -294,7 +294,7 @@ pub struct Boards {
     pub json: bool,
 }
 
-/// `carrystep doctor`
+/// The arguments of `carrystep doctor`.
 #[derive(Debug, Args)]
 pub struct Doctor {
     /// Check what this board needs; without it, check simulators and the open tools.
@@ -305,7 +305,7 @@ pub struct Doctor {
     pub json: bool,
 }
 
-/// `carrystep completions`
+/// The arguments of `carrystep completions`.
 #[derive(Debug, Args)]
 pub struct Completions {
     /// The shell.
@@ -313,7 +313,7 @@ pub struct Completions {
     pub shell: clap_complete::Shell,
 }
 
-/// `carrystep schemas`
+/// The arguments of `carrystep schemas`.
 #[derive(Debug, Args)]
 pub struct Schemas {
     /// Folder for all files.

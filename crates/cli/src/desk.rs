@@ -1,5 +1,5 @@
-//! A virtual board together with its operator's switches: the main loop of `carrystep
-//! virtual-board`.
+//! A virtual board together with its operator's switches, and the main loop of
+//! `carrystep virtual-board`.
 
 use crate::failure::Failure;
 use crate::interrupt;

@@ -46,10 +46,10 @@ impl FiguresJson {
     }
 }
 
-/// A row: its name, and what it says of a curve.
+/// A row of the table: its name, and the function that formats its value for a curve.
 type Line<'a> = (String, Box<dyn Fn(&Reference, &FiguresJson) -> String + 'a>);
 
-/// The table; where the motor moves something, its figures in millimetres too.
+/// The table with one column per curve; if the drive has a travel per turn, also in millimetres.
 pub fn table(references: &[Reference], drive: &Drive) -> String {
     let measured: Vec<(&Reference, FiguresJson)> = references.iter().map(|r| (r, FiguresJson::new(r))).collect();
     let mut lines = lines();
@@ -86,7 +86,7 @@ fn lines<'a>() -> Vec<Line<'a>> {
     ]
 }
 
-/// The rows that have a length in them.
+/// The rows whose unit contains a length; `steps` is the number of steps in one `unit`.
 fn in_unit<'a>(unit: &str, steps: f64) -> Vec<Line<'a>> {
     let line = |what: &str, power: &str, value: fn(&FiguresJson) -> f64| -> Line<'a> {
         (format!("{what}, {unit}/s{power}"), Box::new(move |_, f| number(value(f) / steps)))
@@ -104,7 +104,7 @@ fn in_unit<'a>(unit: &str, steps: f64) -> Vec<Line<'a>> {
     ]
 }
 
-/// Six digits, more where they stand before the point.
+/// Formats a number with six significant digits, or with all digits of a longer integer part.
 fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

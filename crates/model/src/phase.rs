@@ -60,8 +60,8 @@ mod tests {
 
     #[test]
     fn step_in_mid_tick_has_the_middle_phase() {
-        let v = 1 << 62; // a quarter step per tick
-        let p = u64::MAX - (1 << 61); // just over half of that below the step
+        let v = 1 << 62; // This is a quarter step per tick.
+        let p = u64::MAX - (1 << 61); // This is just over half of that below the step.
         assert!(crosses(p, v));
         assert_eq!(bisect(p, v, 4), 8);
         assert_eq!(bisect(p, v, 2), 2);

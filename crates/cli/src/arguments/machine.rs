@@ -3,7 +3,7 @@
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
-/// `carrystep machine`
+/// The arguments of `carrystep machine`.
 #[derive(Debug, Args)]
 pub struct Machine {
     /// What to do with a machine file.
@@ -11,14 +11,14 @@ pub struct Machine {
     pub command: MachineCommand,
 }
 
-/// What can be done with machine files.
+/// The subcommands for machine files.
 #[derive(Debug, Subcommand)]
 pub enum MachineCommand {
     /// Write a commented machine file. On a terminal it asks for missing options.
     New(MachineNew),
 }
 
-/// `carrystep machine new`
+/// The arguments of `carrystep machine new`.
 #[derive(Debug, Args)]
 #[command(after_help = NOTES)]
 pub struct MachineNew {

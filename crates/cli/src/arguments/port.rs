@@ -4,7 +4,7 @@
 use clap::Args;
 use std::path::PathBuf;
 
-/// Where the board is.
+/// The port of the board.
 #[derive(Debug, Args)]
 pub struct Port {
     /// The serial port of the board; `carrystep doctor` lists them.
@@ -12,7 +12,7 @@ pub struct Port {
     pub name: String,
 }
 
-/// What the board is, where the command does not need a machine.
+/// The board, for commands that do not need a machine.
 #[derive(Debug, Args)]
 pub struct Peer {
     #[command(flatten)]
@@ -25,7 +25,7 @@ pub struct Peer {
     pub baud: u32,
 }
 
-/// `carrystep run`
+/// The arguments of `carrystep run`.
 #[derive(Debug, Args)]
 pub struct Run {
     /// The move file.
@@ -46,7 +46,7 @@ pub struct Run {
     pub json: bool,
 }
 
-/// `carrystep home`
+/// The arguments of `carrystep home`.
 #[derive(Debug, Args)]
 pub struct Home {
     /// Axes to home, by their names; default: all that have `home = { ... }` in their table. They
@@ -63,7 +63,7 @@ pub struct Home {
     pub json: bool,
 }
 
-/// `carrystep jog`
+/// The arguments of `carrystep jog`.
 #[derive(Debug, Args)]
 pub struct Jog {
     /// The axis, by its name.
@@ -89,7 +89,7 @@ pub struct Jog {
     pub json: bool,
 }
 
-/// `carrystep status`
+/// The arguments of `carrystep status`.
 #[derive(Debug, Args)]
 pub struct Status {
     #[command(flatten)]
@@ -99,7 +99,7 @@ pub struct Status {
     pub json: bool,
 }
 
-/// `carrystep stop`
+/// The arguments of `carrystep stop`.
 #[derive(Debug, Args)]
 pub struct Stop {
     #[command(flatten)]
@@ -125,7 +125,7 @@ pub enum BoardLevel {
     Verilator,
 }
 
-/// `carrystep virtual-board`
+/// The arguments of `carrystep virtual-board`.
 #[cfg(unix)]
 #[derive(Debug, Args)]
 pub struct VirtualBoard {

@@ -5,7 +5,7 @@ use carrystep_spec::StartPhase;
 use clap::Args;
 use std::path::PathBuf;
 
-/// `carrystep profile`
+/// The arguments of `carrystep profile`.
 #[derive(Debug, Args)]
 #[command(after_help = NOTES, next_help_heading = "Curve")]
 pub struct Profile {
@@ -65,7 +65,7 @@ Examples:
   One turn in one second, every step as CSV, delays in counts of a 1 MHz timer too:
     carrystep profile trapezoid --deg 360 --time 1 --accel-deg-s2 1800 --timer-hz 1e6 --csv -";
 
-/// How far a move goes; without, it is a ramp.
+/// The distance of a move; without it the curve is a ramp.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 struct Distance {
@@ -80,7 +80,7 @@ struct Distance {
     deg: Option<f64>,
 }
 
-/// The speed that a ramp goes to, the speed limit of a move.
+/// The final speed of a ramp, or the speed limit of a move.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[command(next_help_heading = "Speed: of a ramp the speed that it goes to, of a move the limit")]
@@ -102,7 +102,7 @@ struct Speed {
     speed_deg_s: Option<f64>,
 }
 
-/// The jump that the motor takes.
+/// The speed to which the motor can jump from rest.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[command(next_help_heading = "Start speed: the jump from rest that the motor takes; default 0")]
@@ -118,7 +118,7 @@ struct StartSpeed {
     start_mm_s: Option<f64>,
 }
 
-/// Acceleration limit.
+/// The acceleration limit.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[command(next_help_heading = "Acceleration: the limit")]
@@ -134,7 +134,7 @@ struct Acceleration {
     accel_deg_s2: Option<f64>,
 }
 
-/// Jerk limit.
+/// The jerk limit.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[command(next_help_heading = "Jerk: the limit, of all curves but trapezoid and ranade; needed by scurve")]
@@ -150,7 +150,7 @@ struct Jerk {
     jerk_deg_s3: Option<f64>,
 }
 
-/// What one step is.
+/// The size of one step.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Motor: for all that is not in steps")]
 struct Motor {

@@ -5,7 +5,7 @@ use carrystep_table::{TableRequest, Timer, Width};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
-/// `carrystep table`
+/// The arguments of `carrystep table`.
 #[derive(Debug, Args)]
 #[command(after_help = NOTES)]
 pub struct Table {
@@ -71,7 +71,7 @@ const SINE: &str = "\
 Example, each entry lasting 1 ms or more, for a shorter table:
   carrystep table sine --ramp-steps 2000 --clock-hz 16000000 --prescaler 64 --top-speed 10000 --pulses-by-time 0.001";
 
-/// What all kinds share.
+/// The options that all kinds share.
 #[derive(Debug, Args)]
 pub struct Common {
     #[command(flatten)]
@@ -141,7 +141,7 @@ struct Top {
     rpm: Option<f64>,
 }
 
-/// Without either, one pulse an entry.
+/// The number of pulses per entry; without either option it is one.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[command(next_help_heading = "Pulses per entry: one, unless")]
