@@ -99,7 +99,7 @@ impl fmt::Display for Driven {
             (How::Done, false) => f.write_str("FAILED: the positions are not where the moves end\n"),
             (How::Stopped, _) => {
                 let by = if self.stopped_by == Some(StoppedBy::Stop) { "`carrystep stop`" } else { "Ctrl-C" };
-                writeln!(f, "STOPPED by {by}; the positions are true")
+                writeln!(f, "STOPPED by {by}; the positions are valid")
             }
             (How::Fault, _) => {
                 let cause = self.cause.unwrap_or("?");
@@ -112,7 +112,7 @@ impl fmt::Display for Driven {
                     };
                     write!(f, "{} {axis}{way}", if number == 0 { ", axis" } else { " and" })?;
                 }
-                f.write_str("; the positions are true\n")?;
+                f.write_str("; the positions are valid\n")?;
                 let words = self.meaning.zip(self.remedy);
                 words.map_or(Ok(()), |(meaning, remedy)| writeln!(f, "why:   {meaning}\nto do: {remedy}"))
             }

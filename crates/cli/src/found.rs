@@ -174,7 +174,7 @@ impl fmt::Display for Found {
             let place = place.map_or_else(String::new, |place| format!("  {place:>12.4}"));
             let discarded = discarded.map_or_else(|| "-".to_owned(), |count| count.to_string());
             let homing = if *homing { "  waits for its limit" } else { "" };
-            let culprit = if *culprit { "  the stop came from it" } else { "" };
+            let culprit = if *culprit { "  it caused the stop" } else { "" };
             writeln!(f, "{axis:<6}{place}  {position:>11}  {discarded:>9}{machine}{homing}{culprit}")?;
         }
         Ok(())
