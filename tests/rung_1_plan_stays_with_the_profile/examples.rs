@@ -1,11 +1,11 @@
-//! Plans that were hard once: an hour, one step, the article's own, reversals, refusals.
+//! Plans that were once difficult: an hour, one step, the article's own moves, reversals, refusals.
 
 use crate::verify::{STEP, edges_of, verify};
 use carrystep_files::MoveFile;
 use carrystep_plan::{Plan, PlanError, plan};
 use carrystep_tests::random_moves::file;
 
-/// A machine of one axis, x, at 1 us ticks.
+/// A machine with one axis, x, and ticks of 1 us.
 fn machine(start: &str, speed: &str, accel: &str, phase: &str) -> String {
     format!("[machine]\nphase = \"{phase}\"\n") + &axis_table("x", start, speed, accel)
 }
@@ -39,7 +39,7 @@ fn an_hour_long_triangle_stays_within_nanoseconds() {
 }
 
 #[test]
-fn one_step_either_way() {
+fn one_step_moves_land_in_both_directions() {
     for phase in ["half", "zero"] {
         for profile in ["ranade", "trapezoid"] {
             let text =
@@ -50,7 +50,7 @@ fn one_step_either_way() {
 }
 
 #[test]
-fn the_articles_failing_case_lands() {
+fn move_that_fails_in_the_article_lands_exactly() {
     let text = machine("100.0", "20000.0", "25000.0", "half") + &moving("ranade", Some("2.0"), 6000);
     let (file, plan) = planned(&text);
     assert_eq!(plan.moves[0].axes[0].shape, "triangle");
@@ -63,10 +63,10 @@ fn the_articles_failing_case_lands() {
 }
 
 #[test]
-fn table_1_of_the_article() {
+fn edges_of_a_constant_move_equal_table_1_of_the_article() {
     let golden: serde_json::Value = serde_json::from_str(include_str!("../golden/ranade.json")).unwrap();
     let expected: Vec<u64> = serde_json::from_value(golden["table1"]["pulses_article"].clone()).unwrap();
-    // 0.2 steps per tick of 1 us: 5 steps in 25 us.
+    // 0.2 steps per tick of 1 us are 5 steps in 25 us.
     let text = machine("200000.0", "200000.0", "1.0e9", "zero") + &moving("constant", Some("25.0e-6"), 5);
     let (_, plan) = planned(&text);
     let (edges, _) = edges_of(plan.axis_segments(0), 0, 4);
@@ -75,7 +75,7 @@ fn table_1_of_the_article() {
 }
 
 #[test]
-fn phase_zero_wants_whole_ticks() {
+fn phase_zero_refuses_a_time_of_fractional_ticks() {
     let text = machine("0.0", "5000.0", "25000.0", "zero") + &moving("ranade", Some("0.5000005"), 100);
     let error = plan::<f64>(&file(&text)).unwrap_err();
     assert!(matches!(error, PlanError::NotWholeTicks { .. }));
@@ -83,7 +83,7 @@ fn phase_zero_wants_whole_ticks() {
 }
 
 #[test]
-fn refusals_say_what_would_do_and_it_does() {
+fn refused_moves_can_be_planned_with_the_proposed_value() {
     fn text(profile: &str, start: &str, time: Option<&str>) -> String {
         machine(start, "5000.0", "25000.0", "half") + &moving(profile, time, 1000)
     }
@@ -108,7 +108,7 @@ fn refusals_say_what_would_do_and_it_does() {
 }
 
 #[test]
-fn reversals_rest_only_where_pins_need_it() {
+fn reversals_rest_only_if_the_pin_timing_needs_it() {
     let slow = machine("0.0", "5000.0", "25000.0", "half");
     let back_and_forth = moving("ranade", None, 10) + &moving("ranade", None, -10) + &moving("ranade", None, 10);
     let (_, plan) = planned(&(slow + &back_and_forth));
@@ -125,7 +125,7 @@ fn reversals_rest_only_where_pins_need_it() {
 }
 
 #[test]
-fn programs_are_in_the_order_of_need() {
+fn program_lists_commands_in_the_order_in_which_they_are_needed() {
     use carrystep_core::Command;
     let moves =
         "[[move]]\nprofile = \"ranade\"\nto = { x = 300, y = -7 }\n[[move]]\nprofile = \"ranade\"\nto = { y = 30 }\n";

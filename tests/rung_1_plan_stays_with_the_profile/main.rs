@@ -1,5 +1,5 @@
-//! Rung 1: the integers of a plan land exactly, keep the limits, and put every edge where the float
-//! profile says, within the bound of the accuracy contract.
+//! Rung 1: the integers of a plan land exactly, keep the limits, and place every edge where the
+//! float profile places it, within the bound of the accuracy contract.
 
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
@@ -13,7 +13,7 @@ use carrystep_tests::random_moves::{Pace, RandomMoves, random_moves};
 use proptest::prelude::*;
 use verify::verify;
 
-/// The profiles whose segments are straight in A, and those that need a J.
+/// The profiles whose segments need no J. The others need one.
 const LINEAR: [ProfileKind; 3] = [ProfileKind::Ranade, ProfileKind::Trapezoid, ProfileKind::Constant];
 
 fn verified(case: &RandomMoves) {
@@ -25,8 +25,8 @@ fn verified(case: &RandomMoves) {
     }
 }
 
-/// Whether a move of hours is refused because it needs too many segments, with a shorter time that would do; `slow.rs` plans
-/// such moves in the time that is named.
+/// True if a slow move is refused because it needs too many segments, with a shorter time that
+/// would work. `slow.rs` plans such moves in that time.
 fn is_too_slow(file: &MoveFile, error: &PlanError) -> bool {
     let PlanError::TooSlow { index, longest: Some(longest), .. } = error else { return false };
     let given = file.moves[*index].time.as_ref().map(|time| time.to_string().parse::<f64>().unwrap());
@@ -34,7 +34,7 @@ fn is_too_slow(file: &MoveFile, error: &PlanError) -> bool {
 }
 
 #[test]
-fn every_profile_free_and_straight() {
+fn every_profile_lands_on_free_and_straight_paths() {
     let (file, plan) = carrystep_tests::moves::shipped("curves");
     verify(&file, &plan, Some(2e-9));
     for kind in ProfileKind::ALL {
@@ -46,40 +46,41 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 600, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn linear_plans_land_keep_their_limits_and_their_edges(case in random_moves(Pace::Any, &LINEAR)) {
+    fn linear_plans_land_within_their_limits_and_the_edge_bound(case in random_moves(Pace::Any, &LINEAR)) {
         verified(&case);
     }
 
     #[test]
-    fn scurves_land_keep_their_limits_and_their_edges(case in random_moves(Pace::Any, &[ProfileKind::Scurve])) {
+    fn scurves_land_within_their_limits_and_the_edge_bound(case in random_moves(Pace::Any, &[ProfileKind::Scurve])) {
         verified(&case);
     }
 
     #[test]
-    fn sines_land_keep_their_limits_and_their_edges(case in random_moves(Pace::Any, &[ProfileKind::Sine])) {
+    fn sines_land_within_their_limits_and_the_edge_bound(case in random_moves(Pace::Any, &[ProfileKind::Sine])) {
         verified(&case);
     }
 
     #[test]
-    fn logistics_land_keep_their_limits_and_their_edges(case in random_moves(Pace::Any, &[ProfileKind::Logistic])) {
+    fn logistics_land_within_their_limits_and_the_edge_bound(case in random_moves(Pace::Any, &[ProfileKind::Logistic])) {
         verified(&case);
     }
 
     #[test]
-    fn mixed_moves_land_keep_their_limits_and_their_edges(case in random_moves(Pace::Any, &ProfileKind::ALL)) {
+    fn mixed_moves_land_within_their_limits_and_the_edge_bound(case in random_moves(Pace::Any, &ProfileKind::ALL)) {
         verified(&case);
     }
 
     #[test]
-    fn f32_lands_exactly_too(case in random_moves(Pace::Any, &ProfileKind::ALL)) {
+    fn plans_in_f32_land_exactly(case in random_moves(Pace::Any, &ProfileKind::ALL)) {
         for file in case.files() {
             match plan::<f32>(&file) {
                 Ok(plan) => verify(&file, &plan, None),
-                // A time that is just enough may round to one that is not.
+                // A time that is just sufficient in f64 may round to one that is not in f32.
                 Err(PlanError::Refused { .. }) => {}
                 Err(error) if is_too_slow(&file, &error) => {}
                 Err(error) => {
-                    // Times that f32 cannot tell apart: then no plan is given, never a wrong one.
+                    // Times that f32 cannot distinguish must be refused and must never give a wrong
+                    // plan.
                     let long = plan::<f64>(&file).unwrap().moves[error.move_index().unwrap()].ticks > 1 << 24;
                     assert!(long && matches!(error, PlanError::Broken { .. }), "{error}");
                 }

@@ -1,5 +1,6 @@
-//! Slow moves, up to 10^6 s or to the longest time that is accepted: every edge within the bound, in arithmetic of our
-//! own, and on the pins of the fast model by the product's checker.
+//! Slow moves, up to 10^6 s or the longest accepted time. Every edge must be within the bound, both
+//! in this test's own arithmetic and on the pins of the fast model as the product's checker judges
+//! them.
 
 use crate::verify::verify;
 use carrystep_files::{MoveFile, ProfileKind};
@@ -49,13 +50,13 @@ fn slow_moves(profile: ProfileKind) -> impl Strategy<Value = SlowMove> {
                 10.0 * accel
             );
             let steps = if backward { -(steps as i64) } else { steps as i64 };
-            // Whole ticks, which phase zero needs.
+            // Phase zero needs a time of whole ticks.
             SlowMove { machine, profile, steps, seconds: (seconds * 1e4).round() / 1e4 }
         },
     )
 }
 
-/// Both judges: edges from the integers, and pulses on the pins.
+/// Applies both judges: edges computed from the integers, and pulses on the pins.
 fn holds(file: &MoveFile, plan: &Plan) -> Result<(), TestCaseError> {
     verify(file, plan, Some(2e-9));
     let report = moves::check(file, plan, &plan.lines(), &plan.program(), &plan.build);
@@ -63,13 +64,13 @@ fn holds(file: &MoveFile, plan: &Plan) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// What became of the moves.
+/// Counts of the results.
 #[derive(Debug, Clone, Copy, Default)]
 struct Counts {
     planned: u32,
-    /// Planned in the longest time that the refusal names.
+    /// Moves planned in the longest time that the refusal names.
     shortened: u32,
-    /// A limit asks for more time, or no time would do.
+    /// Moves for which a limit requires more time, or no time works.
     impossible: u32,
 }
 
@@ -102,36 +103,36 @@ fn two_hundred(profile: ProfileKind) {
 }
 
 #[test]
-fn slow_constant_moves_hold() {
+fn slow_constant_moves_keep_the_edge_bound() {
     two_hundred(ProfileKind::Constant);
 }
 
 #[test]
-fn slow_trapezoids_hold() {
+fn slow_trapezoids_keep_the_edge_bound() {
     two_hundred(ProfileKind::Trapezoid);
 }
 
 #[test]
-fn slow_moves_by_ranades_rule_hold() {
+fn slow_moves_by_ranades_rule_keep_the_edge_bound() {
     two_hundred(ProfileKind::Ranade);
 }
 
 #[test]
-fn slow_scurves_hold() {
+fn slow_scurves_keep_the_edge_bound() {
     two_hundred(ProfileKind::Scurve);
 }
 
 #[test]
-fn slow_sines_hold() {
+fn slow_sines_keep_the_edge_bound() {
     two_hundred(ProfileKind::Sine);
 }
 
 #[test]
-fn slow_logistic_moves_hold() {
+fn slow_logistic_moves_keep_the_edge_bound() {
     two_hundred(ProfileKind::Logistic);
 }
 
-/// 400 steps on a machine with a4988 timing, either way.
+/// 400 steps in either direction on a machine with a4988 timing.
 fn four_hundred_steps_in(seconds: u32) {
     for steps in [400, -400] {
         let text = format!(
@@ -165,7 +166,8 @@ fn four_hundred_steps_in_a_million_seconds() {
     four_hundred_steps_in(1_000_000);
 }
 
-/// A triangle of a million steps in as many seconds has too many pulses that are slow, and none that is slow enough.
+/// A triangular move of a million steps in a million seconds has too many slow pulses, and none
+/// that is slow enough to be planned by itself, so it would need too many segments.
 #[test]
 fn a_move_of_too_many_segments_is_refused_with_the_longest_time() {
     let text = |seconds: &str| {
@@ -185,7 +187,8 @@ fn a_move_of_too_many_segments_is_refused_with_the_longest_time() {
     assert!(plan::<f64>(&file(&text(&(longest * 1.05).to_string()))).is_err(), "{longest} s is not the longest");
 }
 
-/// Backward, under a step a second and at the speed limit itself, the axis cannot catch up what it has to be behind.
+/// Backward at less than a step per second and at the speed limit itself, the axis cannot make up
+/// the distance by which it must be late.
 #[test]
 fn a_slow_backward_move_at_its_speed_limit_is_refused_and_a_slower_one_is_not() {
     let text = |seconds: &str| {

@@ -1,5 +1,5 @@
-//! What must hold of any plan, found by arithmetic of its own: sums in i128, and the edge phase bit by bit as
-//! the arithmetic contract defines it.
+//! Conditions that every plan must fulfil, computed by independent arithmetic: sums in i128, and
+//! the edge phase bit by bit as the arithmetic contract defines it.
 
 use carrystep_core::Segment;
 use carrystep_files::{BigDecimal, MoveFile};
@@ -8,7 +8,7 @@ use carrystep_profile::Profile;
 
 pub const STEP: i128 = 1 << 64;
 
-/// One rising edge: tick from 0 and phase.
+/// One rising edge: its tick from 0 and its phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
     pub tick: u64,
@@ -21,19 +21,21 @@ fn after(s: &Segment, n: i128) -> i128 {
     n * v + n * (n - 1) / 2 * a + if j == 0 { 0 } else { n * (n - 1) * (n - 2) / 6 * j }
 }
 
-/// V in tick `k`, from 0.
+/// V in tick `k` (from 0), in 2^-64 step per tick.
 fn speed_in(s: &Segment, k: i128) -> i128 {
     i128::from(s.v) + k * i128::from(s.a) + k * (k - 1) / 2 * i128::from(s.j)
 }
 
-/// The ticks in which V may be least or greatest: the ends, and where A changes sign.
+/// The ticks in which V can be least or greatest: the first, the last, and those where A changes
+/// its sign.
 fn extremes(s: &Segment) -> impl Iterator<Item = i128> {
     let last = i128::from(s.ticks) - 1;
     let turn = if s.j == 0 { 0 } else { -i128::from(s.a) / i128::from(s.j) };
     [0, last, turn - 1, turn, turn + 1, turn + 2].into_iter().filter(move |k| (0..=last).contains(k))
 }
 
-/// Every edge of a segment sequence that starts at `p`; speeds of one sign within a segment.
+/// Every edge of a sequence of segments that starts at `p`. The speed must have one sign within
+/// each segment.
 pub fn edges_of(segments: impl Iterator<Item = (u64, Segment)>, mut p: i128, bits: u32) -> (Vec<Edge>, i128) {
     let mut edges = Vec::new();
     for (first, s) in segments {
@@ -42,7 +44,7 @@ pub fn edges_of(segments: impl Iterator<Item = (u64, Segment)>, mut p: i128, bit
         let (from, to) = (p.div_euclid(STEP), end.div_euclid(STEP));
         for step in 0..(to - from).abs() {
             let backward = to < from;
-            // The step is taken in the first tick that ends beyond this mark.
+            // A step occurs in the first tick that ends beyond this level.
             let beyond = |n: i128| {
                 let level = (p + after(&s, n)).div_euclid(STEP);
                 if backward { level <= from - 1 - step } else { level >= from + 1 + step }
@@ -62,7 +64,7 @@ pub fn edges_of(segments: impl Iterator<Item = (u64, Segment)>, mut p: i128, bit
     (edges, p)
 }
 
-/// Design section 1, "edge phase", in 32-bit registers.
+/// The edge phase as section 1 of the design defines it, in 32-bit registers.
 fn bisect(mut p: u32, v: i32, bits: u32) -> u32 {
     let mut q = 0;
     for k in 1..=bits {
@@ -76,7 +78,8 @@ fn bisect(mut p: u32, v: i32, bits: u32) -> u32 {
     q
 }
 
-/// Everything that rung 1 claims about one plan. `slack` is what edges may be off beyond the theory, s.
+/// Checks every claim of rung 1 for one plan. `slack` is the deviation of edges beyond the theory
+/// that is allowed, in seconds.
 pub fn verify(file: &MoveFile, plan: &Plan, slack: Option<f64>) {
     let timebase = file.machine.timebase;
     let timelines = plan.timelines();
@@ -100,9 +103,11 @@ pub fn verify(file: &MoveFile, plan: &Plan, slack: Option<f64>) {
             let v = due.speed.max(h * a / 8.0);
             let within = h * h * a / (8.0 * v) + leg.fit_seconds + slack;
             let phase = h / f64::from(timebase.phases());
-            // The bisection loses up to five units of 2^-32 step, which take longer the slower the axis is.
+            // The bisection loses up to five units of 2^-32 step, which take longer at lower
+            // speeds.
             let late = (slack * (1.0 / v - 1.0).max(0.0)).min(phase);
-            // Backward from phase zero the first pulse is due at rest, and P borrows when one unit has been travelled.
+            // Backward from phase zero the first pulse is due at rest; P borrows when one unit has
+            // been travelled.
             let at_rest = due.backward && due.seconds == 0.0;
             let late = if at_rest { late + leg.profile.crossing(2_f64.powi(-64)) } else { late };
             assert!(
@@ -116,7 +121,8 @@ pub fn verify(file: &MoveFile, plan: &Plan, slack: Option<f64>) {
     }
 }
 
-/// Greatest acceleration between two times: where formulas change inside a tick, all of them count.
+/// The greatest acceleration between two times. If formulas change within a tick, all of them
+/// count.
 fn steepest(profile: &dyn Profile<f64>, from: f64, to: f64) -> f64 {
     let mut left = 0.0;
     let mut steepest = 0.0_f64;
@@ -129,7 +135,8 @@ fn steepest(profile: &dyn Profile<f64>, from: f64, to: f64) -> f64 {
     steepest
 }
 
-/// Exactly N steps, P as before, the same ticks on every axis, `last` on the last segment alone.
+/// Checks that an axis makes exactly N steps, that P returns to its start value, that every axis
+/// has the same ticks, and that only the last segment is marked `last`.
 fn lands(file: &MoveFile, plan: &Plan, axis: usize) {
     let mut end = 0;
     for (moved, planned) in file.moves.iter().zip(&plan.moves) {
@@ -152,7 +159,7 @@ fn lands(file: &MoveFile, plan: &Plan, axis: usize) {
     assert_eq!(plan.total_ticks(), end);
 }
 
-/// Limits, from V, A and J at the ends and extremes of each segment, in exact decimals.
+/// Checks the limits in exact decimals, from V, A and J at the ends and extremes of each segment.
 fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_files::Axis, tick_ns: u64, f64_used: bool) {
     let one = BigDecimal::from(STEP);
     let tick = BigDecimal::new(tick_ns.into(), 9);
@@ -182,11 +189,12 @@ fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_files::Axis, tick_ns:
                 assert!(jerk * &one * &tick * &tick * &tick >= j.abs() - 1, "jerk: {s:?}");
             }
             if std::mem::take(&mut first) {
-                // 6 v = 6 V - 3 A + 2 J; a first tick of its own may contain the ramp.
+                // 6 v = 6 V - 3 A + 2 J. A separate first tick may contain the ramp.
                 let sign = i128::from(moved.steps.signum());
                 let slope = if s.ticks == 1 { acceleration.clone() } else { BigDecimal::from(sign * i128::from(s.a)) };
                 let sixfold = BigDecimal::from(sign * (6 * i128::from(s.v) + 2 * j)) - slope * BigDecimal::from(3);
-                // A logistic curve is never at rest: without a start speed, its own jump counts.
+                // A logistic curve is never at rest: without a start speed, its own initial jump
+                // counts.
                 let own = BigDecimal::try_from(moved.profile.speed(0.0)).unwrap();
                 let logistic = moved.shape == "logistic" && axis.start_speed == 0;
                 let start = if logistic { &own } else { &axis.start_speed } * &one * &tick;
@@ -196,7 +204,7 @@ fn limits_hold(plan: &Plan, index: usize, axis: &carrystep_files::Axis, tick_ns:
     }
 }
 
-/// No edge waits for width, gap, set-up or hold (docs/clock-by-clock.md, "Latency").
+/// Checks that no edge waits for width, gap, set-up or hold (docs/clock-by-clock.md, "Latency").
 fn pins_are_free(plan: &Plan, axis: usize, edges: &[Edge]) {
     let (timebase, pins) = (plan.build.timebase, plan.build.pins[axis]);
     let clocks = i128::from(timebase.clocks_per_tick());

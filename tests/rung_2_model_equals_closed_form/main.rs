@@ -1,5 +1,5 @@
-//! Rung 2: the model, tick by tick, is the closed form of the arithmetic contract, exactly; and the
-//! golden vectors to the last edge and phase.
+//! Rung 2: the model equals the closed form of the arithmetic contract exactly in every tick, and
+//! reproduces the golden vectors to the last edge and phase.
 
 use carrystep_core::Segment;
 use carrystep_model::parallel::axis::{State, tick};
@@ -9,7 +9,7 @@ use carrystep_tests::programs;
 use num_bigint::BigInt;
 use proptest::prelude::*;
 
-/// Runs segments back to back from a start value; every edge, and P in the end.
+/// Runs segments back to back from a start value; returns every edge and the final P.
 fn edges(p0: u64, segments: &[Segment]) -> (Vec<Edge>, u64) {
     let mut edges = Vec::new();
     let mut queue = segments.iter().copied();
@@ -39,16 +39,17 @@ fn golden_vectors_to_the_last_edge_and_phase() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// P and V before every tick are the closed form, and a step is where the whole part changes.
+    /// P and V before every tick equal the closed form, and a step occurs where the whole part
+    /// changes.
     #[test]
-    fn every_tick_is_the_closed_form(p0 in any::<u64>(), segment in programs::segment()) {
+    fn every_tick_equals_the_closed_form(p0 in any::<u64>(), segment in programs::segment()) {
         let mut state = State { waiting: Some(Segment { last: true, ..segment }), ..State::at_rest(p0) };
         (state, _) = tick(state, true, 4);
         let unit = BigInt::from(1) << 64;
         for n in 0..segment.ticks {
             let exact = closed_form::speed(&segment, n);
             if exact.magnitude() >= BigInt::from(i64::MAX).magnitude() {
-                break; // overspeed ends the formula's reign; rungs 4 and 5 compare what follows
+                break; // The formula holds until an overspeed; rungs 4 and 5 compare what follows.
             }
             prop_assert_eq!(BigInt::from(state.v), exact);
             let before = BigInt::from(p0) + closed_form::distance(&segment, n);
@@ -62,14 +63,15 @@ proptest! {
         }
     }
 
-    /// The phase is within one phase of the exact crossing of the straight line through the tick.
+    /// The phase differs by less than one phase from the exact crossing of the straight line
+    /// through the tick.
     #[test]
     fn the_phase_is_the_last_one_before_the_crossing(p in any::<u64>(), v in 1_i64..i64::MAX, q_bits in prop::sample::select(vec![0_u32, 2, 4])) {
         for v in [v, -v] {
             if carrystep_model::parts::phase::crosses(p, v) {
                 let phase = carrystep_model::parts::phase::bisect(p, v, q_bits);
                 let at = |q: u32| i128::from(p) + (i128::from(v) >> q_bits) * i128::from(q);
-                // 32 of 64 bits: a unit of rounding a halving.
+                // The bisection uses 32 of 64 bits and loses one unit by rounding in each halving.
                 let slack = 5 << 32;
                 let crossed = |x: i128| if v > 0 { x - slack >= 1 << 64 } else { x + slack < 0 };
                 let not_yet = |x: i128| if v > 0 { x + slack < 1 << 64 } else { x - slack >= 0 };

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 
-/// The engine under programs and what happens around them; how far they came.
+/// Compares the engines under programs with events; returns the counts.
 fn engines(build: &EngineBuild, cases: u32, programs: impl Strategy<Value = (Program, Events)>) -> Came {
     let sum = Cell::new(Came::default());
     let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 300, ..Config::default() });
@@ -24,12 +24,13 @@ fn engines(build: &EngineBuild, cases: u32, programs: impl Strategy<Value = (Pro
     sum.get()
 }
 
-/// The e-stop, limits, stops and silence at any clock, whatever the host does.
+/// E-stop, limits, stops and silence of the host occur in any clock, whatever the host does.
 fn stops_at_any_clock(axes: usize, clock_hz: u64, phases: u32, limits: Limits, round: u32) {
     let build = engine_programs::build(axes, clock_hz, phases, StartPhase::Half, limits);
     let guard = Guard { round, watchdog: 80 / round, ..build.guard.clone() };
     let came = engines(&EngineBuild { guard, ..build }, 100, engine_programs::program(axes));
-    // An overspeed freezes first; promises of the rest are kept by others.
+    // Not every cause must occur, because an overspeed can freeze the engine before another cause;
+    // seven of the eight causes are required.
     let causes = came.faults.iter().filter(|count| **count > 0).count();
     assert!(came.leapt > came.clocks / 3 && came.edges > 1000 && causes >= 7, "{came:?}");
 }
@@ -40,12 +41,12 @@ fn an_engine_with_a_pair_of_limits_for_each_axis() {
 }
 
 #[test]
-fn an_engine_with_looks_far_between() {
+fn an_engine_with_many_ticks_between_samples_of_limits() {
     stops_at_any_clock(6, 79_000_000, 1, Limits::Pair, 16);
 }
 
 #[test]
-fn an_engine_that_limits_freeze() {
+fn an_engine_whose_limits_freeze_the_axes() {
     stops_at_any_clock(6, 80_000_000, 16, Limits::Each, 4);
 }
 
@@ -54,7 +55,7 @@ fn an_engine_of_eight_axes() {
     stops_at_any_clock(8, 112_000_000, 4, Limits::One, 2);
 }
 
-/// Each with something that an edge search can get wrong.
+/// Each program contains a situation that the search for edges could get wrong.
 #[test]
 fn an_engine_of_many_edges() {
     let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Zero, Limits::None);

@@ -6,7 +6,7 @@ mod parallel;
 
 use proptest::prelude::*;
 
-/// Lengths of leaps: to the end of what can be leapt over, and stops in any clock.
-fn leaps() -> impl Strategy<Value = Vec<u64>> {
+/// Lengths of leaps: as far as possible, or ending in any clock.
+pub(crate) fn leaps() -> impl Strategy<Value = Vec<u64>> {
     prop_oneof![2 => Just(vec![u64::MAX]), 1 => prop::collection::vec(1_u64..5000, 1..20)]
 }

@@ -41,7 +41,8 @@ fn the_demo() {
     lockstep::assert_equals_model(Level::Fast, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
 }
 
-/// On the pins: the cases of one start phase side by side, one on each axis.
+/// The cases of one start phase run side by side, one on each axis, and the edges are taken from
+/// the pins.
 #[test]
 fn golden_vectors_to_the_last_edge_and_phase() {
     let all = engine_vectors();
@@ -56,7 +57,7 @@ fn golden_vectors_to_the_last_edge_and_phase() {
     }
 }
 
-/// Dense programs on a build; how many edges they made.
+/// Runs dense programs on a build; returns the number of edges.
 fn dense_programs(build: &Build, ticks: u32, cases: u32) -> u64 {
     let edges = Cell::new(0);
     let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 500, ..Config::default() });
@@ -70,7 +71,7 @@ fn dense_programs(build: &Build, ticks: u32, cases: u32) -> u64 {
     edges.get()
 }
 
-/// Pins that never delay a step: all edges of the accumulators come through.
+/// The pin timings never delay a step, so all edges of the accumulators appear on the pins.
 #[test]
 fn ten_million_edges_with_fast_pins() {
     let edges = dense_programs(&lockstep::quick_build(16, StartPhase::Half), 20_000, 400);
@@ -83,9 +84,9 @@ fn ten_million_edges_from_zero_phase() {
     assert!(edges >= 5_000_000, "only {edges} edges");
 }
 
-/// Pins that delay steps and turns, and overrun.
+/// The pin timings delay steps and changes of DIR, and cause overruns.
 #[test]
-fn registers_with_slow_pins() {
+fn registers_are_equal_with_slow_pins() {
     let slow = PinTiming { width: 12, gap: 20, setup: 30, hold: 70 };
     let build = Build { pins: [slow; AXES], ..lockstep::tight_build(16, StartPhase::Half) };
     let edges = dense_programs(&build, 500, 400);

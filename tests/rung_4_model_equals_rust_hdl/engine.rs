@@ -9,7 +9,7 @@ use carrystep_simulators::engine::{EngineCore, EngineHost, Events};
 use carrystep_tests::engine_programs::{build, run_programs};
 use proptest::prelude::*;
 
-/// Runs both until the program is over and both are quiet; the clocks it took.
+/// Runs both until the program is over and both are idle. Returns the number of clocks.
 fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Result<u64, TestCaseError> {
     let mut model = Engine::new(build);
     let mut engine = EngineSim::new(build).expect("a fine build");
@@ -44,7 +44,7 @@ fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Resu
     Ok(200_000)
 }
 
-/// P, positions and discarded steps, when nothing moves.
+/// Compares P, positions and discarded steps while nothing moves.
 fn assert_kept(build: &EngineBuild, model: &Engine, engine: &EngineSim) -> Result<(), TestCaseError> {
     for axis in 0..build.axes() {
         let shaper = model.shaper(axis);
@@ -91,7 +91,7 @@ fn random_programs_of_one_axis_in_the_shortest_tick() {
 }
 
 #[test]
-fn nothing_happens_to_an_engine_without_a_host() {
+fn engine_without_a_host_stays_idle() {
     let build = build(6, 80_000_000, 16, StartPhase::Half, Limits::None);
     let mut engine = EngineSim::new(&build).expect("a fine build");
     for _ in 0..1000 {

@@ -1,4 +1,6 @@
-//! Rust-HDL's simulation of the parallel core is the parallel model.
+//! The Rust-HDL simulation of the parallel core equals its model in every output in every clock, on random
+//! programs, the demo and every profile. It reproduces the golden vectors to the last edge and
+//! phase.
 
 use carrystep_core::StartPhase;
 use carrystep_hdl::AxisSim;
@@ -53,12 +55,13 @@ fn golden_vectors_to_the_last_edge_and_phase() {
     }
 }
 
-/// The axis module alone, a tick as short as its bisection allows: the vectors have millions of ticks.
+/// Runs the axis module alone with the shortest tick that its bisection allows, because the vectors
+/// have millions of ticks.
 fn axis_edges(case: &Case) -> (Vec<Edge>, u64) {
     let mut axis = AxisSim::new(16, case.phase()).expect("an axis");
     let mut segments = case.segments().into_iter();
     assert!(axis.offer(&segments.next().expect("a segment")));
-    axis.tick(true); // the strobe that loads
+    axis.tick(true); // This is the strobe that loads the segment.
     let mut edges = Vec::new();
     let mut p = 0;
     for tick in 1..=case.total_ticks {

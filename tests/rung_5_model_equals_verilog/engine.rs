@@ -25,19 +25,20 @@ fn in_verilog(level: Level, build: &EngineBuild, usual: u64) -> Seen {
     seen.get()
 }
 
-/// What happened in random programs: lock-step over nothing would prove nothing.
+/// Counts of what happened in random programs, because a lock-step in which nothing happens would
+/// prove nothing.
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
     clocks: u64,
     edges: u64,
-    /// Edges of several axes in one clock.
+    /// Clocks in which several axes have an edge.
     together: u64,
-    /// Stops by each cause.
+    /// Number of stops by each cause.
     causes: [u64; CAUSES.len()],
-    /// Edges after a stop was called: of ramps.
+    /// Edges after the call of a stop, which belong to ramps.
     ramped: u64,
     cleared: u64,
-    /// Axes that have met the limit that they waited for, while others waited on.
+    /// Axes that found their limit in homing while other axes were still waiting.
     homed: u64,
 }
 
@@ -98,7 +99,8 @@ fn random_programs_of_one_and_of_eight_axes_in_icarus() {
     in_verilog(Level::Icarus, &build(8, 112_000_000, 16, StartPhase::Zero, Limits::Pair), 100_000);
 }
 
-/// All golden cases of a phase, one an axis; started together, each to its last edge. The short ones in every run.
+/// All golden cases of one start phase, one per axis, are started together and run to their last
+/// edge. Only a long run includes the long cases.
 #[test]
 fn golden_vectors_in_verilator() {
     let vectors = golden::engine_vectors();
@@ -124,7 +126,8 @@ fn golden_vectors_in_verilator() {
     }
 }
 
-/// What fits into the queues, the start, and the rest as the queues have room.
+/// The segments that fit into the queues, then the start, then the other segments as the queues
+/// have room.
 fn golden_program(cases: &[&Case]) -> Program {
     let segments: Vec<Vec<Segment>> = cases.iter().map(|case| case.segments()).collect();
     let part = |rows: std::ops::Range<usize>| {
@@ -140,7 +143,7 @@ fn golden_program(cases: &[&Case]) -> Program {
     [part(0..QUEUE), vec![start], part(QUEUE..rows)].concat()
 }
 
-/// The edges of an axis: tick, phase and direction.
+/// The edges of an axis as tick, phase and direction.
 fn edges(build: &EngineBuild, recording: &Recording, axis: usize) -> Vec<Edge> {
     let time = &build.timebase;
     let started = recording.outputs.iter().find(|(_, outputs)| outputs.started).expect("a start").0;

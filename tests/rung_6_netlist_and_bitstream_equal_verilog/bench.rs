@@ -1,4 +1,5 @@
-//! The same random programs, with all that may happen around them, on every stage: what the model does, in every clock.
+//! Runs the same random programs and events at every stage and compares the outputs with the model
+//! in every clock.
 
 use crate::stages::{self, Stages};
 use carrystep_simulators::Level;
@@ -8,11 +9,13 @@ use carrystep_tools::ice40;
 use proptest::strategy::{Strategy as _, ValueTree as _};
 use proptest::test_runner::{Config, TestRunner};
 
-/// Most clocks of a program, in Verilator and in Icarus, which is a hundred times slower.
+/// The greatest number of clocks of a program in Verilator, and in Icarus, which is a hundred times
+/// slower.
 const LONG: u64 = 60_000;
 const SHORT: u64 = 5_000;
 
-/// Runs random programs, each for so many clocks at most, until they have taken so many clocks in all; edges and stops seen.
+/// Runs random programs of at most `most` clocks each until they have taken `clocks` clocks in all.
+/// Returns the numbers of edges and stops.
 fn assert_same(stages: &Stages, level: Level, most: u64, clocks: u64) -> (u32, u32) {
     let netlist = stages.netlist.simulated().expect("models of its cells");
     let bitstream = ice40::simulated(&stages.read_back).expect("models of its memories");
@@ -43,17 +46,17 @@ fn assert_same_in_verilator(stages: &Stages) {
 }
 
 #[test]
-fn all_stages_do_the_same_in_every_clock() {
+fn all_stages_have_equal_outputs_in_every_clock() {
     assert_same_in_verilator(stages::hurried());
 }
 
 #[test]
-fn all_stages_of_the_exported_verilog_do_the_same_in_every_clock() {
+fn all_stages_of_the_exported_verilog_have_equal_outputs_in_every_clock() {
     assert_same_in_verilator(stages::shipped());
 }
 
-/// Icarus knows what is undefined: nothing that is may reach a pin.
+/// Icarus simulates undefined values; none of them may reach a pin.
 #[test]
-fn nothing_undefined_reaches_the_pins() {
+fn no_undefined_value_reaches_the_pins() {
     assert_same(stages::hurried(), Level::Icarus, SHORT, 3 * SHORT);
 }

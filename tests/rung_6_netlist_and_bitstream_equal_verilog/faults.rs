@@ -1,4 +1,4 @@
-//! What goes wrong in a netlist or a bitstream is caught.
+//! Faults planted in the netlist or in the bitstream must be caught.
 
 use crate::stages::{self, Stages};
 use carrystep_core::{Command, Segment};
@@ -9,14 +9,14 @@ use carrystep_tools::equivalence::{self, Verdict};
 use carrystep_tools::{SynthesisError, ice40};
 use std::ops::Range;
 
-/// Where the cells of a type stand in a netlist.
+/// The ranges of the text of a netlist that hold cells of a type.
 fn cells(netlist: &str, cell: &str) -> Vec<Range<usize>> {
     let name = format!("\n  {cell} ");
     let begins = netlist.match_indices(&name).map(|(begin, _)| begin + 1);
     begins.map(|begin| begin..begin + netlist[begin..].find(");\n").expect("the cell's end")).collect()
 }
 
-/// What is in the brackets behind a name.
+/// The text in the parentheses behind a name.
 fn inside<'a>(text: &'a str, name: &str) -> &'a str {
     let begin = text.find(&format!("{name}(")).expect("a name") + name.len() + 1;
     &text[begin..begin + text[begin..].find(')').expect("a bracket")]
@@ -49,7 +49,7 @@ fn faults_in_the_netlist_are_caught() {
     }
 }
 
-/// A bit of a tile, flipped.
+/// The bitstream with one bit of a tile flipped.
 fn flipped(asc: &str, tile: &str, row: usize, column: usize) -> String {
     let mut lines: Vec<String> = asc.lines().map(str::to_owned).collect();
     let at = lines.iter().position(|line| line.strip_prefix('.') == Some(tile)).unwrap_or_else(|| panic!("no {tile}"))
@@ -60,7 +60,7 @@ fn flipped(asc: &str, tile: &str, row: usize, column: usize) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Whether proof or comparison sees that a bitstream is another.
+/// True if the proof or the comparison detects that the bitstream is wrong.
 fn is_caught(stages: &Stages, asc: &str) -> bool {
     let read_back = stages.placed.read_back(&stages.netlist, asc);
     let verdict = read_back.and_then(|text| {
@@ -69,13 +69,13 @@ fn is_caught(stages: &Stages, asc: &str) -> bool {
     });
     match verdict {
         Ok((Verdict::Proved(_), same_memories)) => !same_memories,
-        // What cannot be read or has a loop is no engine.
+        // A bitstream that cannot be read back or contains a loop is detected as wrong.
         Ok((Verdict::Open(..), _)) | Err(SynthesisError::Tool { .. } | SynthesisError::Unread { .. }) => true,
         Err(error) => panic!("{error}"),
     }
 }
 
-/// Tile, row and column of what is not 0 in the tiles of a kind, by tile.
+/// Tile, row and column of all bits that are not 0 in the tiles of a kind, grouped by tile.
 fn set<'a>(asc: &'a str, kind: &str) -> Vec<Vec<(&'a str, usize, usize)>> {
     let mut tiles = Vec::new();
     for part in asc.split("\n.").filter(|part| part.starts_with(kind)) {
@@ -89,7 +89,8 @@ fn set<'a>(asc: &'a str, kind: &str) -> Vec<Vec<(&'a str, usize, usize)>> {
     tiles
 }
 
-/// Bits of tiles that are full of logic: next to none of them is set for nothing.
+/// Tiles with at least this number of bits are full of logic, so that nearly every bit has an
+/// effect.
 const BUSY: usize = 100;
 
 #[test]
@@ -105,7 +106,8 @@ fn flipped_bits_in_the_bitstream_are_caught() {
         effort::say(&format!("{tile} row {row} column {column}: {}", if caught { "caught" } else { "no change" }));
         seen += usize::from(caught);
     }
-    // A LUT may have bits for inputs that never come together, or that stand for one wire.
+    // A LUT may have bits for combinations of inputs that never occur, so not every flip is
+    // detectable.
     assert!(seen * 10 >= count * 8, "{seen} of {count} flipped bits are seen");
 }
 
@@ -113,13 +115,15 @@ fn flipped_bits_in_the_bitstream_are_caught() {
 fn a_flipped_bit_of_a_memory_is_caught_on_the_bench() {
     let stages = stages::shipped();
     let asc = &stages.placed.asc;
-    // Where P starts, and the stop accelerations of both ways: nothing else is there.
+    // These memory contents are the start values of P and the stop accelerations for both
+    // directions, and nothing else.
     let contents: Vec<_> = set(asc, "ram_data").concat();
     let (tile, row, column) = contents[contents.len() / 2];
     let read_back = stages.placed.read_back(&stages.netlist, &flipped(asc, tile, row, column)).expect("a bitstream");
     assert_ne!(equivalence::memories(&read_back), equivalence::memories(&stages.netlist.verilog));
 
-    // Every axis is stopped by its ramp both ways, because its queue runs dry, and asked for all that it keeps.
+    // Every axis is stopped by its ramp in both directions, because its queue runs dry, and all of
+    // its registers are read.
     let mut program = Vec::new();
     for v in [1 << 60, -1 << 60] {
         let segment = Segment { ticks: 50, v, a: 0, j: 0, last: false };

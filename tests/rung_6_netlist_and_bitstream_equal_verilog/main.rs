@@ -1,7 +1,8 @@
-//! Rung 6: the engine's Verilog, its iCE40 netlist, and the bitstream read back are one.
+//! Rung 6: the engine's Verilog, its iCE40 netlist and the bitstream read back are equal.
 //!
-//! Twice over: by proof, flip-flop by flip-flop (what is left out stands in `carrystep_tools::equivalence`), and on the same
-//! bench as rung 5, from configuration on: the same outputs in every clock, the same words in memory at the end.
+//! This is shown in two ways. A proof compares every flip-flop (`carrystep_tools::equivalence`
+//! lists what it leaves out). The bench of rung 5 compares all outputs in every clock from
+//! configuration on, and the words in memory at the end.
 
 mod bench;
 mod faults;

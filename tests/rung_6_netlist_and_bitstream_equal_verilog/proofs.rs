@@ -1,11 +1,11 @@
-//! Each stage is proved to be the one before it.
+//! Proves that each stage equals the preceding one.
 
 use crate::stages;
 use carrystep_tests::effort;
 use carrystep_tools::equivalence::{self, Verdict};
 
 #[test]
-fn the_netlist_is_proved_to_be_the_verilog() {
+fn netlist_is_proved_equal_to_the_verilog() {
     let stages = stages::shipped();
     let verdict = equivalence::verilog_and_netlist(&stages.verilog, &stages.netlist, &stages.netlist.verilog);
     let verdict = verdict.expect("a verdict");
@@ -14,7 +14,7 @@ fn the_netlist_is_proved_to_be_the_verilog() {
 }
 
 #[test]
-fn the_bitstream_is_proved_to_be_the_netlist() {
+fn bitstream_is_proved_equal_to_the_netlist() {
     let stages = stages::shipped();
     let verdict = equivalence::netlist_and_bitstream(&stages.netlist, &stages.read_back).expect("a verdict");
     effort::say(&format!("netlist and bitstream: {verdict:?}"));
@@ -22,7 +22,7 @@ fn the_bitstream_is_proved_to_be_the_netlist() {
 }
 
 #[test]
-fn the_memories_begin_as_they_should() {
+fn initial_memory_contents_are_equal_at_all_stages() {
     let stages = stages::shipped();
     let verilog = equivalence::memories_of_verilog(&stages.verilog, carrystep_verilog::ENGINE_NAME).expect("memories");
     let [netlist, bitstream] = [&stages.netlist.verilog, &stages.read_back].map(|text| equivalence::memories(text));
@@ -31,14 +31,14 @@ fn the_memories_begin_as_they_should() {
     assert_eq!(verilog, netlist);
     assert_eq!(netlist, bitstream);
 
-    // One digit of one memory.
+    // One digit of one memory is changed.
     let mut planted = stages.netlist.verilog.clone();
     let digit = planted.find(".INIT_0(").and_then(|at| Some(at + planted[at..].find("),")?)).expect("contents") - 1;
     planted.replace_range(digit..=digit, if &planted[digit..=digit] == "1" { "2" } else { "1" });
     assert_ne!(equivalence::memories(&planted), verilog);
 }
 
-/// The induction knows nothing of beginnings.
+/// The induction does not cover initial values, so they are checked here.
 #[test]
 fn every_flip_flop_begins_at_zero() {
     let stages = stages::shipped();

@@ -7,7 +7,7 @@ use carrystep_tools::ice40::{self, Netlist, Part, Placed};
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// It has pins for all ports of the engine.
+/// A part with pins for all ports of the engine.
 const PART: Part<'static> = Part { device: "hx8k", package: "ct256" };
 
 pub struct Stages {
@@ -15,7 +15,7 @@ pub struct Stages {
     pub verilog: String,
     pub netlist: Netlist,
     pub placed: Placed,
-    /// The bitstream, as Verilog.
+    /// The bitstream, read back as Verilog.
     pub read_back: String,
 }
 
@@ -46,7 +46,8 @@ pub fn shipped() -> &'static Stages {
     })
 }
 
-/// The same engine with a guard whose rounds are so short that all of it happens within thousands of clocks.
+/// The same engine with a guard whose rounds are so short that all of its functions occur within
+/// thousands of clocks.
 pub fn hurried() -> &'static Stages {
     static STAGES: OnceLock<Stages> = OnceLock::new();
     STAGES.get_or_init(|| {

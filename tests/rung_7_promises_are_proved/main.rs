@@ -1,5 +1,6 @@
-//! Rung 7: the promises of docs/promises.md hold in the exported Verilog, for any inputs, for ever; what
-//! they speak of happens; and each notices the bug that is planted for it.
+//! Rung 7: the promises of docs/promises.md hold in the exported Verilog for any inputs and for
+//! ever. The situations that they describe do occur, and each promise detects the bug that is
+//! planted for it.
 
 use carrystep_tests::proofs::equivalence::{self, Asked, BUGS, EQUAL, Move, compare};
 use carrystep_tests::proofs::{self, Proof, Question, ask};
@@ -12,7 +13,7 @@ use std::thread;
 
 type Answer = Result<(), proofs::ProofError>;
 
-/// A question, and where it comes from.
+/// A question and its origin.
 struct Job<'a> {
     name: String,
     proof: &'a Proof,
@@ -35,7 +36,7 @@ fn jobs(proof: &Proof) -> Vec<Job<'_>> {
     jobs
 }
 
-/// Does all, on all cores; what was not answered as wanted.
+/// Executes all jobs on all processor cores; returns the answers that are not the expected ones.
 fn do_all<T: Sync>(jobs: &[T], name: impl Fn(&T) -> String + Sync, ask: impl Fn(&T) -> Answer + Sync) -> String {
     let next = AtomicUsize::new(0);
     let failures = Mutex::new(String::new());
@@ -70,9 +71,9 @@ fn every_promise_is_proved_and_every_planted_bug_is_caught() {
     ));
 }
 
-/// Bounded, and for any numbers in the segments of a move.
+/// The proof is bounded in time, and covers any numbers in the segments of a move.
 #[test]
-fn the_engine_is_the_parallel_axes() {
+fn engine_is_proved_equal_to_the_parallel_axes() {
     proofs::tools().unwrap_or_else(|error| panic!("{error}, or `cargo xtask tools`"));
     let bugged = equivalence::move_with_bugs();
     let mut jobs: Vec<(Move, Asked)> = equivalence::moves().into_iter().map(|pair| (pair, Asked::Equal)).collect();
@@ -86,9 +87,9 @@ fn the_engine_is_the_parallel_axes() {
     }
 }
 
-/// The page's column "proved in" is what is proved, no more and no less.
+/// The column "proved in" of the page lists exactly what is proved.
 #[test]
-fn the_page_says_what_is_proved() {
+fn promises_page_lists_exactly_what_is_proved() {
     let page = std::fs::read_to_string(moves::root().join("docs/promises.md")).expect("the page");
     let proofs = proofs::all();
     for promise in 1..=14 {
@@ -101,9 +102,9 @@ fn the_page_says_what_is_proved() {
     }
 }
 
-/// A promise that no bug can break would be no promise.
+/// A promise that no bug can break would be meaningless.
 #[test]
-fn every_promise_of_every_module_has_its_bug() {
+fn every_promise_has_a_planted_bug_that_breaks_it() {
     for proof in proofs::all() {
         let labels = proof.promises.labels();
         let broken: BTreeSet<&str> = proof.bugs.iter().map(|bug| bug.breaks).collect();

@@ -1,6 +1,7 @@
-//! Of the exported engine's mutants each one is caught by lock-step with the model or by a promise, or it is listed in
-//! `docs/mutants.md` as proved to be the engine, or with the reason why it is harmless. A few in every test run, all of
-//! them in `cargo xtask mutants`, which also asks for the proofs anew.
+//! Each mutant of the exported engine is caught by lock-step with the model or by a
+//! promise, or `docs/mutants.md` lists it as proved equal to the engine or with the reason why it
+//! is harmless. A test run covers a few mutants; `cargo xtask mutants` covers all of them and
+//! repeats the proofs.
 
 use carrystep_tests::mutants::draw::{Mutant, Sample, sample};
 use carrystep_tests::mutants::equal::{Scope, is_proved};
@@ -10,9 +11,10 @@ use carrystep_tests::mutants::{Judgement, catchers, differs, judge};
 use carrystep_tests::{effort, jobs, moves};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// In every test run: the first of all.
+/// Number of mutants in every test run: the first ones of all.
 const FEW: usize = 40;
-/// With `CARRYSTEP_MUTANTS=all`, or `write`, which also writes the list of survivors anew.
+/// Number of mutants if `CARRYSTEP_MUTANTS` is `all`, or `write`, which also rewrites the list of
+/// survivors.
 const ALL: usize = 200;
 
 #[test]
@@ -47,8 +49,8 @@ fn mutants_are_caught_or_harmless() {
     no_harm_is_proved_harmless(&sample, &caught);
 }
 
-/// Who is not caught, and why that is no harm: by proof where there is one, else the reason that is listed. A few are
-/// taken as listed.
+/// The mutants that are not caught, with the reason why they are harmless: a proof if there is one,
+/// otherwise the listed reason. In a short run the listed reasons are used without a new proof.
 fn survivors_of(sample: &Sample, caught: &[Option<&str>], listed: &Survivors, few: bool) -> Survivors {
     let is_open = |place: &usize| caught[*place].is_none();
     let (known, open): (Vec<usize>, Vec<usize>) =
@@ -67,7 +69,8 @@ fn survivors_of(sample: &Sample, caught: &[Option<&str>], listed: &Survivors, fe
     alive
 }
 
-/// The proof is not one that proves anything: of each module the first mutant that a recording catches is not proved equal.
+/// Checks that the proof can fail: in each module, the first mutant that a recording catches must
+/// not be proved equal.
 fn no_harm_is_proved_harmless(sample: &Sample, caught: &[Option<&str>]) {
     let mut modules = BTreeSet::new();
     let harmful = sample.mutants.iter().zip(caught).filter(|(_, caught)| caught.is_some()).map(|(mutant, _)| mutant);
@@ -91,7 +94,7 @@ fn summary(sample: &Sample, caught: &[Option<&str>], alive: &Survivors) {
     ));
 }
 
-/// How many each recording is the first to catch.
+/// The number of mutants that each recording is the first to catch.
 fn table(stimuli: &[Stimulus], caught: &[Option<&str>]) -> String {
     let mut counts: BTreeMap<Option<&str>, usize> = BTreeMap::new();
     for catcher in caught {

@@ -1,6 +1,6 @@
-//! Bugs planted in the gateware's Verilog, in the model's arithmetic and in the plan, each of
-//! which a rung must catch. A bug that nobody catches fails here; so does one that can no longer be
-//! planted, because the text it changes is gone.
+//! Bugs planted in the gateware's Verilog, in the model's arithmetic and in the plan, each
+//! of which a rung must catch. The test fails if a bug is not caught, and also if it can no longer
+//! be planted because the text that it changes no longer exists.
 
 use carrystep_core::{Command, Program, Segment, StartPhase};
 use carrystep_files::PathKind;
@@ -9,14 +9,14 @@ use carrystep_simulators::{Job, Level, run_verilog};
 use carrystep_tests::lockstep::{self, Record};
 use carrystep_tests::moves;
 
-/// A change of the exported Verilog: what is wrong then, the text, and what it becomes.
+/// A change of the exported Verilog: description, original text and replacement.
 struct Bug {
     name: &'static str,
     text: &'static str,
     becomes: &'static str,
 }
 
-/// Bugs that rung 5 must catch: the lock-step of the exported Verilog with the model.
+/// The bugs that rung 5 must catch, which is the lock-step of the exported Verilog with the model.
 const GATEWARE: [Bug; 9] = [
     Bug {
         name: "a dropped carry: backward steps never come",
@@ -45,12 +45,13 @@ const GATEWARE: [Bug; 9] = [
     Bug { name: "an overrun is not latched", text: "late <= 1'b1;", becomes: "late <= late;" },
 ];
 
-/// A fixed program that does a little of everything: reversals, jerk, one-tick segments, steps too fast
-/// for the pins, a queue run dry, a clear.
+/// A fixed program with a little of everything: reversals, jerk, one-tick segments, steps too fast
+/// for the pins, a queue that runs dry, a clear.
 fn program() -> Program {
     let segment = |axis: u8, ticks, v, a, j, last| Command::Segment { axis, segment: Segment { ticks, v, a, j, last } };
     let mut program = Program::new();
-    // A reversal right behind a step and right before the next: hold delays DIR, set-up the step.
+    // A reversal directly behind a step and directly before the next: the hold time delays DIR, and
+    // the set-up time delays the step.
     for axis in [2, 3] {
         program.push(segment(axis, 2, 1 << 62, 0, 0, false));
     }
@@ -70,7 +71,8 @@ fn program() -> Program {
         program.push(segment(axis, 120, -(1 << 61), 1 << 56, -(1 << 49), true));
     }
     program.push(Command::Wait { clocks: 6000 });
-    // Faster than axis 3 may pulse: a step is owed, then an overrun.
+    // This is faster than the pin timing of axis 3 allows: one step is held back, then an overrun
+    // occurs.
     program.push(segment(2, 90, -(1 << 61), 1 << 40, 0, false));
     program.push(segment(3, 60, i64::MAX - 5, -(1 << 40), 0, false));
     program.push(Command::Start { mask: 0b1100 });
@@ -104,9 +106,9 @@ fn rung_5_catches_each_bug_in_the_gateware() {
     }
 }
 
-/// A planner that forgets the path: the axes arrive together, but not along the line.
+/// A planner that ignores the path: the axes arrive together but do not move along the line.
 #[test]
-fn the_checker_catches_a_line_that_is_not_straight() {
+fn checker_rejects_axes_that_leave_the_straight_line() {
     let (file, straight) = moves::shipped("curves");
     let mut free = file.clone();
     free.moves.iter_mut().for_each(|moved| moved.path = PathKind::Free);
@@ -129,7 +131,7 @@ fn changed(plan: &Plan, mut change: impl FnMut(&mut Segment)) -> Program {
     program
 }
 
-/// Rung 1, by the checker that judges pulses against the float profile.
+/// Rung 1 is represented by the checker that compares pulses with the float profile.
 #[test]
 fn rung_1_catches_each_bug_in_the_plan() {
     let (file, plan) = moves::shipped("demo");
@@ -154,7 +156,7 @@ fn rung_1_catches_each_bug_in_the_plan() {
     assert!(!report.axes[3].passed, "rung 1 does not catch 'a pulse one clock short'");
 }
 
-/// Rung 2, by the closed form: the model's own arithmetic with a bug.
+/// Rung 2 is represented by the closed form, compared with the model's arithmetic with a bug.
 #[test]
 fn rung_2_catches_each_bug_in_the_arithmetic() {
     use carrystep_tests::closed_form;

@@ -1,4 +1,5 @@
-//! One axis of the exported Verilog in Icarus, without tick and shaper: long programs at few clocks.
+//! Runs one axis of the exported Verilog in Icarus, without the tick counter and the shaper, so
+//! that long programs need few clocks.
 
 use crate::golden::Edge;
 use carrystep_core::{Build, Segment};
@@ -7,7 +8,7 @@ use std::process::Command;
 
 const BENCH: &str = include_str!("axis_bench.v");
 
-/// Runs segments back to back; every edge, and P in the end.
+/// Runs segments back to back and returns every edge and the final P.
 pub fn edges_in_icarus(build: &Build, segments: &[Segment]) -> (Vec<Edge>, u64) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let verilog = carrystep_verilog::six_axis_verilog(build, "a test").expect("the core");

@@ -1,6 +1,6 @@
-// carrystep_axis alone in Icarus, at the fewest clocks per tick: a strobe, then the bisection.
-// +program=FILE has a segment a line: ticks v a j last, in hex. Prints `tick phase back` of each step
-// and, when the last segment is over, `P` and its value.
+// Runs carrystep_axis alone in Icarus at the fewest clocks per tick: a strobe, then the bisection.
+// The file of +program=FILE has one segment per line: ticks v a j last, in hex. The bench prints
+// `tick phase back` for each step and, after the last segment, `P` and its value.
 `timescale 1ns / 1ps
 module axis_bench;
     parameter BISECTION = 4;
@@ -29,7 +29,7 @@ module axis_bench;
         end
     endtask
 
-    // Offers the next segment, if there is one, in the cycle that follows.
+    // Offers the next segment, if there is one, in the following cycle.
     task offer;
         begin
             more = $fscanf(file, "%h %h %h %h %b", ticks, v, a, j, last) == 5;

@@ -1,4 +1,5 @@
-//! A talk with a board, told and shown on its pins: Rust-HDL's modules of line, link and engine say what every later stage must show.
+//! Records a session between a host and a board, in Rust-HDL's modules of line, link and engine.
+//! The recording of the pins is the reference for every later stage.
 
 use crate::link_bench::{BoardPins, LinkBench, Said, frame, on_the_line, unframe};
 use carrystep_boards::Board;
@@ -9,34 +10,35 @@ use carrystep_files::Source;
 use carrystep_simulators::vectors::Vectors;
 use carrystep_verilog::{Gateware, shipped_machine};
 
-/// A board's gateware, and what its pins do in a talk.
+/// A board's gateware, and the levels of its pins during a session.
 pub struct Session {
-    /// The shipped machine's, with nothing that takes milliseconds, and a line as fast as the clock makes it.
+    /// The gateware of the shipped machine without the functions that take milliseconds, on a line
+    /// at the highest baud rate that the clock allows.
     pub gateware: Gateware<'static>,
     vectors: Vectors,
-    /// All its Verilog.
+    /// The Verilog of the whole board.
     pub verilog: String,
 }
 
 impl Session {
-    /// Power, a move of two axes, an e-stop, and on again.
+    /// A session: switch the drivers on, move two axes, press the e-stop, resume.
     ///
-    /// # Panics
-    /// Where the modules do not talk as they should.
+    /// # Panics If the modules do not answer as they should.
     pub fn of(board: &'static Board) -> Self {
         Self::with(board, talk)
     }
 
-    /// Power, a move that meets its limit, the ramp to rest, and on again: some times as long.
+    /// A session: switch the drivers on, move into a limit, ramp down, resume. It takes several
+    /// times as long as [`Session::of`].
     ///
-    /// # Panics
-    /// As [`Session::of`].
+    /// # Panics As [`Session::of`].
     pub fn with_a_limit(board: &'static Board) -> Self {
         Self::with(board, meet_a_limit)
     }
 
     fn with(board: &'static Board, talk: impl Fn(&mut LinkBench)) -> Self {
-        // A level shifter in the line is none of the gateware's. A few boards are kept for as long as a test runs.
+        // A level shifter in the line is not part of the gateware. The few leaked boards live until
+        // the test ends.
         let board: &'static Board = Box::leak(Box::new(Board { max_baud: None, ..board.clone() }));
         let text = shipped_machine(board, &board.clocks[0]).expect("a machine");
         let quick = "[machine.guard]\nenable_ms = 0\ndebounce_us = 0\nwatchdog_ms = 0\n";
@@ -52,29 +54,28 @@ impl Session {
         Self { gateware, vectors, verilog }
     }
 
-    /// The first cycle in which a pin of this Verilog, all cells of which have models, is another.
+    /// The first cycle in which a pin of this Verilog differs from the recording. Every cell in the
+    /// Verilog must have a model.
     ///
-    /// # Panics
-    /// Where Icarus is missing or refuses it.
+    /// # Panics If Icarus is missing or rejects the Verilog.
     pub fn difference(&self, verilog: &str) -> Option<String> {
         self.vectors.difference(&self.gateware.top(), verilog).expect("Icarus")
     }
 
-    /// Cycles of the talk.
+    /// Number of cycles in the session.
     pub fn cycles(&self) -> u64 {
         self.vectors.cycles()
     }
 
-    /// Constraints of the pins and so on, by the end of the file's name.
+    /// The generated file whose name ends with `end`, for example the pin constraints.
     ///
-    /// # Panics
-    /// Where there is no such file.
+    /// # Panics If there is no such file.
     pub fn file(&self, end: &str) -> String {
         let files = self.gateware.files().expect("its files");
         files.into_iter().find(|file| file.name.ends_with(end)).expect("a file").text
     }
 
-    /// The Verilog with wires crossed on the way to the pins.
+    /// Versions of the Verilog in which wires to the pins are crossed.
     pub fn crossed(&self) -> impl Iterator<Item = (&'static str, String)> {
         let crosses = [(".dir(dir)", ".dir(step)"), ("enable_n = !enabled", "enable_n = enabled")];
         crosses.into_iter().map(|(wire, other)| {
@@ -85,14 +86,15 @@ impl Session {
     }
 }
 
-/// Sends a request and takes its answer.
+/// Sends a request and receives its answer.
 fn ask(bench: &mut LinkBench, sequence: u8, address: u8, words: &[u32]) -> Said {
     bench.send(&on_the_line(&frame(sequence, address, words)));
     let answer = bench.answer(60_000).expect("an answer");
     Said::of(&unframe(&answer).expect("a frame"))
 }
 
-/// Words that are written one after the other, each executed.
+/// Returns a function that writes words with consecutive sequence numbers and checks that each
+/// write is executed.
 fn writer() -> impl FnMut(&mut LinkBench, u8, &[u32]) {
     let mut next = 0;
     move |bench, address, words| {
@@ -110,7 +112,7 @@ fn talk(bench: &mut LinkBench) {
     write(bench, of_axis(SEGMENT, 5), &cruise(-(1 << 60)));
     write(bench, START, &[0b10_0001]);
     bench.rest(9_000);
-    // A freeze is over at once, where a ramp takes a hundred thousand cycles.
+    // A freeze ends at once, whereas a ramp would take a hundred thousand cycles.
     bench.pins.estop = true;
     bench.rest(3_000);
     let said = ask(bench, 9, of_axis(POSITION, 5), &[]);
@@ -140,7 +142,7 @@ fn meet_a_limit(bench: &mut LinkBench) {
     bench.pins.limit_min = 0;
     bench.rest(3_000);
     write(bench, CLEAR, &[0]);
-    // Without a fault, nothing is left of its cause.
+    // Without a fault, no cause is reported.
     let said = ask(bench, 9, of_axis(POSITION, 5), &[]);
     assert_eq!((said.fault, said.culprits), (None, 0), "{said:?}");
     assert!(said.data.cast_signed() < -3, "{said:?}");

@@ -1,11 +1,11 @@
-//! The arithmetic contract as one formula instead of a loop: the independent other side of every
-//! tick-by-tick implementation.
+//! The arithmetic contract as closed formulas in exact integers. They are independent of every
+//! tick-by-tick implementation and serve as its reference.
 
 use carrystep_core::Segment;
 use num_bigint::BigInt;
 
-/// Position of a segment after `n` ticks relative to its start, in 2^-64 step, exactly:
-/// n V + n(n-1)/2 A + n(n-1)(n-2)/6 J.
+/// Exact position of a segment after `n` ticks relative to its start, in 2^-64 step: n V + n(n-1)/2
+/// A + n(n-1)(n-2)/6 J.
 pub fn distance(segment: &Segment, n: u32) -> BigInt {
     let n = BigInt::from(n);
     let second = &n * (&n - 1) / 2;
@@ -13,7 +13,8 @@ pub fn distance(segment: &Segment, n: u32) -> BigInt {
     &n * segment.v + second * segment.a + third * segment.j
 }
 
-/// Speed of a segment before its tick `n` (from 0), exactly: V + n A + n(n-1)/2 J.
+/// Exact speed of a segment before its tick `n` (from 0), in 2^-64 step per tick: V + n A +
+/// n(n-1)/2 J.
 pub fn speed(segment: &Segment, n: u32) -> BigInt {
     let n = BigInt::from(n);
     segment.v + &n * segment.a + &n * (&n - 1) / 2 * segment.j

@@ -1,12 +1,14 @@
-//! Random programs with many edges a clock, each with something that an edge search can get wrong.
+//! Random programs with many edges per clock. Each of them contains a situation that the fast
+//! model's search for edges could get wrong.
 
 use carrystep_core::{AXES, Command, Program, Segment};
 use proptest::prelude::*;
 
-/// The greatest speed there is.
+/// The greatest possible speed, in 2^-64 step per tick.
 const TOP: i64 = i64::MAX;
 
-/// One axis in one row of segments of the same length, as parts of what fits into that length.
+/// The motion of one axis in a row of segments of equal length. `v`, `a` and `j` are chosen
+/// relative to what fits into that length.
 #[derive(Debug, Clone, Copy)]
 struct Course {
     v: i64,
@@ -14,12 +16,13 @@ struct Course {
     j: i64,
 }
 
-/// A part of a whole: either sign, any magnitude, the ends more often than chance has them.
+/// A fraction from -1 to 1 of either sign and any magnitude; the extremes are more frequent than in
+/// a uniform distribution.
 fn part() -> impl Strategy<Value = f64> {
     prop_oneof![6 => -1.0..1.0, 2 => -0.2..0.2, 1 => Just(0.0), 1 => Just(1.0), 1 => Just(-1.0)]
 }
 
-/// Speeds that divide a step into whole ticks, so that a step ends where a tick does.
+/// Speeds that divide a step into whole ticks, so that a step ends at the end of a tick.
 fn dividing() -> impl Strategy<Value = i64> {
     (2_u32..12, -1_i64..2, any::<bool>()).prop_map(|(bits, off, back)| {
         let v = (1_i64 << (64 - bits)).min(TOP - 1) + off;
@@ -27,7 +30,7 @@ fn dividing() -> impl Strategy<Value = i64> {
     })
 }
 
-/// Speed, acceleration and jerk that change a speed by about as much as there is, over `ticks`.
+/// Speed, acceleration and jerk that change the speed by up to its full range within `ticks` ticks.
 fn course(ticks: u32) -> impl Strategy<Value = Course> {
     let n = f64::from(ticks);
     let scaled = |part: f64, whole: f64| ((part * whole) as i64).max(-TOP);
@@ -37,31 +40,31 @@ fn course(ticks: u32) -> impl Strategy<Value = Course> {
         a: scaled(a, top / n),
         j: scaled(j, top / n / n),
     });
-    // There and back: V turns in mid-segment, once or twice.
+    // Out and back: V changes its sign once or twice within the segment.
     let turning = (part(), 0.1..2.0).prop_map(move |(v, sharp)| Course {
         v: scaled(v, top),
         a: scaled(-v * 4.0 * sharp, top / n),
         j: scaled(v * 8.0 * sharp, top / n / n),
     });
-    // An extremum within the first ticks, and a sign that lasts for one.
+    // V has its extremum within the first ticks, and a sign that lasts for one tick.
     let sharp = (1_i64 << 20..1 << 59, 0.3..3.0, -2_i64..3).prop_map(|(a, ticks, off)| Course {
         v: -a / 2 + off,
         a,
         j: -((a as f64 / ticks) as i64),
     });
     let steady = dividing().prop_map(|v| Course { v, a: 0, j: 0 });
-    // Just under the greatest speed, or on it.
+    // V is the greatest possible speed or slightly less.
     let bound = (0_i64..3, 0_i64..3, any::<bool>()).prop_map(|(off, a, back)| {
         let sign = if back { -1 } else { 1 };
         Course { v: sign * (TOP - off), a: sign * -a, j: 0 }
     });
     let any = prop_oneof![4 => free, 4 => turning, 1 => sharp, 2 => steady, 1 => bound];
-    // An overspeed ends the whole program: it must be rare.
+    // An overspeed ends the whole program, so it must be rare.
     (any, prop::bool::weighted(0.01)).prop_map(move |(course, wild)| if wild { course } else { course.tame(ticks) })
 }
 
 impl Course {
-    /// With less and less acceleration until V stays in its range over `ticks`.
+    /// Reduces the acceleration until V stays in its range for `ticks` ticks.
     fn tame(mut self, ticks: u32) -> Self {
         while !self.stays_in_range(ticks) {
             self = Self { a: self.a / 2, j: self.j / 2, ..self };
@@ -82,7 +85,7 @@ impl Course {
     }
 }
 
-/// The same, slow enough for jumping to be worth while.
+/// The same courses, slow enough for the fast model to jump from edge to edge.
 fn slower(ticks: u32) -> impl Strategy<Value = Course> {
     (course(ticks), 2_u32..8).prop_map(|(c, bits)| Course { v: c.v >> bits, a: c.a >> bits, j: c.j >> bits })
 }
@@ -94,7 +97,8 @@ fn row(ticks: impl Strategy<Value = u32>, slow: bool) -> impl Strategy<Value = (
     })
 }
 
-/// Brings P from its start value to 2^63 from there, one unit before or behind: residues of 0 and 2^64 - 1.
+/// Brings P from its start value to 2^63 from there, or one unit before or behind: residues of 0
+/// and 2^64 - 1.
 fn residue() -> impl Strategy<Value = Vec<(u32, Vec<Course>)>> {
     let steady = |v| Course { v, a: 0, j: 0 };
     let rows = move |off: Vec<i64>| {
@@ -104,8 +108,8 @@ fn residue() -> impl Strategy<Value = Vec<(u32, Vec<Course>)>> {
     prop::collection::vec(-1_i64..2, AXES).prop_map(rows)
 }
 
-/// A joint move of a few rows of each kind, segments up to four times `ticks` long, and a clear behind it,
-/// in case that it was too fast.
+/// A joint move with a few rows of each kind, whose segments have up to four times `ticks` ticks,
+/// followed by a clear in case an axis was too fast.
 pub fn program(ticks: u32) -> impl Strategy<Value = Program> {
     let short = prop::collection::vec(row(prop_oneof![1 => Just(1_u32), 3 => 2_u32..40], false), 0..4);
     let dense = prop::collection::vec(row(ticks / 8..ticks, false), 0..4);

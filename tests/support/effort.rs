@@ -1,32 +1,34 @@
-//! How much lock-step is enough: a little in every test run, a lot when `cargo xtask lockstep` asks for it.
+//! Controls the amount of lock-step: a little in every test run, and more if `cargo xtask lockstep`
+//! or `cargo xtask long` sets an environment variable.
 
 use std::io::Write as _;
 
-/// The clocks that a random run takes at least, where `usual` will do in every test run.
+/// The least number of clocks of a random run: `usual`, or more if `CARRYSTEP_CLOCKS` asks for it.
 ///
-/// # Panics
-/// Where `CARRYSTEP_CLOCKS` is no number: a long run that is none would prove nothing.
+/// # Panics If `CARRYSTEP_CLOCKS` is not a number, because a long run that falls back to the usual
+/// length would prove nothing.
 pub fn clocks(usual: u64) -> u64 {
     asked().map_or(usual, |asked| asked.max(usual))
 }
 
-/// Everything that there is, not what is quick.
+/// True in a long run, which must cover everything and not only what is quick.
 pub fn is_long() -> bool {
     asked().is_some()
 }
 
-/// Every board, not one of a kind.
+/// True if every board must be covered and not only one of each kind.
 pub fn is_every_board() -> bool {
     std::env::var_os("CARRYSTEP_BOARDS").is_some()
 }
 
-/// A line about what has been done.
+/// Prints a line about the work that was done.
 pub fn say(line: &str) {
-    // Nobody is left to tell if this fails.
+    // If this write fails, there is no channel left to report it.
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
-/// What a long run came to, in one line of its own that `cargo xtask long` takes into `docs/long-runs.md`.
+/// Prints the figures of a long run as one line, which `cargo xtask long` copies into
+/// `docs/long-runs.md`.
 pub fn figures(line: &str) {
     say(&format!("FIGURES {line}"));
 }

@@ -1,5 +1,6 @@
-//! Random programs for the engine: queues filled and run dry, joint moves whose axes turn and end in one
-//! tick, and whatever the other cores are given; with the e-stop, limits, stops and silence at any clock.
+//! Random programs for the engine: queues that are filled and run dry, joint moves whose axes
+//! reverse and end in one tick, and all programs of the other cores. E-stop, limits, stops and
+//! silence of the host occur in any clock.
 
 use crate::programs::{self, all};
 use crate::{effort, lockstep};
@@ -10,7 +11,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;
 
-/// Speeds up to the bound, so that axes step in almost every second tick.
+/// Speeds up to the greatest one, so that axes step in almost every second tick.
 fn fast() -> impl Strategy<Value = i64> {
     prop_oneof![
         4 => prop_oneof![Just(i64::MAX), Just(-i64::MAX)],
@@ -20,7 +21,8 @@ fn fast() -> impl Strategy<Value = i64> {
     ]
 }
 
-/// All axes the same ticks, a few segments ahead of the start; every axis turns at each boundary.
+/// All axes have the same ticks, and the host is a few segments ahead of the start. Every axis
+/// reverses at each boundary.
 fn reversals(axes: usize) -> impl Strategy<Value = Program> {
     let row = (prop_oneof![1_u32..4, 4_u32..40], prop::collection::vec(fast(), axes));
     (prop::collection::vec(row, 1..8), any::<bool>()).prop_map(move |(rows, dry)| {
@@ -41,7 +43,7 @@ fn reversals(axes: usize) -> impl Strategy<Value = Program> {
     })
 }
 
-/// V and A that leave the range after some ticks, on several axes at once.
+/// V and A leave their range after some ticks, on several axes at once.
 fn too_fast(axes: usize) -> impl Strategy<Value = Program> {
     let axis = (1_u32..12, fast(), fast(), fast(), any::<bool>());
     prop::collection::vec(axis, axes).prop_map(move |lanes| {
@@ -55,7 +57,7 @@ fn too_fast(axes: usize) -> impl Strategy<Value = Program> {
     })
 }
 
-/// Long segments at speeds that steps come from, and a clear for when they are stopped.
+/// Long segments at speeds that produce steps, and a clear for the case that a stop occurs.
 fn cruises(axes: usize) -> impl Strategy<Value = Program> {
     let axis = (200_u32..600, prop_oneof![4 => -(1_i64 << 60)..(1 << 60), 1 => fast()], -(1_i64 << 50)..(1 << 50));
     prop::collection::vec(axis, axes).prop_map(move |lanes| {
@@ -68,7 +70,7 @@ fn cruises(axes: usize) -> impl Strategy<Value = Program> {
     })
 }
 
-/// One thing that goes on and is over again.
+/// One event that begins and ends.
 fn episode(axes: usize) -> impl Strategy<Value = Events> {
     let what = prop_oneof![
         2 => Just((Event::EStop(true), Event::EStop(false))),
@@ -83,7 +85,8 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
     (what, 0_u64..60_000, length).prop_map(|((begins, ends), at, length)| vec![(at, begins), (at + length, ends)])
 }
 
-/// The same with the start behind as many rows of segments as queues hold: then the host is in time.
+/// The same program with the start behind as many rows of segments as fit into the queues, so that
+/// the host is never late.
 pub fn queued_first(mut program: Program) -> Program {
     program.retain(|command| !matches!(command, Command::Start { .. }));
     let segments = program.iter().filter(|command| matches!(command, Command::Segment { .. })).count();
@@ -91,14 +94,14 @@ pub fn queued_first(mut program: Program) -> Program {
     program
 }
 
-/// Signs of life from a host that is heard of every so often, or falls silent.
+/// Kicks of a host in regular intervals, or from a host that falls silent.
 fn signs_of_life() -> impl Strategy<Value = Events> {
     let interval = prop_oneof![3 => 100_u64..5000, 1 => 5000_u64..12_000];
     (interval, prop_oneof![3 => Just(120_000_u64), 1 => 0_u64..40_000])
         .prop_map(|(interval, end)| (0..end / interval).map(|i| (i * interval, Event::Kick)).collect())
 }
 
-/// Everything that happens around a program.
+/// All events around a program.
 fn events(axes: usize) -> impl Strategy<Value = Events> {
     let episodes = prop_oneof![1 => Just(Vec::new()), 2 => prop::collection::vec(episode(axes), 1..8)];
     (episodes, signs_of_life()).prop_map(|(episodes, life)| {
@@ -109,10 +112,10 @@ fn events(axes: usize) -> impl Strategy<Value = Events> {
     })
 }
 
-/// A segment for the last axis that can be: mostly one that there is not.
+/// A segment for the highest possible axis number, which usually does not exist.
 const STRAY: Segment = Segment { ticks: 1, v: 0, a: 0, j: 0, last: true };
 
-/// Programs for an engine of so many axes, and what happens around them.
+/// Programs for an engine with `axes` axes, and the events around them.
 pub fn program(axes: usize) -> impl Strategy<Value = (Program, Events)> {
     let stray = vec![Command::Segment { axis: 7, segment: STRAY }, Command::Clear];
     let part = prop_oneof![
@@ -125,8 +128,9 @@ pub fn program(axes: usize) -> impl Strategy<Value = (Program, Events)> {
     (prop::collection::vec(part, 1..5).prop_map(|parts| parts.concat()), events(axes))
 }
 
-/// A tick of 1 us; pins as different as in the other rungs, two of them too slow for a step in every other tick;
-/// ramps of ten ticks to some hundreds; rounds so short that all of a guard happens.
+/// A build with a tick of 1 us. The pin timings are as different as in the other rungs, and two of
+/// them are too slow for a step in every other tick. Ramps take ten to some hundred ticks. The
+/// guard's rounds are so short that all of its functions occur.
 pub fn build(axes: usize, clock_hz: u64, phases: u32, phase: StartPhase, limits: Limits) -> EngineBuild {
     let timebase = Timebase::new(clock_hz, 1000, phases).expect("a fine timebase");
     let mut build = Build { timebase, ..lockstep::tight_build(phases, phase) };
@@ -149,7 +153,7 @@ pub fn build(axes: usize, clock_hz: u64, phases: u32, phase: StartPhase, limits:
     build
 }
 
-/// Runs random programs until they have taken so many clocks.
+/// Runs random programs until they have taken the required number of clocks.
 ///
 /// # Panics
 /// Where `one`, which gives the clocks that a program took, finds a difference.
@@ -157,7 +161,7 @@ pub fn run_programs(build: &EngineBuild, usual: u64, one: impl Fn(&Program, &Eve
     let (clocks, enough) = (Cell::new(0), effort::clocks(usual));
     let mut config = Config { cases: 4, max_shrink_time: 20_000, failure_persistence: None, ..Config::default() };
     while clocks.get() < enough {
-        // From a given seed, other programs in each round too.
+        // A fixed seed is incremented, so that each round has other programs.
         if let RngSeed::Fixed(seed) = &mut config.rng_seed {
             *seed = seed.wrapping_add(1);
         }

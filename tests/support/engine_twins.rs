@@ -1,5 +1,5 @@
-//! The fast engine and the clock-by-clock one side by side, each under a host of its own: the same edges, and the
-//! same registers and inputs wherever the fast one stops.
+//! Runs the fast engine and the clock-by-clock engine side by side, each with a host of its own.
+//! The edges must be equal, and registers and inputs must be equal whenever the fast engine stops.
 
 use carrystep_core::engine::{CAUSES, EngineInputs, EngineOutputs};
 use carrystep_core::{EngineBuild, Program};
@@ -7,21 +7,21 @@ use carrystep_model::fast::{Change, Edge};
 use carrystep_model::{Engine, FastEngine};
 use carrystep_simulators::engine::{EngineHost, Events};
 
-/// What two runs that are the same have come to.
+/// Counts from a comparison without a difference.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Came {
     /// Edges on the pins.
     pub edges: u64,
-    /// Cycles.
+    /// Clock cycles.
     pub clocks: u64,
-    /// Cycles that were leapt over.
+    /// Clock cycles that the fast engine skipped.
     pub leapt: u64,
-    /// Stops by each cause.
+    /// Number of stops by each cause.
     pub faults: [u64; CAUSES.len()],
 }
 
 impl Came {
-    /// Both together.
+    /// The sum of two counts.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let faults = std::array::from_fn(|cause| self.faults[cause] + other.faults[cause]);
@@ -30,12 +30,10 @@ impl Came {
     }
 }
 
-/// Runs a program, and what happens around it, until all is quiet, or for `most` cycles.
+/// Runs a program and its events until everything is at rest, at most for `most` cycles. `leaps`
+/// are the greatest lengths of the leaps, used in turn, so that a leap can end in any clock.
 ///
-/// `leaps` are the longest leaps, taken in turn: so that a leap ends in any clock.
-///
-/// # Errors
-/// The first difference.
+/// # Errors The first difference.
 pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64], most: u64) -> Result<Came, String> {
     let (mut fast, mut slow) = (FastEngine::new(build), Engine::new(build));
     let (mut fast_host, mut slow_host) =
@@ -48,12 +46,12 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
         let (inputs, outputs) = fast_host.meet(|inputs| fast.outputs(inputs));
         let longest = *leaps.next().unwrap_or(&u64::MAX);
         let patience = fast_host.patience(&outputs).min(most - came.clocks).min(longest);
-        // By turns: a leap or a clock, or as far as there is nothing to be heard.
+        // Alternates between a single leap or clock and a run up to the next event for the host.
         by_run = !by_run;
         let mut heard = None;
         if by_run {
             heard = fast.run(&inputs, came.clocks + patience.max(1), &mut fast_edges);
-            // Without patience the host goes on in this cycle, whatever it hears.
+            // A host without patience continues in this cycle, whether or not there is an event.
             let goes_on = heard.or((patience == 0).then_some(outputs));
             fast_host.wait(fast.cycle() - came.clocks - u64::from(goes_on.is_some()));
             goes_on.iter().for_each(|outputs| fast_host.advance(outputs));
@@ -105,13 +103,14 @@ pub fn run(build: &EngineBuild, program: &Program, events: &Events, leaps: &[u64
         came.edges += fast_edges.len() as u64;
         fast_edges.clear();
         slow_edges.clear();
-        // The end may come anywhere in the rest.
+        // The end may come in any cycle of the rest.
         quiet = slow_host.is_done() && (outputs.idle || outputs.halted);
     }
     Ok(came)
 }
 
-/// A host has nothing to hear of in a cycle with these inputs and outputs, and the outputs behind it.
+/// True if a cycle with these inputs and outputs, and these outputs after it, contains no event for
+/// the host.
 fn is_silent(inputs: &EngineInputs, now: &EngineOutputs, next: &EngineOutputs) -> bool {
     let taken = (now.put_ready && inputs.put.is_some()) || (now.start_ready && inputs.start.is_some());
     let state = |outputs: &EngineOutputs| {

@@ -1,4 +1,4 @@
-//! The golden engine vectors: programs of one axis with every edge hashed.
+//! The golden engine vectors: programs of one axis, and a hash of all their edges.
 
 use carrystep_core::{Segment, StartPhase};
 use serde::Deserialize;
@@ -7,14 +7,14 @@ use sha2::{Digest, Sha256};
 /// One case of `golden/engine_vectors.json`.
 #[derive(Debug, Deserialize)]
 pub struct Case {
-    /// What it is about.
+    /// Description of the case.
     pub name: String,
     #[serde(rename = "P0")]
     p0: String,
     segments: Vec<GoldenSegment>,
-    /// Sum of all segments.
+    /// Ticks of all segments together.
     pub total_ticks: u64,
-    /// Edges in all.
+    /// Number of edges.
     pub pulses: usize,
     first8: Vec<Edge>,
     last8: Vec<Edge>,
@@ -24,7 +24,7 @@ pub struct Case {
     sha256_edges_csv: String,
 }
 
-/// `[tick from 1, phase, direction +1 or -1]`.
+/// An edge: tick from 1, phase, direction +1 or -1.
 pub type Edge = (u64, u32, i8);
 
 #[derive(Debug, Deserialize)]
@@ -48,24 +48,25 @@ pub fn engine_vectors() -> Vec<Case> {
 }
 
 impl Case {
-    /// P before the first tick.
+    /// P before the first tick, in 2^-64 step.
     pub fn p0(&self) -> u64 {
         self.p0.parse().expect("P0")
     }
 
-    /// P after the last tick.
+    /// P after the last tick, in 2^-64 step.
     pub fn p_end(&self) -> u64 {
         self.p_end.parse().expect("P_end")
     }
 
-    /// Where in a step the case starts.
+    /// The start phase of the case.
     pub fn phase(&self) -> StartPhase {
         let phase = if self.p0() == 0 { StartPhase::Zero } else { StartPhase::Half };
         assert_eq!(phase.start_value(), self.p0(), "{}: a start value that builds have", self.name);
         phase
     }
 
-    /// The segments; the last one is marked `last`, which stops the axis after the edges that count.
+    /// The segments. The last one is marked `last`, which stops the axis after the edges that
+    /// count.
     pub fn segments(&self) -> Vec<Segment> {
         let number = |text: &String| text.parse().expect("a 64-bit number");
         let count = self.segments.len();
@@ -79,7 +80,7 @@ impl Case {
         self.segments.iter().enumerate().map(segment).collect()
     }
 
-    /// Panics, naming the first difference, unless these are all edges of the case in order.
+    /// Panics with the first difference unless these are all edges of the case in order.
     pub fn assert_edges(&self, edges: &[Edge]) {
         let name = &self.name;
         let head = self.first8.len().min(edges.len());

@@ -1,14 +1,13 @@
-//! Work for external tools, a few at a time.
+//! Runs external tools, a few at a time.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Simulations at a time.
+/// Number of simulations that run at a time.
 const JOBS: usize = 2;
 
-/// Does something with each, a few at a time, the results in order.
+/// Calls `work` for each item, a few at a time, and returns the results in order.
 ///
-/// # Panics
-/// Where the work does.
+/// # Panics If `work` panics.
 pub fn each<T: Sync, R: Send>(all: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let job = || {

@@ -1,4 +1,5 @@
-//! What the rungs share: the golden vectors, an independent closed form, random programs, proofs.
+//! The parts that the rungs share: golden vectors, an independent closed form, random programs,
+//! benches, mutants and proofs.
 
 pub mod axis_bench;
 pub mod board_session;

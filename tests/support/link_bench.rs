@@ -1,5 +1,5 @@
-//! The link and the engine together, with a host at the other end of the line: Rust-HDL's modules of both, the model of the
-//! link in lock-step.
+//! A bench with link and engine, and a host at the other end of the line. Link and engine are
+//! Rust-HDL's modules; the model of the link runs in lock-step with them.
 
 mod board;
 mod frames;
@@ -19,43 +19,43 @@ use carrystep_model::Link;
 use carrystep_simulators::vectors::{Bits, Vectors};
 use std::collections::VecDeque;
 
-/// Both modules, the line between them and the test.
+/// Both modules, the line and the host's end of it.
 pub struct LinkBench {
     wire: Wire,
     engine: EngineSim,
-    /// Bytes to be sent.
+    /// Bytes that are still to be sent.
     bytes: VecDeque<u8>,
-    /// The pins of switches.
+    /// Inputs from the switches.
     pub pins: EngineInputs,
-    /// What the engine showed last.
+    /// The outputs of the engine in the last cycle.
     pub outputs: EngineOutputs,
-    /// Cycles so far.
+    /// Number of cycles so far.
     pub clocks: u64,
     /// Rising edges of STEP so far, of all axes.
     pub steps: u64,
-    /// What the link was told and showed, if it is kept.
+    /// The recorded inputs and outputs of link and line, if they are recorded.
     pub vectors: Option<Both>,
-    /// What the pins of a board have done, if it is kept.
+    /// The recorded pins of a board, if they are recorded.
     pub board: Option<BoardPins>,
 }
 
-/// The cycles of link and line.
+/// The recorded cycles of link and line.
 #[derive(Debug, Clone)]
 pub struct Both {
-    /// Of the link.
+    /// Cycles of the link.
     pub link: Vectors,
-    /// Of its line.
+    /// Cycles of its line.
     pub line: Vectors,
 }
 
-/// The link with its line, and the host's end of that.
+/// The link with its line, and the host's end of that line.
 enum Wire {
     Uart { link: LinkSim, model: Link, sender: Sender, receiver: Receiver },
     Spi { link: Box<dyn AnyLink>, line: SpiSim, model: Link, host: SpiHost },
 }
 
 impl LinkBench {
-    /// Both as they are configured, the line at rest.
+    /// Link and engine at configuration, connected by a UART that is idle.
     pub fn uart(build: &EngineBuild, uart: Uart) -> Self {
         let bit_clocks = uart.bit_clocks();
         let link = LinkSim::new(build, uart).expect("a link");
@@ -63,7 +63,7 @@ impl LinkBench {
         Self::new(build, Wire::Uart { link, model: Link::new(build, uart), sender, receiver })
     }
 
-    /// The same over SPI, SCK's half period in tenths of a clock.
+    /// The same over SPI; `tenths` is half a period of SCK in tenths of a clock.
     pub fn spi(build: &EngineBuild, tenths: u32) -> Self {
         let mut link = link(build, Line::Spi.build_id(build)).expect("a link");
         link.connect_all();
@@ -85,12 +85,12 @@ impl LinkBench {
         }
     }
 
-    /// Bytes that are to be sent.
+    /// Appends bytes to those that are to be sent.
     pub fn send(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }
 
-    /// All bytes are sent.
+    /// True if all bytes are sent.
     pub fn has_sent(&self) -> bool {
         let busy = match &self.wire {
             Wire::Uart { sender, .. } => sender.left > 0,
@@ -99,7 +99,7 @@ impl LinkBench {
         self.bytes.is_empty() && !busy
     }
 
-    /// One cycle; a byte that has come.
+    /// Executes one cycle and returns the byte that the host has received in it.
     pub fn clock(&mut self) -> Option<u8> {
         let mut seen = LinkInputs::default();
         match &mut self.wire {
@@ -133,7 +133,7 @@ impl LinkBench {
         byte
     }
 
-    /// So many cycles in which nothing comes.
+    /// Executes cycles in which the host must receive nothing.
     pub fn rest(&mut self, clocks: u64) {
         for _ in 0..clocks {
             let byte = self.clock();
@@ -141,7 +141,8 @@ impl LinkBench {
         }
     }
 
-    /// The bytes of the next answer between its ENDs, within so many cycles.
+    /// The bytes of the next answer between its ENDs; `None` if it does not come within this many
+    /// cycles.
     pub fn answer(&mut self, within: u64) -> Option<Vec<u8>> {
         let mut frame = Vec::new();
         let end = self.clocks + within;
@@ -172,7 +173,7 @@ impl Wire {
         }
     }
 
-    /// Keeps what the modules were told and showed in the present cycle.
+    /// Records the inputs and outputs of the modules in the present cycle.
     fn keep(&self, seen: &LinkInputs, shown: &LinkOutputs, level: bool, both: &mut Both) {
         let (bytes, offered) = match self {
             Self::Uart { link, .. } => link.bytes(),
@@ -191,7 +192,7 @@ impl Wire {
         );
     }
 
-    /// To the next cycle; a byte that has come.
+    /// Advances by one cycle and returns the byte that the host has received.
     fn clock(&mut self, seen: &LinkInputs, shown: &LinkOutputs, level: bool, clocks: u64) -> Option<u8> {
         match self {
             Self::Uart { link, model, receiver, .. } => {

@@ -1,21 +1,21 @@
-//! Two levels on the same program, every output in every clock.
+//! Compares two levels on the same program, every output in every clock.
 
 use crate::golden::Edge;
 use carrystep_core::ports::Outputs;
 use carrystep_core::{AXES, Build, PinTiming, Program, StartPhase, Timebase};
 use carrystep_simulators::{Job, Level, LevelError, Outcome, run};
 
-/// All outputs in each cycle in which any of them changed, and how the run ended; a host can block
-/// itself for ever (a start that can never be), and then there is no end.
+/// All outputs in each cycle in which any of them changed, and the end of the run. A host can block
+/// itself for ever (with a start that can never happen); then there is no end.
 #[derive(Debug, PartialEq)]
 pub struct Record {
-    /// Cycle and outputs.
+    /// Cycle and outputs of each change.
     pub changes: Vec<(u64, Outputs)>,
     /// The end, if it came before the job's last clock.
     pub outcome: Option<Outcome>,
 }
 
-/// Runs a job at a level and keeps everything.
+/// Runs a job at a level and records all changes.
 pub fn record(level: Level, job: &Job<'_>) -> Result<Record, LevelError> {
     let mut changes = Vec::new();
     let outcome = match run(level, job, &mut |cycle, outputs| changes.push((cycle, *outputs))) {
@@ -25,7 +25,7 @@ pub fn record(level: Level, job: &Job<'_>) -> Result<Record, LevelError> {
     Ok(Record { changes, outcome })
 }
 
-/// What is different between two records, first difference first; `None` if nothing is.
+/// The first difference between two records, or `None` if they are equal.
 pub fn difference(expected: &Record, found: &Record) -> Option<String> {
     let pairs = expected.changes.iter().zip(&found.changes);
     if let Some((e, f)) = pairs.into_iter().find(|(e, f)| e != f) {
@@ -38,7 +38,8 @@ pub fn difference(expected: &Record, found: &Record) -> Option<String> {
     (expected.outcome != found.outcome).then(|| format!("{:?} expected, {:?} found", expected.outcome, found.outcome))
 }
 
-/// Panics at the first clock in which a level differs from the model, clock by clock or fast.
+/// Panics at the first clock in which a level differs from the clock-by-clock model or from the
+/// fast model.
 pub fn assert_equals_model(level: Level, job: &Job<'_>) {
     let found = record(level, job).unwrap_or_else(|error| panic!("{level}: {error}"));
     for model in [Level::Model, Level::Fast] {
@@ -49,12 +50,12 @@ pub fn assert_equals_model(level: Level, job: &Job<'_>) {
     }
 }
 
-/// A job for a random program: time for whatever the generators make.
+/// A job for a random program, with enough clocks for all generators.
 pub fn job<'a>(build: &'a Build, program: &'a Program) -> Job<'a> {
     Job { max_clocks: 50_000, ..Job::new(build, program, 0) }
 }
 
-/// The edges of a golden case, seen on the pins of the axis that ran it.
+/// The edges of a golden case as they appear on the pins of the axis that ran it.
 pub fn edges_on_the_pins(build: &Build, record: &Record, axis: usize) -> Vec<Edge> {
     let time = &build.timebase;
     let outcome = record.outcome.as_ref().expect("the run ended");
@@ -75,8 +76,8 @@ pub fn edges_on_the_pins(build: &Build, record: &Record, axis: usize) -> Vec<Edg
     edges
 }
 
-/// A build for random programs: the fewest clocks per tick, axes with very different pins, so that
-/// overruns, waiting for set-up and waiting for hold all happen.
+/// A build for random programs with the fewest clocks per tick. The axes have very different pin
+/// timings, so that overruns and waits for set-up and for hold all occur.
 pub fn tight_build(phases: u32, phase: StartPhase) -> Build {
     let pins = |width, gap, setup, hold| PinTiming { width, gap, setup, hold };
     let pins: [PinTiming; AXES] = [
@@ -90,7 +91,7 @@ pub fn tight_build(phases: u32, phase: StartPhase) -> Build {
     Build { pins, ..quick_build(phases, phase) }
 }
 
-/// The fewest clocks per tick, and pins that delay nothing.
+/// A build with the fewest clocks per tick and pin timings that delay nothing.
 pub fn quick_build(phases: u32, phase: StartPhase) -> Build {
     let timebase = Timebase::new(16_000_000, 1000, phases).expect("a fine timebase");
     Build { timebase, phase, pins: [PinTiming::SHORTEST; AXES] }

@@ -1,4 +1,4 @@
-//! Move files and golden cases as programs.
+//! Move files and golden cases as programs for the levels.
 
 use crate::golden::Case;
 use carrystep_check::{AxisSetup, Checker, Origin, Report, Setup};
@@ -10,29 +10,30 @@ use carrystep_simulators::pins::PinFeed;
 use carrystep_simulators::{Job, Level};
 use std::path::Path;
 
-/// The root of the workspace.
+/// The root folder of the workspace.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests/ is in the workspace")
 }
 
-/// The demo's moves, planned.
+/// The plan of the demo.
 pub fn demo() -> Plan {
     shipped("demo").1
 }
 
-/// Every profile, free and straight, planned.
+/// The plan of a file with every profile, free and straight.
 pub fn curves() -> Plan {
     shipped("curves").1
 }
 
-/// A move file that is shipped in `sim/`, and its plan.
+/// A move file from `sim/`, and its plan.
 pub fn shipped(name: &str) -> (MoveFile, Plan) {
     let file = MoveFile::load(&root().join("sim").join(name).with_extension("toml")).expect("a shipped move file");
     let plan = carrystep_plan::plan::<f64>(&file).expect("a shipped plan");
     (file, plan)
 }
 
-/// Golden cases side by side, case i on axis i, started on one tick; and their greatest length in ticks.
+/// Golden cases side by side, case i on axis i, started in one tick; and the greatest number of
+/// ticks of a case.
 pub fn side_by_side(cases: &[&Case]) -> (Program, u64) {
     assert!(cases.len() <= AXES);
     let mut due: Vec<(u64, u8, Segment)> = Vec::new();
@@ -49,8 +50,8 @@ pub fn side_by_side(cases: &[&Case]) -> (Program, u64) {
     (program, cases.iter().map(|case| case.total_ticks).max().unwrap_or(0))
 }
 
-/// Runs a plan's program, or another in its place, on the fast model and checks the pins, and that they keep to the lines:
-/// what `carrystep simulate` does.
+/// Runs a plan's program, or another one instead, on the fast model and checks pins and straight
+/// lines as `carrystep simulate` does.
 pub fn check(file: &MoveFile, plan: &Plan, lines: &[Line], program: &Program, build: &Build) -> Report {
     let timelines = plan.timelines();
     let job = Job::new(build, program, plan.total_ticks());
@@ -61,7 +62,7 @@ pub fn check(file: &MoveFile, plan: &Plan, lines: &[Line], program: &Program, bu
     checker.finish()
 }
 
-/// What the pins of a planned move file are checked against, in a run of `job`.
+/// The setup of the checker for a planned move file in a run of `job`.
 fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], job: &Job<'_>) -> Setup<'a> {
     let time = plan.build.timebase;
     let load = carrystep_simulators::origin(job).expect("the program starts");

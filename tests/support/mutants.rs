@@ -1,9 +1,10 @@
-//! Rung 8: mutants of the exported engine against lock-step with the model; those that it does not catch are
-//! put to a proof that they are the engine, and those that are not proved to the promises of rung 7.
+//! Rung 8: runs mutants of the exported engine in lock-step with the model. A mutant that no
+//! recording catches goes to a proof that it equals the engine. A mutant that is not proved equal
+//! goes to the promises of rung 7.
 //!
 //! ```text
-//! hdl-out/core/carrystep_engine.v -- yosys mutate --> one netlist that holds them all -- Verilator --> a program
-//! the model -- recordings of moves, starts, stops --------------------------------------------------> is run against it
+//! hdl-out/core/carrystep_engine.v -> yosys mutate -> one netlist with all mutants -> Verilator
+//! the model -> recordings of moves, starts and stops -> compared with each mutant in every clock
 //! ```
 
 pub mod draw;
@@ -18,10 +19,9 @@ use carrystep_simulators::engine::replay::difference_of_mutant;
 use draw::Sample;
 use stimuli::Stimulus;
 
-/// For each mutant, the first recording that it differs from.
+/// For each mutant, the name of the first recording from which it differs.
 ///
-/// # Panics
-/// Where a tool is missing.
+/// # Panics If a tool is missing.
 pub fn catchers<'a>(sample: &Sample, stimuli: &'a [Stimulus]) -> Vec<Option<&'a str>> {
     let places: Vec<usize> = (0..sample.mutants.len()).collect();
     each(&places, |place| {
@@ -33,21 +33,20 @@ pub fn catchers<'a>(sample: &Sample, stimuli: &'a [Stimulus]) -> Vec<Option<&'a 
     })
 }
 
-/// What is known of a mutant that lock-step does not catch.
+/// The judgement on a mutant that lock-step does not catch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Judgement {
-    /// It is proved to be the engine.
+    /// The mutant is proved equal to the engine.
     Equal(equal::Scope),
-    /// It breaks a promise of this module.
+    /// The mutant breaks a promise of this module.
     Breaks(&'static str),
-    /// Neither: a person has to say why it is harmless.
+    /// Neither; a person must find out why it is harmless.
     Open,
 }
 
-/// Asks the other judges about mutants, by their places.
+/// Judges the mutants with these indices: first by a proof of equality, then by the promises.
 ///
-/// # Panics
-/// Where a tool is missing.
+/// # Panics If a tool is missing.
 pub fn judge(sample: &Sample, places: &[usize]) -> Vec<Judgement> {
     each(places, |place| {
         let mutant = &sample.mutants[*place];
@@ -60,10 +59,9 @@ pub fn judge(sample: &Sample, places: &[usize]) -> Vec<Judgement> {
     })
 }
 
-/// Whether a mutant (0: the engine as it is) is not the model.
+/// True if a mutant (0: the unchanged engine) differs from the model.
 ///
-/// # Panics
-/// Where a tool is missing.
+/// # Panics If a tool is missing.
 pub fn differs(sample: &Sample, mutant: usize, stimulus: &Stimulus) -> bool {
     difference_of_mutant(&sample.verilog, mutant, &stimulus.recording).expect("the tools").is_some()
 }

@@ -1,12 +1,13 @@
-//! Bugs planted as text in the exported Verilog of an engine: each must be caught.
+//! Plants bugs as changes of text in the exported Verilog of an engine. Each of them must be
+//! caught.
 
-/// What is wrong then, the text of the Verilog, what it becomes.
+/// A bug: its description, the original text of the Verilog, and the replacement.
 pub type Bug = (&'static str, &'static str, &'static str);
 
-/// Plants one after the other.
+/// Plants one bug after the other.
 ///
-/// # Panics
-/// Where a text is gone, or `caught` says no of the changed Verilog.
+/// # Panics If an original text no longer exists, or if `caught` returns false for the changed
+/// Verilog.
 pub fn assert_all_caught(bugs: &[Bug], caught: impl Fn(&dyn Fn(String) -> String) -> bool) {
     for &(name, text, becomes) in bugs {
         let plant = |verilog: String| {

@@ -1,10 +1,10 @@
-//! Random programs for lock-step: reversals, dry queues, one-tick segments, V at its bound, host
-//! faults and clears.
+//! Random programs for lock-step: reversals, queues that run dry, one-tick segments, V at its
+//! limit, faults of the host, and clears.
 
 use carrystep_core::{AXES, Command, Program, Segment};
 use proptest::prelude::*;
 
-/// A speed: mostly such that steps come at all, sometimes at the very bound, sometimes beyond.
+/// A speed that usually produces steps, and sometimes equals or exceeds the limit.
 fn v() -> impl Strategy<Value = i64> {
     prop_oneof![
         3 => -i64::MAX..i64::MAX,
@@ -15,18 +15,18 @@ fn v() -> impl Strategy<Value = i64> {
     ]
 }
 
-/// An acceleration or jerk that turns a speed round within a few or a few hundred ticks.
+/// An acceleration or jerk that reverses a speed within a few to a few hundred ticks.
 fn change() -> impl Strategy<Value = i64> {
     prop_oneof![3 => Just(0), 4 => (30_u32..61).prop_flat_map(|bits| -(1_i64 << bits)..(1 << bits))]
 }
 
-/// A segment of a few ticks; `last` is set by the program.
+/// A segment of a few ticks; the program sets `last`.
 pub fn segment() -> impl Strategy<Value = Segment> {
     let ticks = prop_oneof![2 => Just(1_u32), 4 => 2_u32..8, 2 => 8_u32..80];
     (ticks, v(), change(), change()).prop_map(|(ticks, v, a, j)| Segment { ticks, v, a, j, last: false })
 }
 
-/// Segments that a well-meaning host sends for one move of all axes: each axis the same ticks.
+/// The segments that a correct host sends for one move of all axes; each axis has the same ticks.
 fn joint_move(axes: usize) -> impl Strategy<Value = Program> {
     prop::collection::vec((1_u32..100, prop::collection::vec((v(), change(), change()), axes)), 1..6).prop_map(
         move |rows| {
@@ -34,7 +34,8 @@ fn joint_move(axes: usize) -> impl Strategy<Value = Program> {
             let mut program = Program::new();
             for (row, (ticks, lanes)) in rows.into_iter().enumerate() {
                 for (axis, (v, a, j)) in (0..).zip(lanes) {
-                    // Half the speed, no change that could leave the range: such a move runs to its end.
+                    // With half the speed and changes that cannot leave the range, the move runs to
+                    // its end.
                     let segment = Segment { ticks, v: v / 2, a: a >> 14, j: j >> 24, last: row + 1 == count };
                     program.push(Command::Segment { axis, segment });
                 }
@@ -47,8 +48,8 @@ fn joint_move(axes: usize) -> impl Strategy<Value = Program> {
     )
 }
 
-/// A few segments for some axes, at any speed, started together; not always marked last, so that queues
-/// run dry.
+/// A few segments for some axes at any speed, started together. Not all of them are marked last, so
+/// queues may run dry.
 fn wild_move(axes: usize) -> impl Strategy<Value = Program> {
     let axis = (prop::collection::vec((segment(), 0_u32..24), 1..4), prop::bool::weighted(0.7));
     (1..=all(axes), prop::collection::vec(axis, axes), 0_u32..3000).prop_map(|(mask, axes, wait)| {
@@ -69,7 +70,7 @@ fn wild_move(axes: usize) -> impl Strategy<Value = Program> {
     })
 }
 
-/// Things that a host must not do, and what it may do at any time.
+/// Commands that a host must not send, and commands that it may send at any time.
 fn nonsense(axes: usize) -> impl Strategy<Value = Program> {
     let count = axes as u8;
     let one = prop_oneof![
@@ -82,17 +83,18 @@ fn nonsense(axes: usize) -> impl Strategy<Value = Program> {
     (one, 1_u32..40).prop_map(|(command, clocks)| vec![command, Command::Wait { clocks }])
 }
 
-/// The mask of all of so many axes.
+/// The mask of all axes.
 pub fn all(axes: usize) -> u8 {
     ((1_u32 << axes) - 1) as u8
 }
 
-/// A whole program for the parallel core.
+/// A complete program for the parallel core.
 pub fn program() -> impl Strategy<Value = Program> {
     program_of(AXES)
 }
 
-/// A whole program of so many axes: proper moves, wild ones, nonsense, a clear here and there.
+/// A complete program for this many axes: correct moves, wild moves, protocol faults, and some
+/// clears.
 pub fn program_of(axes: usize) -> impl Strategy<Value = Program> {
     let part = prop_oneof![
         3 => joint_move(axes),

@@ -1,17 +1,19 @@
-//! Rung 7: the promises as proofs, by induction on the exported Verilog as it stands.
+//! Rung 7: the promises as proofs by induction on the exported Verilog.
 //!
-//! A module's `promises.sv` stands beside its Rust source: it instantiates the exported module, says the
-//! promises as assertions on its ports, and the invariants that make them inductive. Each case of a proof
-//! (a set of build parameters) is three questions to the solver, and a planted bug is one more:
+//! The `promises.sv` of a module stands beside its Rust source. It instantiates the exported module
+//! and states the promises as assertions on its ports, together with the invariants that make them
+//! inductive. Each case of a proof (a set of build parameters) consists of three questions to the
+//! solver, and each planted bug is one more:
 //!
 //! ```text
-//! base       promises and invariants hold from configuration on, as far as the induction is deep
-//! induction  where they held, they hold one clock later: so they hold for ever
-//! covers     what the promises speak of does happen, each cover in some run (the first case)
-//! bug        the promise alone, from configuration, on Verilog with one text changed: must fail
+//! base       promises and invariants hold from configuration on for the depth of the induction
+//! induction  if they held for this depth, they hold one clock later, and therefore for ever
+//! covers     the situations of the promises occur: some run reaches each cover (first case only)
+//! bug        on Verilog with one text changed, the promise fails in a run from configuration on
 //! ```
 //!
-//! To add a module: its `promises.sv`, a file in `proofs/` that lists its cases and bugs, a line in [`all`].
+//! To add a module, write its `promises.sv`, add a file in `proofs/` that lists its cases and bugs,
+//! and add a line to [`all`].
 
 mod adder;
 mod axis;
@@ -41,32 +43,32 @@ pub use table::table;
 
 use std::sync::Arc;
 
-/// One module's proof.
+/// The proof of one module.
 pub struct Proof {
     /// The module, named as its folder in `crates/hdl/src`.
     pub module: &'static str,
     /// Its `promises.sv`.
     pub promises: Promises,
-    /// What it is proved for; covers and bugs take the first.
+    /// The cases for which it is proved; covers and bugs use the first one.
     pub cases: Vec<Case>,
-    /// Depth k of the induction.
+    /// Depth k of the induction, in clocks.
     pub depth: u32,
-    /// Clocks within which every cover is reached, and every bug is seen.
+    /// Number of clocks within which every cover is reached and every bug is detected.
     pub reach: u32,
-    /// What must not go unnoticed.
+    /// The planted bugs.
     pub bugs: &'static [Bug],
 }
 
 /// Build parameters, and the Verilog that was exported for them.
 #[derive(Clone)]
 pub struct Case {
-    /// For a person.
+    /// Description for a person.
     pub name: String,
-    /// The exported module.
+    /// The name of the exported module.
     pub dut: String,
-    /// The exported text, whole.
+    /// The whole exported text.
     pub verilog: Arc<str>,
-    /// What `promises.sv` takes from outside.
+    /// The numbers that `promises.sv` takes as parameters.
     pub numbers: Vec<(&'static str, String)>,
 }
 
@@ -74,22 +76,22 @@ pub struct Case {
 pub struct Bug {
     /// Label of the assertion in `promises.sv` that must fail.
     pub breaks: &'static str,
-    /// The text; it stands in the module exactly once.
+    /// The original text, which occurs in the module exactly once.
     pub text: &'static str,
-    /// What it becomes.
+    /// The replacement.
     pub becomes: &'static str,
 }
 
 impl Case {
-    /// How many axes a star in `promises.sv` stands for: the number `AXES`.
+    /// Number of axes for which a star in `promises.sv` stands: the parameter `AXES`.
     pub fn axes(&self) -> usize {
         self.numbers.iter().find(|(name, _)| *name == "AXES").and_then(|(_, axes)| axes.parse().ok()).unwrap_or(1)
     }
 
     /// The same Verilog with a bug planted.
     ///
-    /// # Panics
-    /// Where the text is not in the module exactly once: then the bug has to be written anew.
+    /// # Panics If the text does not occur in the module exactly once; the bug must then be
+    /// rewritten.
     pub fn with(&self, bug: &Bug) -> Self {
         let start = self.verilog.find(&format!("module {} (", self.dut)).expect("the module is in its Verilog");
         let end = start + self.verilog[start..].find("endmodule").expect("the module ends");
@@ -124,7 +126,7 @@ pub fn all() -> Vec<Proof> {
     ]
 }
 
-/// The exported engine that proofs are about.
+/// The exported engine that the proofs are about.
 pub fn shipped_engine() -> Arc<str> {
     builds::shipped_engine().1
 }

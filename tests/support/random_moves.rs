@@ -1,4 +1,4 @@
-//! Random moves of random machines, as move files.
+//! Generates random moves of random machines, as move files.
 
 use carrystep_files::{MoveFile, ProfileKind, Source};
 use carrystep_plan::plan;
@@ -6,13 +6,14 @@ use proptest::prelude::*;
 
 const CLOCK_HZ: u64 = 64_000_000;
 
-/// How long moves may take.
+/// The range of durations.
 #[derive(Debug, Clone, Copy)]
 pub enum Pace {
     /// From microseconds to days.
     Any,
-    /// Fractions of a second, quick to simulate; no ramp is over within a few ticks, so that edges keep the bound of the
-    /// accuracy contract, which looks at the acceleration at the edge itself.
+    /// Fractions of a second, which are quick to simulate. No ramp ends within a few ticks, so that
+    /// edges keep the bound of the accuracy contract, which uses the acceleration at the edge
+    /// itself.
     Brisk,
 }
 
@@ -27,7 +28,7 @@ struct RandomAxis {
     speed: f64,
     start: f64,
     accel: f64,
-    /// The jerk limit is this many times the acceleration limit, 1/s.
+    /// The jerk limit as a multiple of the acceleration limit, in 1/s.
     jerk: f64,
     per_unit: f64,
     pins: [u64; 4],
@@ -46,9 +47,9 @@ pub struct RandomMoves {
 #[derive(Debug, Clone)]
 struct RandomMove {
     profile: ProfileKind,
-    /// About so many, for each axis.
+    /// Approximate number of steps of each axis.
     steps: Vec<i32>,
-    /// How much more than the least time, if any.
+    /// The time as a multiple of the least time; `None` is the least time.
     stretch: Option<f64>,
     straight: bool,
     /// Tolerance of a fit, ns.
@@ -65,7 +66,8 @@ impl RandomMoves {
         );
         for (i, axis) in self.axes.iter().enumerate() {
             let [step, gap, setup, hold] = axis.pins;
-            // Fastest that tick, phase, width and gap allow; the units make it fractional.
+            // The greatest speed that tick, phases, width and gap allow; dividing by the units
+            // makes it fractional.
             let clocks = |ns: u64| ((ns * CLOCK_HZ).div_ceil(1_000_000_000)).max(1) as f64;
             let phase = (self.tick_ns * CLOCK_HZ / 1_000_000_000) as f64 / f64::from(self.phases);
             let period = (clocks(step) + clocks(gap) + phase) / CLOCK_HZ as f64;
@@ -104,13 +106,13 @@ impl RandomMoves {
         text
     }
 
-    /// The file with no times, and the same with the stretched ones.
+    /// The file without times, and the same file with the stretched times.
     pub fn files(&self) -> Vec<MoveFile> {
         let fast = file(&self.text(&[]));
         let planned = plan::<f64>(&fast).unwrap_or_else(|error| panic!("{error}\n{}", self.text(&[])));
         let times: Vec<Option<String>> = (self.moves.iter().zip(&planned.moves))
             .map(|(RandomMove { stretch, .. }, planned)| {
-                // A file gives 10^6 s at most.
+                // A file allows times up to 10^6 s.
                 if planned.seconds > 0.9e6 {
                     return None;
                 }
@@ -146,7 +148,7 @@ fn axis(pace: Pace) -> impl Strategy<Value = RandomAxis> {
     })
 }
 
-/// One to four moves of these kinds, for machines of one to three axes.
+/// One to four moves of these kinds, for machines with one to three axes.
 pub fn random_moves(pace: Pace, kinds: &'static [ProfileKind]) -> impl Strategy<Value = RandomMoves> {
     let ticks: &[u64] = match pace {
         Pace::Any => &[500, 1000, 2000, 10_000],

@@ -1,28 +1,28 @@
-//! The fast model and the clock-by-clock model side by side: the same inputs in every clock, and the same
-//! registers wherever the fast one stops.
+//! Runs the fast model and the clock-by-clock model of the parallel core side by side with the same
+//! inputs in every clock. The registers must be equal wherever the fast model stops.
 
 use carrystep_core::ports::Inputs;
 use carrystep_core::{Build, Command};
 use carrystep_model::fast::{Change, Edge};
 use carrystep_model::{Fast, SixAxis};
 
-/// Both models, and what they have shown since they were compared.
+/// Both models, and their edges since the last comparison.
 pub struct Twins {
     fast: Fast,
     slow: SixAxis,
     fast_edges: Vec<Edge>,
     slow_edges: Vec<Edge>,
-    /// Longest leaps, taken in turn: so that a leap ends in any clock.
+    /// The greatest lengths of the leaps, used in turn, so that a leap can end in any clock.
     leaps: Vec<u64>,
     turn: usize,
-    /// Edges so far.
+    /// Number of edges so far.
     pub edges: u64,
-    /// Clocks that were leapt over.
+    /// Number of clocks that the fast model skipped.
     pub leapt: u64,
 }
 
 impl Twins {
-    /// Both as they are configured.
+    /// Both models at configuration.
     pub fn new(build: &Build, leaps: Vec<u64>) -> Self {
         Self {
             fast: Fast::new(build),
@@ -36,7 +36,7 @@ impl Twins {
         }
     }
 
-    /// The host's commands, in order; the run is over after `tail` clocks more.
+    /// Executes the host's commands in order; the run ends `tail` clocks after the last one.
     pub fn feed(&mut self, program: &[Command], tail: u64) -> Result<(), String> {
         for command in program {
             match *command {
@@ -59,7 +59,8 @@ impl Twins {
         self.pass(&Inputs::default(), tail)
     }
 
-    /// Holds inputs until they are taken; a frozen core is offered nothing.
+    /// Holds inputs until they are accepted. It returns without waiting if the core is frozen,
+    /// because a frozen core accepts nothing.
     fn offer(&mut self, inputs: &Inputs, taken: impl Fn(&SixAxis) -> bool) -> Result<(), String> {
         self.until(inputs, |slow| slow.faults().any() || taken(slow))?;
         if self.slow.faults().any() { Ok(()) } else { self.clock(inputs) }
@@ -80,7 +81,7 @@ impl Twins {
         Ok(())
     }
 
-    /// A leap, or a clock where there is none.
+    /// Executes a leap, or one clock if no leap is possible.
     fn advance(&mut self, inputs: &Inputs, most: u64) -> Result<(), String> {
         let longest = self.leaps[self.turn % self.leaps.len()];
         self.turn += 1;
@@ -103,7 +104,7 @@ impl Twins {
         self.compare()
     }
 
-    /// The slow model's edges, from its pins alone.
+    /// Executes one clock of the slow model and derives its edges from its pins alone.
     fn slow_clock(&mut self, inputs: &Inputs, cycle: u64) {
         let pins =
             |slow: &SixAxis| std::array::from_fn::<_, 6, _>(|axis| (slow.shaper(axis).step, slow.shaper(axis).dir));

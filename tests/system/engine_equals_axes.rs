@@ -1,5 +1,5 @@
-//! The engine makes the pulses of six parallel axes: the same edges, the same clocks from the start, on random
-//! joint moves in which all axes turn and change segment in the same tick.
+//! The engine produces the pulses of six parallel axes: the same edges in the same clocks after the
+//! start, on random joint moves in which all axes reverse and change segment in the same tick.
 
 use carrystep_core::engine::QUEUE;
 use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
@@ -10,7 +10,7 @@ use carrystep_tests::{effort, lockstep};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
-/// A row of segments: their ticks, and V, A and J of each axis.
+/// One row of segments: its ticks, and V, A and J of each axis.
 type Row = (u32, Vec<(i64, i64, i64)>);
 
 fn rows() -> impl Strategy<Value = Vec<Row>> {
@@ -20,7 +20,8 @@ fn rows() -> impl Strategy<Value = Vec<Row>> {
     prop::collection::vec((ticks, prop::collection::vec(axis, AXES)), 1..=QUEUE)
 }
 
-/// The start after the first row (the parallel axes hold no more), or after all (the engine's host is slow).
+/// A program whose start comes after the first row (the parallel axes hold one waiting segment) or
+/// after all rows (the engine's host is slow).
 fn program(rows: &[Row], start_after: usize) -> Program {
     let mut program = Program::new();
     for (place, (ticks, axes)) in rows.iter().enumerate() {
@@ -35,7 +36,7 @@ fn program(rows: &[Row], start_after: usize) -> Program {
     program
 }
 
-/// STEP and DIR in each clock since the start in which one of them changed.
+/// STEP and DIR in each clock after the start in which one of them changed.
 fn changes(pins: impl Iterator<Item = (u64, u8, u8)>, start: u64) -> Vec<(u64, u8, u8)> {
     let mut changes: Vec<(u64, u8, u8)> = Vec::new();
     for (cycle, step, dir) in pins.filter(|(cycle, ..)| *cycle >= start) {
@@ -47,7 +48,7 @@ fn changes(pins: impl Iterator<Item = (u64, u8, u8)>, start: u64) -> Vec<(u64, u
 }
 
 #[test]
-fn the_engine_makes_the_pulses_of_parallel_axes() {
+fn engine_pulses_equal_those_of_the_parallel_axes() {
     let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
     let pins = [PinTiming { width: 9, gap: 7, setup: 20, hold: 11 }; AXES];
     let build = Build { timebase, phase: StartPhase::Half, pins };
@@ -63,7 +64,7 @@ fn the_engine_makes_the_pulses_of_parallel_axes() {
         let (Some(started), Some(origin)) = (started, origin) else { return Ok(()) };
         let expected = changes(record.changes.iter().map(|(cycle, out)| (*cycle, out.step, out.dir)), origin);
         let found = changes(recording.outputs.iter().map(|(cycle, out)| (*cycle, out.step, out.dir)), started);
-        // A move that stops for a fault does so in its own way.
+        // Moves that end in a fault are excluded, because the two cores stop differently.
         let sound = !record.changes.iter().any(|(_, out)| out.faults.any());
         if sound {
             prop_assert_eq!(&found[1..], &expected[1..]);

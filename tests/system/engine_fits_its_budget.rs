@@ -1,5 +1,6 @@
-//! The engine's size and speed: a change that goes over budget fails here. The rows are those of `hdl-out/resources.md`, which
-//! `cargo xtask resources` measures as a whole; sizes are measured here for all of them, speed for those marked `always`.
+//! Size and speed of the engine: a change that exceeds the budget fails here. The rows are those of
+//! `hdl-out/resources.md`, which `cargo xtask resources` measures completely. This test measures
+//! the size of all rows, and the clock of the rows marked `always`.
 
 use carrystep_tests::effort;
 use carrystep_tools::resources::{self, EIGHT_TO_SIX, FAMILIES, LINES, LINK_BUDGET, PAGE, ROWS, Row};
@@ -7,10 +8,10 @@ use carrystep_tools::{ice40, xilinx};
 use carrystep_verilog::ENGINE_NAME;
 
 #[test]
-fn every_row_is_small_enough() {
+fn every_engine_build_fits_its_budget_of_logic_cells() {
     let mut netlists = Vec::new();
     for row in &ROWS {
-        // Parts share what is synthesised for one clock and tick.
+        // Rows with the same axes, clock and tick share one netlist.
         let build = (row.axes, row.clock_hz, row.tick_ns);
         if !netlists.iter().any(|(other, _)| *other == build) {
             let verilog = resources::verilog(row).expect("a fine engine");
@@ -25,7 +26,7 @@ fn every_row_is_small_enough() {
 }
 
 #[test]
-fn eight_axes_cost_little_more_than_six() {
+fn eight_axes_need_few_more_logic_cells_than_six() {
     let (eight, six, most) = EIGHT_TO_SIX;
     let [eight, six] = [eight, six].map(|row| {
         let verilog = resources::verilog(&row).expect("a fine engine");
@@ -37,7 +38,7 @@ fn eight_axes_cost_little_more_than_six() {
 }
 
 #[test]
-fn the_clock_is_reached() {
+fn placed_engines_reach_their_clock() {
     let reached = |row: &Row| {
         let mut speeds = resources::placed(row).expect("a netlist").map(|mhz| mhz.expect("a placed design"));
         speeds.find(|mhz| mhz * 1e6 >= row.clock_hz as f64)
@@ -50,7 +51,7 @@ fn the_clock_is_reached() {
 }
 
 #[test]
-fn the_link_is_small_enough() {
+fn link_fits_its_budget() {
     for (name, found) in LINES.iter().zip(resources::links().expect("two links")) {
         effort::say(&format!("{name}: {found:?}"));
         assert!(found.logic_cells <= LINK_BUDGET.logic_cells, "{name}: {found:?} of {LINK_BUDGET:?}");
@@ -59,7 +60,7 @@ fn the_link_is_small_enough() {
 }
 
 #[test]
-fn other_families_are_small_enough() {
+fn engines_of_other_families_fit_their_budgets() {
     for family in &FAMILIES {
         let verilog = resources::verilog(&family.of).expect("a fine engine");
         let found = xilinx::cells(&verilog, ENGINE_NAME, family.name).expect("cells");
@@ -74,7 +75,7 @@ fn other_families_are_small_enough() {
 }
 
 #[test]
-fn the_table_is_of_these_rows() {
+fn resources_page_lists_exactly_these_rows() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/..").to_owned() + "/" + PAGE;
     assert_eq!(resources::check(&std::fs::read_to_string(file).expect("the table")), Ok(()));
 }

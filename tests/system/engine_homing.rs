@@ -1,5 +1,6 @@
-//! An axis that waits for its limit meets it, slows down alone and says where it was; the others go on as if nothing
-//! had been; the exported Verilog does the same in every clock, and bugs that are planted in it are caught.
+//! Homing: an axis that waits for its limit finds it, slows down alone and reports its position
+//! there, while the other axes continue unchanged. The exported Verilog does the same in every
+//! clock, and planted bugs are caught.
 
 use carrystep_core::engine::{Cause, Guard, Limits};
 use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
@@ -10,10 +11,11 @@ use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_simulators::engine::{EngineCore, EngineHost, Event, Events};
 use carrystep_tests::planted;
 
-/// When the limit is met: all axes have cruised for some hundred ticks.
+/// The clock in which the limit becomes active; by then all axes have cruised for some hundred
+/// ticks.
 const THEN: u64 = 30_000;
 
-/// The axis that goes home, backward.
+/// The axis that homes; it moves backward.
 const HOMING: usize = 1;
 
 fn build(limits: Limits) -> EngineBuild {
@@ -23,7 +25,7 @@ fn build(limits: Limits) -> EngineBuild {
     EngineBuild { guard: Guard { round: 2, debounce: 3, enable: 2, limits, ..build.guard }, ..build }
 }
 
-/// All axes at a sixteenth of a step a tick, the odd ones backward, three segments each.
+/// All axes move at a sixteenth of a step per tick, the odd ones backward, in three segments each.
 fn cruise() -> Program {
     let segment = |axis: u8, ticks, last| {
         let v = if axis.is_multiple_of(2) { 1 << 60 } else { -(1 << 60) };
@@ -36,7 +38,8 @@ fn cruise() -> Program {
     program
 }
 
-/// The axis waits from the start; its limit is there from `then` on for some ticks.
+/// The axis waits for its limit from the start; the limit is active for some ticks from clock
+/// `then` on.
 fn events(then: u64) -> Events {
     let limit = 1 << HOMING;
     vec![(100, Event::Home(limit)), (then, Event::LimitMin(limit)), (then + 3_000, Event::LimitMin(0))]
@@ -54,7 +57,7 @@ fn edges(recording: &Recording, axis: usize) -> Vec<u64> {
 }
 
 #[test]
-fn one_axis_slows_down_and_the_others_go_on() {
+fn homing_axis_slows_down_alone_at_its_limit() {
     for limits in [Limits::Pair, Limits::Each] {
         let free = run(limits, &cruise(), &Events::new());
         let homed = run(limits, &cruise(), &events(THEN));
@@ -65,7 +68,7 @@ fn one_axis_slows_down_and_the_others_go_on() {
         let (all, fewer) = (edges(&free, HOMING), edges(&homed, HOMING));
         let met =
             homed.outputs.iter().find(|(cycle, out)| *cycle > 200 && out.homing == 0).expect("it meets its limit").0;
-        // 128 ticks of ramp, and two until steps are on the pins.
+        // The ramp takes 128 ticks, and a step needs two more ticks to reach the pins.
         let last = *fewer.last().expect("it has moved");
         assert!(met > THEN && last > met + 20 * 80 && last < met + 131 * 80, "{limits:?}: {met}, {last}");
         assert!(fewer.len() + 20 < all.len(), "{limits:?}: {} of {} steps", fewer.len(), all.len());
@@ -74,7 +77,7 @@ fn one_axis_slows_down_and_the_others_go_on() {
 }
 
 #[test]
-fn other_limits_stop_all_axes() {
+fn limit_of_an_axis_that_does_not_home_stops_all_axes() {
     let other =
         vec![(100, Event::Home(1 << HOMING)), (THEN, Event::LimitMin(1 << 3)), (THEN + 3_000, Event::LimitMin(0))];
     let recording = run(Limits::Pair, &cruise(), &other);
@@ -82,14 +85,14 @@ fn other_limits_stop_all_axes() {
 }
 
 #[test]
-fn a_start_that_waits_for_a_homing_axis_finds_it_unfed() {
+fn start_after_homing_calls_protocol_because_the_queue_is_empty() {
     let program = [cruise(), vec![Command::Start { mask: 1 << HOMING }]].concat();
     let recording = run(Limits::Pair, &program, &events(THEN));
     assert_eq!(recording.outputs.iter().find_map(|(_, out)| out.fault), Some((Cause::Protocol, 0)));
 }
 
 #[test]
-fn it_says_where_it_met_its_limit() {
+fn latch_reports_the_position_at_the_limit() {
     let build = build(Limits::Pair);
     let (mut model, mut engine) = (Engine::new(&build), EngineSim::new(&build).expect("a fine build"));
     let mut host = EngineHost::new(&build.guard, &cruise(), &events(THEN));
@@ -101,7 +104,7 @@ fn it_says_where_it_met_its_limit() {
             assert_eq!(found.latch, Some(HOMING as u8));
             let says = engine.latched().cast_signed();
             let is = model.shaper(HOMING).position;
-            // A pulse is counted in the axis' next turn but one.
+            // A pulse is counted in the register in the turn after the next.
             assert!((0..=1).contains(&(says - is)), "says {says}, is {is}");
             told = Some(says);
         }
@@ -114,7 +117,8 @@ fn it_says_where_it_met_its_limit() {
     assert!((0..=1).contains(&(told - met)) && met < -10, "told {told}, met {met}");
 }
 
-/// Runs in which the limit is met in every part of a tick, with segments still coming, and a start that waits.
+/// Runs in which the limit becomes active in every part of a tick, while segments still arrive and
+/// a start waits.
 fn recordings() -> Vec<Recording> {
     let late =
         |ticks| Command::Segment { axis: HOMING as u8, segment: Segment { ticks, v: 0, a: 0, j: 0, last: true } };
@@ -125,7 +129,7 @@ fn recordings() -> Vec<Recording> {
     all
 }
 
-/// Whether the Verilog, changed, is any other than the model.
+/// True if the changed Verilog differs from the model.
 fn caught(change: impl Fn(String) -> String) -> bool {
     let verilog = change(carrystep_verilog::engine_verilog(&build(Limits::Pair), "a test").expect("a fine build"));
     let differs =
@@ -134,7 +138,7 @@ fn caught(change: impl Fn(String) -> String) -> bool {
 }
 
 #[test]
-fn the_verilog_goes_home_in_the_same_clock() {
+fn verilog_homes_in_the_same_clock_as_the_model() {
     assert!(!caught(|verilog| verilog));
 }
 
@@ -147,6 +151,6 @@ const BUGS: [planted::Bug; 5] = [
 ];
 
 #[test]
-fn bugs_in_homing_are_caught() {
+fn planted_bugs_in_homing_are_caught() {
     planted::assert_all_caught(&BUGS, |plant| caught(plant));
 }

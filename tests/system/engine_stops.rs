@@ -1,5 +1,5 @@
-//! Every cause stops the engine as docs/clock-by-clock.md says; the exported Verilog does the same in every clock;
-//! and bugs that are planted in its guard are caught.
+//! Every cause stops the engine as docs/clock-by-clock.md specifies. The exported Verilog does the
+//! same in every clock, and bugs planted in its guard are caught.
 
 use carrystep_core::engine::{Cause, Guard, Limits};
 use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
@@ -8,10 +8,10 @@ use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_simulators::engine::{Event, Events};
 use carrystep_tests::planted;
 
-/// Axes 1, 3 and 5 go backward.
+/// Mask of the axes that move backward: 1, 3 and 5.
 const BACKWARD: u8 = 0b10_1010;
 
-/// When things happen: all axes have cruised for some hundred ticks.
+/// The clock of the events; by then all axes have cruised for some hundred ticks.
 const THEN: u64 = 30_000;
 
 fn build(limits: Limits) -> EngineBuild {
@@ -23,7 +23,7 @@ fn build(limits: Limits) -> EngineBuild {
     EngineBuild { guard, ..build }
 }
 
-/// All axes at a sixteenth of a step a tick, every other one backward.
+/// All axes at a sixteenth of a step per tick, every other one backward.
 fn cruise(ticks: u32, v: i64, a: i64, last: bool) -> Program {
     let segment = |axis: u8| Segment { ticks, v: if axis.is_multiple_of(2) { v } else { -v }, a, j: 0, last };
     let mut program: Program = (0..6).map(|axis| Command::Segment { axis, segment: segment(axis) }).collect();
@@ -31,14 +31,14 @@ fn cruise(ticks: u32, v: i64, a: i64, last: bool) -> Program {
     program
 }
 
-/// A program, what happens around it, and the stop that comes of it.
+/// A program, the events around it, and the expected stop.
 struct Case {
     name: &'static str,
     limits: Limits,
     program: Program,
     events: Events,
     fault: (Cause, u8),
-    /// Whether edges come after the call: a ramp has some, a freeze has none.
+    /// True if edges follow the call: a ramp has some, a freeze has none.
     ramps: bool,
 }
 
@@ -92,7 +92,7 @@ fn cases() -> Vec<Case> {
 }
 
 impl Case {
-    /// The run, and after a clear a second move.
+    /// The recording of the case, followed by a clear and a second move.
     fn recording(&self) -> Recording {
         let again = [vec![Command::Wait { clocks: 120_000 }, Command::Clear], cruise(40, 1 << 60, 0, true)].concat();
         let program = [self.program.clone(), again].concat();
@@ -104,7 +104,7 @@ impl Case {
 }
 
 #[test]
-fn every_cause_stops_as_it_should_and_a_clear_lets_go_on() {
+fn every_cause_stops_as_specified_and_a_clear_resumes() {
     for case in cases() {
         let recording = case.recording();
         let name = case.name;
@@ -123,14 +123,14 @@ fn every_cause_stops_as_it_should_and_a_clear_lets_go_on() {
 }
 
 #[test]
-fn limits_stop_one_way_only() {
+fn limit_stops_only_axes_that_move_toward_it() {
     let case = &cases()[3];
     let recording = case.recording();
     let fault = recording.outputs.iter().find_map(|(_, out)| out.fault);
     assert_eq!(fault.map(|(_, axes)| axes & !BACKWARD), Some(0));
 }
 
-/// The first case in which the Verilog is not the model.
+/// The first case in which the Verilog differs from the model.
 fn caught(change: impl Fn(String) -> String) -> Option<&'static str> {
     cases().into_iter().find_map(|case| {
         let verilog = carrystep_verilog::engine_verilog(&build(case.limits), "a test").expect("a fine build");
@@ -140,7 +140,7 @@ fn caught(change: impl Fn(String) -> String) -> Option<&'static str> {
 }
 
 #[test]
-fn the_verilog_stops_in_the_same_clock() {
+fn verilog_stops_in_the_same_clock_as_the_model() {
     assert_eq!(caught(|verilog| verilog), None);
 }
 
@@ -154,6 +154,6 @@ const BUGS: [planted::Bug; 6] = [
 ];
 
 #[test]
-fn bugs_in_the_guard_are_caught() {
+fn planted_bugs_in_the_guard_are_caught() {
     planted::assert_all_caught(&BUGS, |plant| caught(plant).is_some());
 }

@@ -1,5 +1,6 @@
-//! Promises 1 to 8 (docs/promises.md) seen from outside: random programs, right and wrong, faults and
-//! clears, watched on the outputs alone of the model, clock by clock and fast.
+//! Checks promises 1 to 8 (docs/promises.md) from outside, on the outputs of the clock-by-clock
+//! model and of the fast model alone, with random programs, correct and faulty ones, faults and
+//! clears.
 
 use carrystep_core::ports::Outputs;
 use carrystep_core::{AXES, Build, Command, Faults, Program, StartPhase};
@@ -12,7 +13,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
-/// What one axis has done so far.
+/// The observed history of one axis.
 #[derive(Clone, Copy, Default)]
 struct Watch {
     step: bool,
@@ -23,7 +24,7 @@ struct Watch {
     position: i32,
 }
 
-/// One change of the outputs, against what the promises allow.
+/// Checks one change of the outputs against the promises.
 fn watch(axes: &mut [Watch; AXES], build: &Build, cycle: u64, outputs: &Outputs, frozen_before: bool) {
     for (i, axis) in axes.iter_mut().enumerate() {
         let pins = build.pins[i];
@@ -59,15 +60,15 @@ fn watch(axes: &mut [Watch; AXES], build: &Build, cycle: u64, outputs: &Outputs,
     }
 }
 
-/// What was seen, the outputs in the end if there was one (a host can block itself), and whether there
-/// was a fault.
+/// Runs a program and returns the observations, the outputs at the end if the run ended (a host can
+/// block itself), and whether a fault occurred.
 fn run_and_watch(level: Level, build: &Build, program: &Program) -> ([Watch; AXES], Option<Outputs>, bool) {
     let job = lockstep::job(build, program);
     let mut axes = [Watch::default(); AXES];
     let mut frozen = false;
     let mut faulted = false;
     let outcome = run(level, &job, &mut |cycle, outputs| {
-        // A rise in the first frozen cycle was decided in the cycle before.
+        // A rising edge in the first frozen cycle was decided in the cycle before.
         watch(&mut axes, build, cycle, outputs, frozen && outputs.faults.any());
         frozen = outputs.faults.any();
         faulted |= frozen;
@@ -75,7 +76,7 @@ fn run_and_watch(level: Level, build: &Build, program: &Program) -> ([Watch; AXE
     (axes, outcome.ok().map(|outcome| outcome.last), faulted)
 }
 
-/// Where the accumulator says that an axis is after a program that ran to its end.
+/// The position of an axis according to its accumulator after a program that ran to its end.
 fn whole_steps(program: &Program, axis: u8, phase: StartPhase) -> BigInt {
     let distance = |command: &Command| match command {
         Command::Segment { axis: a, segment } if *a == axis => closed_form::distance(segment, segment.ticks),
@@ -85,7 +86,7 @@ fn whole_steps(program: &Program, axis: u8, phase: StartPhase) -> BigInt {
     (sum + phase.start_value()).div_floor(&(BigInt::from(1) << 64))
 }
 
-/// A generator that never gets anywhere near trouble would prove nothing.
+/// The generator must produce every fault, because a test without them would prove nothing.
 #[test]
 fn random_programs_meet_every_fault() {
     let mut runner = TestRunner::deterministic();
@@ -122,7 +123,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn whatever_the_host_does(program in programs::program(), zero in any::<bool>(), fast in any::<bool>()) {
+    fn promises_hold_whatever_the_host_does(program in programs::program(), zero in any::<bool>(), fast in any::<bool>()) {
         let phase = if zero { StartPhase::Zero } else { StartPhase::Half };
         let build = lockstep::tight_build(16, phase);
         let level = if fast { Level::Fast } else { Level::Model };
@@ -136,9 +137,10 @@ proptest! {
         }
     }
 
-    /// Promise 6 at the shaper itself: edges + owed + discarded == steps asked for, in every clock.
+    /// Promise 6 at the shaper itself: edges + held-back steps + discarded steps == requested
+    /// steps, in every clock.
     #[test]
-    fn nothing_is_dropped_in_silence(
+    fn every_requested_step_is_accounted_for(
         asks in prop::collection::vec((prop::option::weighted(0.2, any::<bool>()), -1_i8..2, prop::bool::weighted(0.05)), 1..400),
         axis in 0..AXES,
     ) {
@@ -146,7 +148,7 @@ proptest! {
         let mut state = shaper::State::at_configuration(pins);
         let (mut asked, mut edges) = (0_u32, 0);
         for (request, sign, frozen) in asks {
-            // As on the pins: an overrun freezes.
+            // As on the pins, an overrun freezes.
             let input = shaper::Input { request, sign, frozen: frozen || state.overrun };
             let next = shaper::clock(state, input, pins);
             asked += u32::from(request.is_some());
@@ -156,7 +158,8 @@ proptest! {
         }
     }
 
-    /// Promise 9: at a rate under 1 / (W + S), with room for D and H at reversals, nothing is ever owed twice.
+    /// Promise 9: at a rate below 1 / (W + S), with time for D and H at reversals, a second step
+    /// never arrives while one is held back.
     #[test]
     fn a_rate_that_fits_never_overruns(axis in 0..AXES, runs in prop::collection::vec((1_u32..20, 0_u32..30), 1..10)) {
         let pins = lockstep::tight_build(16, StartPhase::Half).pins[axis];

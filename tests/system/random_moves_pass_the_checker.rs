@@ -1,7 +1,9 @@
-//! Random moves from file to pins: plan, model, shapers, and the checker that `carrystep simulate` uses.
+//! Checks random moves from the file to the pins: plan, model, shapers, and the checker that
+//! `carrystep simulate` uses.
 //!
-//! Rung 1 compares plans with profiles in arithmetic of its own; here the product's checker judges the product's
-//! pins: every edge within the bound, count and position exact, straight lines kept, the driver's timing kept.
+//! Rung 1 compares plans with profiles in its own arithmetic. Here the product's checker judges the
+//! product's pins: every edge within the bound, exact count and position, straight lines, and the
+//! driver's timing.
 
 use carrystep_files::ProfileKind;
 use carrystep_plan::plan;
@@ -11,15 +13,15 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 
-/// What was judged: lest a test of hardly anything pass.
+/// Counts of what was judged, because a test of too few moves would prove nothing.
 #[derive(Debug, Clone, Copy, Default)]
 struct Judged {
     pulses: u64,
-    /// Moves in sixteen phases.
+    /// Moves with sixteen phases per tick.
     moves: usize,
 }
 
-/// All moves, as fast as may be and in their own time.
+/// Checks all moves, as fast as possible and with their own times.
 fn passes(random: &RandomMoves) -> Result<Judged, TestCaseError> {
     let mut judged = Judged::default();
     for file in random.files() {
@@ -51,12 +53,12 @@ fn all_pass(kinds: &'static [ProfileKind], cases: u32) {
 }
 
 #[test]
-fn a_thousand_trapezoids() {
+fn a_thousand_trapezoids_pass_the_checker() {
     all_pass(&[ProfileKind::Trapezoid], 1000);
 }
 
 #[test]
-fn three_hundred_of_each_other_kind() {
+fn three_hundred_moves_of_each_other_kind_pass_the_checker() {
     const KINDS: [ProfileKind; 4] =
         [ProfileKind::Ranade, ProfileKind::Scurve, ProfileKind::Logistic, ProfileKind::Sine];
     for kind in &KINDS {

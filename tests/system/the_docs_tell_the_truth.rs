@@ -1,4 +1,4 @@
-//! Numbers in the docs are those that the product gives.
+//! Numbers in the documentation must equal those that the product computes.
 
 use carrystep_files::MoveFile;
 use carrystep_plan::{Plan, plan};
@@ -11,7 +11,7 @@ fn page(name: &str) -> String {
     fs::read_to_string(moves::root().join("docs").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// Whole numbers as the page writes them, in groups of three.
+/// A whole number as the page writes it, in groups of three digits.
 fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let groups = digits.as_bytes().rchunks(3).rev().map(|group| String::from_utf8_lossy(group).into_owned());
@@ -19,7 +19,7 @@ fn grouped(number: u64) -> String {
 }
 
 #[test]
-fn the_flow_of_a_move_has_the_real_numbers() {
+fn flow_of_a_move_page_has_the_planned_numbers() {
     let text = page("flow-of-a-move.md");
     let plan = moves::demo();
     let x = &plan.moves[0].axes[0];
@@ -32,7 +32,7 @@ fn the_flow_of_a_move_has_the_real_numbers() {
     assert!(text.contains(&grouped(x.segments[0].a.unsigned_abs())));
     assert!(text.contains(&grouped(x.segments[0].v.unsigned_abs())));
 
-    // The float profile: N steps in T from the start speed, a triangle.
+    // The float profile: N steps in the time T from the start speed, as a triangle.
     let (n, v, time) = (800.0_f64, 1000.0_f64, plan.moves[0].ticks as f64 * 1e-6);
     let top = 2.0 * n / time - v;
     let a = 2.0 * (top - v) / time;
@@ -58,7 +58,7 @@ fn the_flow_of_a_move_has_the_real_numbers() {
     assert!(text.contains(&format!("{pulses} edges")));
 }
 
-/// A move file of one axis.
+/// A move file with one axis.
 fn one_axis(limits: &str, moved: &str) -> MoveFile {
     let text = format!(
         "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\n{limits}\ndriver = \"a4988\"\n[[move]]\n{moved}\n"
@@ -83,7 +83,7 @@ fn slow_moves_are_as_accurate_as_the_page_says() {
             assert!(report.passed, "{report}");
             let axis = &report.axes[0];
             cells.push(plan.moves[0].axes[0].segments.len().to_string());
-            // Adding zero makes minus zero plus.
+            // Adding zero converts minus zero to plus zero.
             cells.extend([axis.error_min_ns, axis.error_max_ns].map(|e| {
                 let tenths = e.map(|e| (e * 10.0).round() / 10.0 + 0.0);
                 tenths.map_or_else(String::new, |e| format!("{e:.1}"))
@@ -92,7 +92,8 @@ fn slow_moves_are_as_accurate_as_the_page_says() {
         let row = format!("| {} |", cells.join(" | "));
         assert!(text.contains(&row), "no row {row}");
     }
-    // Five units of 2^-32 step, at a step a second and where they take 1.2 ns; 8 Q of them in a tick of 1 us.
+    // Five units of 2^-32 step, at one step per second and at the speed at which they take 1.2 ns;
+    // and 8 Q such units in a tick of 1 us.
     let unit = 2_f64.powi(-32);
     for wanted in [
         format!("take {:.1} ns at a speed of one step a second", 5.0 * unit * 1e9),
@@ -130,7 +131,7 @@ fn a_byte_takes_the_clocks_that_the_page_of_the_link_says() {
 }
 
 #[test]
-fn ten_steps_in_a_thousand_ticks_are_what_the_protocol_s_page_says() {
+fn protocol_page_computes_ten_steps_in_a_thousand_ticks_correctly() {
     let text = page("protocol.md");
     let (way, ticks) = (10_u128 << 64, 1000);
     let (whole, rest) = (way / ticks, way % ticks);
@@ -144,7 +145,7 @@ fn ten_steps_in_a_thousand_ticks_are_what_the_protocol_s_page_says() {
 }
 
 #[test]
-fn table_1_of_the_article_is_what_adding_gives() {
+fn five_minutes_page_shows_table_1_as_addition_gives_it() {
     let text = page("five-minutes.md");
     let row = |name: &str| text.lines().find_map(|line| line.trim().strip_prefix(name)).expect("the table");
     let ticks: Vec<u32> = row("tick ").split_whitespace().map(|n| n.parse().expect("a tick")).collect();
@@ -152,7 +153,7 @@ fn table_1_of_the_article_is_what_adding_gives() {
     let mut p = 0_u64;
     let mut wanted = (Vec::new(), Vec::new());
     for _ in ticks {
-        // A fifth of a step, rounded up: so that five are a whole one.
+        // A fifth of a step, rounded up so that five of them carry.
         let (next, carry) = p.overflowing_add(u64::MAX / 5 + 1);
         p = next;
         wanted.0.push(format!("{:.1}", p as f64 / 2_f64.powi(64)));
@@ -179,13 +180,14 @@ fn a_tick_of_the_engine_has_the_clocks_that_the_page_says() {
     let text = page("engine.md");
     let [six, eight] = [6, 8].map(clocks_of_turns);
     assert!(text.contains(&format!("a turn of {TURN} clocks, so six need {six} and eight {eight}")));
-    // The least whole MHz that has these clocks in one tick, and in two.
+    // The least whole number of MHz that gives this number of clocks in a tick of 1 us, and of 2
+    // us.
     let mhz = |us: u32| six.div_ceil(us);
     assert!(text.contains("a 1 us tick wants 80 MHz, a 2 us tick 40 MHz"), "{} {}", mhz(1), mhz(2));
     assert!([mhz(1), mhz(2)].iter().zip([80, 40]).all(|(&needed, said)| needed <= said && said - needed < 2));
 }
 
-/// The first line that git says, where there is a repository that git can read.
+/// The first line that git prints; `None` if there is no repository that git can read.
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).current_dir(moves::root()).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
@@ -230,7 +232,7 @@ fn the_long_runs_have_passed_on_this_gateware() {
         assert!(date.len() == 10 && date.starts_with("20") && date.matches('-').count() == 2, "{name}: {date}");
         let [commit, gateware] = [commit, gateware].map(|hash| hash.trim_matches('`'));
         assert!([commit, gateware].iter().all(|hash| hash.len() >= 10), "{name}: {commit} {gateware}");
-        // In a tree without git nothing more is known; in one without its past, not whether the commit is there.
+        // Without git nothing more can be checked; in a shallow clone the commit may be missing.
         let Some(now) = git(&["rev-parse", "HEAD:hdl-out/core"]) else { continue };
         assert!(now.starts_with(gateware), "{name} was run on other gateware: run `cargo xtask long {name}` again");
         if git(&["rev-parse", "--is-shallow-repository"]).as_deref() == Some("false") {

@@ -1,4 +1,5 @@
-//! The gateware's end of the link does what docs/protocol.md says: the page's frames byte by byte, and what else it promises.
+//! The gateware's end of the link does what docs/protocol.md specifies: the page's example frames
+//! byte by byte, and its other promises.
 
 use carrystep_core::engine::{Cause, Limits};
 use carrystep_core::link::registers::{CLEAR, CONTROL, HOME, POSITION, SEGMENT, START, of_axis};
@@ -8,7 +9,7 @@ use carrystep_simulators::vectors::Vectors;
 use carrystep_tests::link_bench::{Both, LinkBench, Said, frame, on_the_line, ports, unframe};
 use carrystep_verilog::{LINK_NAME, line_name, line_verilog, link_verilog};
 
-/// An answer comes within so many cycles.
+/// Number of cycles within which an answer must come.
 const PATIENCE: u64 = 30_000;
 
 fn build() -> EngineBuild {
@@ -23,7 +24,7 @@ fn bench() -> LinkBench {
     LinkBench::uart(&build(), Uart::new(48_000_000, 3_000_000).expect("a UART"))
 }
 
-/// Sends a request, and takes its answer.
+/// Sends a request and receives its answer.
 fn ask(bench: &mut LinkBench, sequence: u8, address: u8, words: &[u32]) -> Said {
     bench.send(&on_the_line(&frame(sequence, address, words)));
     let answer = bench.answer(PATIENCE).unwrap_or_else(|| panic!("no answer to {sequence:02x} {address:02x}"));
@@ -32,7 +33,7 @@ fn ask(bench: &mut LinkBench, sequence: u8, address: u8, words: &[u32]) -> Said 
     said
 }
 
-/// Sends the next write; what it says.
+/// Sends the next write; returns its answer.
 fn write(bench: &mut LinkBench, next: &mut u8, address: u8, words: &[u32]) -> Said {
     let said = ask(bench, *next, 0x80 | address, words);
     *next = next.wrapping_add(1);
@@ -45,13 +46,13 @@ fn status(bench: &mut LinkBench) -> Said {
     ask(bench, 0, POSITION, &[])
 }
 
-/// Powered, and ready for starts.
+/// Switches the drivers on and waits until starts are accepted.
 fn powered(bench: &mut LinkBench, next: &mut u8) {
     write(bench, next, CONTROL, &[1]);
     while !status(bench).ready {}
 }
 
-/// Words of a segment of constant V.
+/// The words of a segment with constant V.
 fn cruise(ticks: u32, v: i64) -> [u32; 8] {
     [ticks - 1, v as u32, (v >> 32) as u32, 0, 0, 0, 0, 1]
 }
@@ -59,13 +60,14 @@ fn cruise(ticks: u32, v: i64) -> [u32; 8] {
 const QUARTER: i64 = 1 << 62;
 
 #[test]
-fn the_frames_of_the_page() {
+fn link_answers_the_example_frames_of_the_page() {
     let page = include_str!("../../docs/protocol.md");
     let (_, rest) = page.split_once("```frames\n").expect("a block of frames");
     let (block, _) = rest.split_once("```").expect("its end");
     let mut bench = bench();
     let mut next = 0;
-    // What the page's host finds: axis 1 at -250, no power, 42 writes.
+    // The state that the page's host finds: axis 1 is at -250, the drivers have no power, and 42
+    // writes were made.
     powered(&mut bench, &mut next);
     write(&mut bench, &mut next, of_axis(SEGMENT, 1), &cruise(1000, -QUARTER));
     write(&mut bench, &mut next, START, &[2]);
@@ -80,7 +82,7 @@ fn the_frames_of_the_page() {
         match kind {
             "#" => bench.rest(9_000),
             ">" => bench.send(&unhex(bytes)),
-            // Lost on the way.
+            // The frame was lost on the line.
             ">x" => {}
             "<" | "<x" => {
                 let answer = bench.answer(PATIENCE).unwrap_or_else(|| panic!("no answer for {line}"));
@@ -112,7 +114,8 @@ fn a_repeated_write_is_answered_again_and_not_executed_again() {
         let again = ask(&mut bench, next.wrapping_sub(back), 0x80 | of_axis(SEGMENT, 2), &segment);
         assert_eq!((again.next, again.free, again.refused), (next, 6, false));
     }
-    // 127 back is known, 128 is not; neither is one that is too early.
+    // The link knows the last 127 writes: 127 back is known, 128 back is not, and neither is a
+    // number that is too early.
     for (back, refused) in [(127_u8, false), (128, true), (255, true)] {
         let said = ask(&mut bench, next.wrapping_sub(back), 0x80 | of_axis(SEGMENT, 2), &segment);
         assert_eq!((said.next, said.free, said.refused), (next, 6, refused), "{back} back");
@@ -133,7 +136,8 @@ fn a_damaged_frame_is_not_answered_and_changes_nothing() {
     for cut in (0..whole.len()).step_by(3) {
         bench.send(&on_the_line(&whole[..cut]));
     }
-    // Too long, by one and by very much; an ESC before anything; an ESC before the END.
+    // Frames that are too long, by one byte and by many; an ESC before an ordinary byte; an ESC
+    // before the END.
     bench.send(&on_the_line(&[&whole[..], &[0]].concat()));
     bench.send(&on_the_line(&[0x55; 300]));
     bench.send(&[&[0xc0], &whole[..5], &[0xdb, 0x00], &whole[5..], &[0xc0]].concat());
@@ -173,7 +177,7 @@ fn a_broken_protocol_is_a_latched_fault_and_never_a_pulse() {
         powered(&mut bench, &mut next);
         let said = breaks(&mut bench, &mut next);
         assert_eq!(said.fault, Some(Cause::Protocol), "{name}: {said:?}");
-        // Nothing more is taken before a clear; then all is empty.
+        // Before a clear nothing more is accepted; after it all queues are empty.
         write(&mut bench, &mut next, of_axis(SEGMENT, 3), &cruise(100, QUARTER));
         write(&mut bench, &mut next, START, &[1 << 3]);
         bench.rest(20_000);
@@ -201,7 +205,7 @@ fn a_second_start_is_refused_as_busy() {
         write(&mut bench, &mut next, of_axis(SEGMENT, axis), &cruise(100, QUARTER));
     }
     write(&mut bench, &mut next, START, &[1]);
-    // It waits for axis 0.
+    // The start waits for axis 0.
     assert!(write(&mut bench, &mut next, START, &[3]).armed);
     let busy = ask(&mut bench, next, 0x80 | START, &[2]);
     assert_eq!((busy.next, busy.refused, busy.armed), (next, true, true));
@@ -225,14 +229,14 @@ fn a_limit_latches_the_position_of_a_homing_axis() {
     assert_eq!((said.fault, said.homing), (None, 0), "{said:?}");
     let latched = ask(&mut bench, 1, of_axis(POSITION + 2, 2), &[]).data.cast_signed();
     let rest = said.data.cast_signed();
-    // The ramp of 2^62 with 2^54: 256 ticks of an eighth of a step in the middle.
+    // The ramp goes from 2^62 down in steps of 2^54: 256 ticks of an eighth of a step on average.
     assert!((-34..=-30).contains(&(rest - latched)), "latched {latched}, at rest at {rest}");
     assert_eq!(bench.steps, u64::from(rest.unsigned_abs()));
 }
 
-/// As fast as the line can: six queues of seven, none is refused.
+/// The host sends as fast as the line allows: six queues of seven segments, and none is refused.
 #[test]
-fn segments_back_to_back_are_all_taken() {
+fn segments_sent_back_to_back_are_all_accepted() {
     let mut bench = bench();
     let mut next = 0;
     powered(&mut bench, &mut next);
@@ -250,9 +254,10 @@ fn segments_back_to_back_are_all_taken() {
     }
 }
 
-/// SPI at a fifth of the clock and slower, in any relation to it: six in flight, as docs/protocol.md has it.
+/// SPI at a fifth of the clock and slower, at several ratios to it, with six requests in flight as
+/// in docs/protocol.md.
 #[test]
-fn segments_over_spi() {
+fn segments_over_spi_are_all_accepted() {
     for tenths in [25, 26, 31, 47, 80] {
         let mut bench = LinkBench::spi(&build(), tenths);
         let mut next = 0;
@@ -260,7 +265,7 @@ fn segments_over_spi() {
         for _ in 0..7 {
             let first = next;
             for axis in 0..AXES as u8 {
-                // END and ESC go both ways.
+                // END and ESC occur as data in both directions.
                 let mut words = cruise(0xc0c0_dbdb, QUARTER);
                 words[6] = 0xdbc0_c0db;
                 bench.send(&on_the_line(&frame(next, 0x80 | of_axis(SEGMENT, axis), &words)));
@@ -276,7 +281,8 @@ fn segments_over_spi() {
     }
 }
 
-/// A session with everything in it, then each module's exported Verilog on what its Rust-HDL was told.
+/// Runs a session that uses every function, then replays its inputs on the exported Verilog of each
+/// module and compares the outputs with Rust-HDL.
 fn replayed(mut bench: LinkBench, line: Line, vectors: Vectors) {
     bench.vectors = Some(Both { link: ports::link(), line: vectors });
     let mut next = 0;
@@ -308,7 +314,7 @@ fn replayed(mut bench: LinkBench, line: Line, vectors: Vectors) {
     assert_eq!(both.line.difference(line_name(line), &verilog).expect("Icarus"), None);
     assert!(both.link.cycles() > 100_000, "{} cycles are no session", both.link.cycles());
 
-    // A planted bug in each is seen.
+    // A bug planted in each module must be detected.
     for (vectors, name, text, from, to) in [
         (&both.link, LINK_NAME, &link, "32'hedb88320", "32'hedb88321"),
         (&both.line, line_name(line), &verilog, "1'b1;", "1'b0;"),
@@ -320,12 +326,12 @@ fn replayed(mut bench: LinkBench, line: Line, vectors: Vectors) {
 }
 
 #[test]
-fn the_exported_verilog_of_link_and_uart() {
+fn exported_verilog_of_link_and_uart_equals_rust_hdl() {
     let uart = Uart::new(48_000_000, 3_000_000).expect("a UART");
     replayed(bench(), uart.into(), ports::uart());
 }
 
 #[test]
-fn the_exported_verilog_of_link_and_spi() {
+fn exported_verilog_of_link_and_spi_equals_rust_hdl() {
     replayed(LinkBench::spi(&build(), 25), Line::Spi, ports::spi());
 }

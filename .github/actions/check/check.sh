@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks machines, moves and generated Verilog in $FOLDER. It fails where one of them fails, where a pattern matches
-# no file, and where there is nothing to check.
+# Checks machines, moves and generated Verilog in $FOLDER. It fails if one of them fails, if a
+# pattern matches no file, or if there is nothing to check.
 set -euo pipefail
 shopt -s nullglob globstar
 cd "${FOLDER:-.}"
@@ -25,7 +25,8 @@ result() {
     fi
 }
 
-# each PATTERNS COMMAND...: runs a command with each file that a pattern matches; one pattern a line.
+# each PATTERNS COMMAND...: runs a command with each file that a pattern matches. PATTERNS has one
+# pattern per line.
 each() {
     local pattern file patterns=$1
     shift

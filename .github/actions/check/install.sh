@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Finds carrystep, or builds it from the revision that this action comes from. The next steps find it in $CARRYSTEP_COMMAND.
+# Finds carrystep, or builds it from the revision of this action. The next steps find it in
+# $CARRYSTEP_COMMAND.
 set -euo pipefail
 command=${CARRYSTEP:-}
 if [ -z "$command" ]; then

@@ -1,4 +1,5 @@
-//! The command line, once: it feeds the parser and the help.
+//! The definition of the command line. The parser and the help are both made from it, so every
+//! change here changes tests/transcripts/help.md.
 
 mod machine;
 mod port;
@@ -30,10 +31,11 @@ pub struct Arguments {
     pub command: Subcommand,
 }
 
-/// The subcommands.
+/// The subcommands; each has its own file in `commands`.
 #[derive(Debug, clap::Subcommand)]
 pub enum Subcommand {
-    /// The main job on the shipped six-axis machine: plan, Verilog, simulation, check, waveform, plot.
+    /// The main job on the shipped six-axis machine: plan, Verilog, simulation, check, waveform,
+    /// plot.
     Demo(Demo),
     /// Step times, delays and speeds of the curves of the literature: figures, CSV, JSON, plot.
     Profile(Profile),
@@ -49,29 +51,32 @@ pub enum Subcommand {
     Verilog(Verilog),
     /// Run many machines and moves over all cores and report the worst of each figure.
     Sweep(Sweep),
-    /// Make the moves of a file on a board: plan, stream, keep its queues full; Ctrl-C stops by ramps.
+    /// Execute the moves of a file on a board: plan, stream, keep its queues full; Ctrl-C ramps the
+    /// axes down.
     Run(Run),
     /// Move one axis of a board.
     Jog(Jog),
-    /// Home axes by their limit switches: move off, seek fast, back off, approach slowly, pull off. A switch that is
-    /// still closed after moving off is not seen where one wire serves both ends of an axis, or all axes (docs/homing.md).
+    /// Home axes by their limit switches: move off, seek fast, back off, approach slowly, pull off.
+    /// If one wire serves both ends of an axis, or all axes, a switch that is still closed after
+    /// moving off is not detected (docs/homing.md).
     Home(Home),
-    /// Say what a board does, where its axes are, and why it stands.
+    /// Show the state of a board, the positions of its axes, and the cause of a stop.
     Status(Status),
-    /// Stop what moves on a board, also while another terminal's `run`, `jog` or `home` drives it; resume after a stop
-    /// (--clear), take the power away (--off).
+    /// Stop all axes of a board, also while `run`, `jog` or `home` in another terminal drives it;
+    /// resume after a stop (--clear), switch the drivers off (--off).
     Stop(Stop),
-    /// Be a board: the gateware of a machine behind a pseudo-terminal, for `run` and the others. On standard input
-    /// `estop 1`, `min x 1`, `max x 0` press and release switches; Ctrl-C or `end` ends it.
+    /// Run a virtual board: the gateware of a machine behind a pseudo-terminal, for `run` and the
+    /// other commands. Lines on standard input press and release switches (`estop 1`, `min x 1`,
+    /// `max x 0`); Ctrl-C or `end` ends it.
     #[cfg(unix)]
     VirtualBoard(VirtualBoard),
-    /// Machine files: write a new one.
+    /// Write a new machine file.
     Machine(Machine),
     /// Make a board's bitstream: synthesis, placement, timing, with the open tools.
     Build(Build),
     /// Show the boards, or one of them: part, clock, ticks, and which pin does what.
     Boards(Boards),
-    /// Check tools, serial ports and permissions, and name the real cause.
+    /// Check tools, serial ports and permissions, and name the cause of each problem.
     Doctor(Doctor),
     /// Print the script that completes this command in a shell.
     Completions(Completions),
@@ -80,20 +85,20 @@ pub enum Subcommand {
     Schemas(Schemas),
 }
 
-/// Which gateware.
+/// The core that the gateware is built from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Core {
-    /// One adder for all axes, with queues and a guard: for boards.
+    /// One adder for all axes, with queues and a guard. Boards use this core.
     Engine,
-    /// An adder an axis: what the engine is compared with.
+    /// One adder per axis. The engine is compared with this core.
     Parallel,
 }
 
 impl Core {
-    /// All cores.
+    /// Both cores.
     const ALL: [Self; 2] = [Self::Engine, Self::Parallel];
 
-    /// Its name on the command line.
+    /// The name of the core on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Engine => "engine",
@@ -102,7 +107,7 @@ impl Core {
     }
 }
 
-/// `carrystep demo`
+/// The arguments of `carrystep demo`.
 #[derive(Debug, Args)]
 pub struct Demo {
     /// Folder for everything that the demo writes.
@@ -116,13 +121,14 @@ pub struct Demo {
     pub json: bool,
 }
 
-/// `carrystep plan`
+/// The arguments of `carrystep plan`.
 #[derive(Debug, Args)]
 pub struct Plan {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
-    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
+    /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
     /// List every segment: ticks, V, A, J.
@@ -133,25 +139,27 @@ pub struct Plan {
     pub json: bool,
 }
 
-/// `carrystep simulate`
+/// The arguments of `carrystep simulate`.
 #[derive(Debug, Args)]
 pub struct Simulate {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
-    /// Which gateware: one adder for all axes, with queues and a guard, or an adder an axis.
+    /// Which gateware: one adder for all axes, with queues and a guard, or one adder per axis.
     #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// Where the gateware runs.
     #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
     pub level: Level,
-    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
+    /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
     /// Write the waveform: pins, position and V beside the float profile.
     #[arg(long, value_name = "FILE")]
     pub vcd: Option<PathBuf>,
-    /// Write the same waveform as FST: a fraction of the size, at once on the screen of GTKWave.
+    /// Write the same waveform as FST, which has a fraction of the size and opens in GTKWave at
+    /// once.
     #[arg(long, value_name = "FILE")]
     pub fst: Option<PathBuf>,
     /// Write a GTKWave save file for the waveform (needs --vcd).
@@ -168,7 +176,7 @@ pub struct Simulate {
     pub json: bool,
 }
 
-/// `carrystep check`
+/// The arguments of `carrystep check`.
 #[derive(Debug, Args)]
 pub struct Check {
     /// The capture: a VCD.
@@ -177,16 +185,18 @@ pub struct Check {
     /// The move file that the pulses should follow.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
-    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
+    /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
-    /// Where a signal is in the capture: x.step=top.la.D0. Repeat for each pin.
+    /// The signal of a pin in the capture: x.step=top.la.D0. Repeat for each pin.
     #[arg(long = "map", value_name = "AXIS.PIN=SIGNAL")]
     pub map: Vec<String>,
-    /// Time of the move's start in the capture; default: found from the pulses, or, in our own captures, known.
+    /// Time of the move's start in the capture; default: found from the pulses, or read from a
+    /// capture by carrystep.
     #[arg(long, value_name = "PS", allow_negative_numbers = true)]
     pub origin_ps: Option<i64>,
-    /// How uncertain the capture's times are (a logic analyser: one sample period).
+    /// Uncertainty of the capture's times; for a logic analyser one sample period.
     #[arg(long, default_value_t = 0, value_name = "NS")]
     pub slack_ns: u64,
     /// Also write the result as JUnit XML, a test case for each axis.
@@ -197,20 +207,21 @@ pub struct Check {
     pub json: bool,
 }
 
-/// `carrystep verilog`
+/// The arguments of `carrystep verilog`.
 #[derive(Debug, Args)]
 pub struct Verilog {
-    /// Which gateware: one adder for all axes, with queues and a guard, or an adder an axis.
+    /// Which gateware: one adder for all axes, with queues and a guard, or one adder per axis.
     #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
     pub core: Core,
-    /// All gateware of a board instead: a top level with clock, host link and engine, constraints, a build script.
+    /// All gateware of a board instead: a top level with clock, host link and engine, constraints,
+    /// a build script.
     #[arg(long, value_name = "BOARD", conflicts_with = "core")]
     pub board: Option<String>,
     /// Which of the board's parts; default: its first.
     #[arg(long, value_name = "PART", requires = "board")]
     pub part: Option<String>,
-    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped machine of the core, or
-    /// for a board the shipped machine at the board's clock.
+    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped
+    /// machine of the core, or for a board the shipped machine at the board's clock.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
     /// Folder for all files; default: hdl-out/core, or sim/out/BOARD.
@@ -221,25 +232,26 @@ pub struct Verilog {
     pub json: bool,
 }
 
-/// `carrystep sweep`
+/// The arguments of `carrystep sweep`.
 #[derive(Debug, Args)]
 pub struct Sweep {
     /// The sweep: a move file with blanks, and what they are filled with.
     #[arg(value_name = "SWEEP.toml", required_unless_present = "merge")]
     pub file: Option<PathBuf>,
-    /// So many random cases instead of the whole grid.
+    /// Number of random cases that run instead of the whole grid.
     #[arg(long, value_name = "CASES")]
     pub sample: Option<u64>,
-    /// Another seed, other random cases.
+    /// Seed of the random cases.
     #[arg(long, default_value_t = 1, value_name = "NUMBER")]
     pub seed: u64,
     /// Only this part of the cases: 3/16 is the third of sixteen.
     #[arg(long, default_value_t = Shard::WHOLE, value_name = "N/OF")]
     pub shard: Shard,
-    /// Make one report of the JSON reports of all shards.
+    /// Merge the JSON reports of all shards into one report.
     #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "sample", "seed", "shard"])]
     pub merge: Vec<PathBuf>,
-    /// Also write the result as JUnit XML, a test case for the whole and one for each case that failed.
+    /// Also write the result as JUnit XML, a test case for the whole and one for each case that
+    /// failed.
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
     /// One JSON document instead of the table; shards are merged from these.
@@ -247,19 +259,20 @@ pub struct Sweep {
     pub json: bool,
 }
 
-/// `carrystep build`
+/// The arguments of `carrystep build`.
 #[derive(Debug, Args)]
 pub struct Build {
-    /// The board, by its name or by the file of a board of your own.
+    /// The board, by its name or by the file of your own board.
     #[arg(long, value_name = "BOARD")]
     pub board: String,
     /// Which of its parts; default: its first.
     #[arg(long, value_name = "PART")]
     pub part: Option<String>,
-    /// The machine whose gateware it is; default: the shipped machine at the board's clock and tick.
+    /// The machine whose gateware is built; default: the shipped machine at the board's clock and
+    /// tick.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
-    /// Try a clock that is more than 10 % over what the board was measured to reach.
+    /// Try a clock that is more than 10 % above the one that the board was measured to reach.
     #[arg(long)]
     pub try_clock: bool,
     /// Folder for all files; default: sim/out/BOARD.
@@ -270,10 +283,10 @@ pub struct Build {
     pub json: bool,
 }
 
-/// `carrystep boards`
+/// The arguments of `carrystep boards`.
 #[derive(Debug, Args)]
 pub struct Boards {
-    /// One of them, in full; or a file of a board of your own.
+    /// One board in full, by its name or by the file of your own board.
     #[arg(value_name = "BOARD")]
     pub board: Option<String>,
     /// One JSON document instead of the table.
@@ -281,10 +294,10 @@ pub struct Boards {
     pub json: bool,
 }
 
-/// `carrystep doctor`
+/// The arguments of `carrystep doctor`.
 #[derive(Debug, Args)]
 pub struct Doctor {
-    /// Look for what this board needs; otherwise for simulators and the open tools.
+    /// Check what this board needs; without it, check simulators and the open tools.
     #[arg(value_name = "BOARD")]
     pub board: Option<String>,
     /// One JSON document instead of the table.
@@ -292,7 +305,7 @@ pub struct Doctor {
     pub json: bool,
 }
 
-/// `carrystep completions`
+/// The arguments of `carrystep completions`.
 #[derive(Debug, Args)]
 pub struct Completions {
     /// The shell.
@@ -300,7 +313,7 @@ pub struct Completions {
     pub shell: clap_complete::Shell,
 }
 
-/// `carrystep schemas`
+/// The arguments of `carrystep schemas`.
 #[derive(Debug, Args)]
 pub struct Schemas {
     /// Folder for all files.

@@ -1,4 +1,4 @@
-//! Verdicts in colour, on a terminal that wants it.
+//! Colours for the verdicts in reports, on a terminal that supports them.
 
 use anstream::stream::RawStream;
 use anstream::{AutoStream, ColorChoice};
@@ -7,7 +7,8 @@ use anstyle::{AnsiColor, Style};
 const BAD: Style = AnsiColor::Red.on_default().bold();
 const GOOD: Style = AnsiColor::Green.on_default().bold();
 
-/// Words that a report ends with, or begins a line with, and how they are shown.
+/// The coloured words, which stand at the beginning or at the end of a line of a report, and their
+/// styles.
 const VERDICTS: [(&str, Style); 6] = [
     ("FAILED", BAD),
     ("STOPPED", BAD),
@@ -17,12 +18,13 @@ const VERDICTS: [(&str, Style); 6] = [
     ("PASSED", GOOD),
 ];
 
-/// Whether colours are wanted: on a terminal, without `NO_COLOR`, or where `CLICOLOR_FORCE` says so.
+/// True if colours are wanted: the stream is a terminal and `NO_COLOR` is not set, or
+/// `CLICOLOR_FORCE` is set.
 pub fn wanted(stream: &impl RawStream) -> bool {
     AutoStream::choice(stream) != ColorChoice::Never
 }
 
-/// The text with its verdicts in colour: a word of [`VERDICTS`] at the beginning of a line, or at the end of one.
+/// Returns the text with a word of [`VERDICTS`] coloured where it begins or ends a line.
 pub fn painted(text: &str) -> String {
     text.split_inclusive('\n').map(line).collect()
 }
@@ -46,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn verdicts_are_painted_and_nothing_else() {
+    fn only_verdicts_are_coloured() {
         let text = "x  1/1  FAILED\nFAILED axis x: late\nwrote FAILED.vcd\nALL HOLDS\nDONEL\n";
         let shown = painted(text);
         let red = |word: &str| format!("\u{1b}[1m\u{1b}[31m{word}\u{1b}[0m");

@@ -1,4 +1,5 @@
-//! The line to a board: opened, known, and what went wrong with it.
+//! The connection to a board: opening the port, identifying the board, and the messages when
+//! something fails.
 
 use crate::arguments::{Peer, Port};
 use crate::control::{self, Control, Holder, Request};
@@ -15,34 +16,35 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// For so long a command waits for one that only looks or stops: those give the port back by themselves.
+/// How long a command waits for a port that is held by a command that only reads or stops; those
+/// release it by themselves.
 const SOON: Duration = Duration::from_secs(2);
 
 /// A board on a serial port.
 pub type Board = Host<SerialLine, SystemClock>;
 
-/// What goes wrong between it and us.
+/// The errors of a board on a serial port.
 pub type BoardError = HostError<io::Error>;
 
-/// A connected board, the names of its axes, and the hold on its port.
+/// A connected board, the names of its axes, and the claim on its port.
 pub struct Connection {
     /// The board.
     pub board: Board,
-    /// A name for each axis of the build.
+    /// The names of the axes of the build, in order.
     pub axes: Vec<String>,
-    /// Steps in a unit of each axis; empty where no machine is known.
+    /// Steps per unit of each axis; empty if no machine file is known.
     pub steps_per_unit: Vec<f64>,
     /// The port's name.
     pub port: String,
-    /// The hold on the port: other commands find out who drives the board, and reach that one.
+    /// The claim on the port, through which other commands find and reach this one.
     pub control: Control,
 }
 
-/// Why there is no connection.
+/// The reason why there is no connection.
 pub struct Refused {
-    /// Another program has the port.
+    /// True if another program uses the port.
     pub busy: bool,
-    /// What to tell.
+    /// The failure to report.
     pub failure: Failure,
 }
 
@@ -52,7 +54,10 @@ impl From<Refused> for Failure {
     }
 }
 
-/// The machine's UART and the id of its engine on it; `name` is the file that says so.
+/// The UART of a machine and the id of its engine on that line. `name` is the path of the machine
+/// file, for messages.
+///
+/// # Errors The engine or the line of the machine is invalid, or the line is an SPI.
 pub fn wanted(machine: &Machine, name: &Path) -> Result<(Uart, BuildId), Failure> {
     let refused = |error: String| Failure::input(format!("{}: {error}", name.display()));
     let engine = machine.engine();
@@ -63,13 +68,15 @@ pub fn wanted(machine: &Machine, name: &Path) -> Result<(Uart, BuildId), Failure
     }
 }
 
-/// Connects to the board of a machine, to drive it by a command of this name; any other board is refused. Nothing is
-/// written. From now on `carrystep stop` reaches this command through [`Connection::control`].
+/// Connects to the board of a machine in order to drive it; `command` is the name of the
+/// subcommand. A board that was built from a different machine is refused. Nothing is written to
+/// the board. From now on `carrystep stop` reaches this command through [`Connection::control`].
 pub fn to_machine(port: &Port, machine: &Machine, name: &Path, command: &'static str) -> Result<Connection, Failure> {
     Ok(machines(port, machine, name, command, true)?)
 }
 
-/// Connects to whatever carrystep board there is, at this baud rate, or to the one of a machine, only to look or to stop.
+/// Connects in order to read or to stop: to the board of the machine if `peer` names one, otherwise
+/// to any carrystep board at this baud rate.
 pub fn to_peer(peer: &Peer, baud: u32, command: &'static str) -> Result<Connection, Refused> {
     let fine = |failure| Refused { busy: false, failure };
     if let Some(path) = &peer.machine {
@@ -91,13 +98,13 @@ fn machines(
     let (uart, id) = wanted(machine, name).map_err(|failure| Refused { busy: false, failure })?;
     let (board, control) = connect(&port.name, uart.baud(), Some(id), command, drives)?;
     let axes = machine.axes.iter().map(|axis| axis.name.clone()).collect();
-    // For the eye only: a float decides nothing here.
+    // The float is only displayed; no decision depends on it.
     let steps = |axis: &Axis| decimal::to_f64(&axis.steps_per_unit);
     let steps_per_unit = machine.axes.iter().map(steps).collect();
     Ok(known(Connection { board, axes, steps_per_unit, port: port.name.clone(), control }))
 }
 
-/// The control knows the board now.
+/// Passes the constants of the board to the control.
 fn known(mut connection: Connection) -> Connection {
     let Connection { board, axes, steps_per_unit, port, control } = &mut connection;
     let facts = *board.facts();
@@ -115,7 +122,7 @@ fn connect(
 ) -> Result<(Board, Control), Refused> {
     let fine = |message: String| Refused { busy: false, failure: Failure::input(message) };
     let busy = |message: String| Refused { busy: true, failure: Failure::input(message) };
-    // From here on Ctrl-C is a stop that is waited for.
+    // From here on Ctrl-C requests a stop and does not end the process.
     interrupt::watch();
     let unclaimed = |error: io::Error| fine(format!("no lock for the serial port {port} can be made: {error}"));
     let begin = Instant::now();
@@ -137,13 +144,14 @@ fn connect(
         _ => fine(opening(port, &error)),
     })?;
     let control = Control::new(claim, drives).map_err(unclaimed)?;
-    // Whoever is there but is not who was meant is wrong input: nothing was moved.
+    // A wrong board is an input error: nothing was moved.
     let board = Board::connect(line, SystemClock::default(), id.map(|id| id.0), Patience::default())
         .map_err(|error| fine(format!("{port}: {error}")))?;
     Ok((board, control))
 }
 
-/// The doctor knows more of why a port may not be used.
+/// The message for a port that cannot be opened. The doctor knows more causes than the system's
+/// error.
 fn opening(port: &str, error: &OpenError) -> String {
     let access = match error {
         OpenError::Busy { .. } | OpenError::NotPermitted { .. } => carrystep_tools::doctor::obstacle(Path::new(port)),
@@ -152,7 +160,7 @@ fn opening(port: &str, error: &OpenError) -> String {
     access.map_or_else(|| error.to_string(), |access| format!("serial port {port} {access}"))
 }
 
-/// What went wrong with a board that was driven already; its axes have these names.
+/// The failure for an error of a board that is being driven; `axes` are the names of its axes.
 pub fn broken(error: &BoardError, axes: &[String]) -> Failure {
     match *error {
         HostError::Program(error) => Failure::input(error.to_string()),
@@ -168,7 +176,7 @@ pub fn broken(error: &BoardError, axes: &[String]) -> Failure {
     }
 }
 
-/// The same in the middle of a run: where the line is lost, what the axes do now.
+/// The same during a run. If the line is lost, the message says what the axes do now.
 pub fn lost(error: &BoardError, axes: &[String], facts: &Facts) -> Failure {
     let why = match error {
         HostError::Line(why) => format!("{error}: {why}"),
@@ -179,7 +187,8 @@ pub fn lost(error: &BoardError, axes: &[String], facts: &Facts) -> Failure {
     Failure::Run(format!("{why}; {watchdog}. Then `carrystep status` says where they are"))
 }
 
-/// What stops the axes of a board that hears nothing more, and when; ticks of its watchdog, and ns of a tick.
+/// What stops the axes of a board that no longer hears its host, and when. The arguments are the
+/// ticks of its watchdog and the tick in ns.
 fn watchdog((ticks, tick_ns): (u32, u32)) -> String {
     if ticks == 0 {
         return "this board has no watchdog: its axes go on until their queues are empty. Press the e-stop".to_owned();
@@ -191,7 +200,8 @@ fn watchdog((ticks, tick_ns): (u32, u32)) -> String {
     )
 }
 
-/// What to tell where the command that drives the board was asked for this, and does not `answer`, or does not `end`.
+/// The message if the driving command was asked for something and does not respond; `what` is the
+/// missing response (`answer` or `end`).
 pub fn hangs(port: &str, holder: &Holder, asked: Request, what: &str) -> String {
     let pid = holder.pid;
     let asleep = if suspended(pid) {
@@ -207,9 +217,10 @@ pub fn hangs(port: &str, holder: &Holder, asked: Request, what: &str) -> String 
     format!("{holder} holds {port} and does not {what}{asleep}. {now}. If anything still moves, press the e-stop")
 }
 
-/// Whether the system has suspended a process: by Ctrl-Z, for one.
+/// True if the system has suspended the process, for example by Ctrl-Z.
 fn suspended(pid: u32) -> bool {
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
-    // Its name stands in parentheses, and may have any characters; the state is the letter behind it.
+    // The process name stands in parentheses and may contain any character; the letter after it is
+    // the state.
     stat.rsplit_once(')').is_some_and(|(_, rest)| rest.trim_start().starts_with(['T', 't']))
 }

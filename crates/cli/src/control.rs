@@ -1,14 +1,15 @@
-//! One carrystep command at a time drives a board, and the others reach it: `run`, `jog` and `home` listen on a local
-//! socket while they hold the port, and `carrystep stop` and `status` talk to them through it.
+//! Makes sure that one carrystep command at a time drives a board, and lets other commands reach
+//! that one: `run`, `jog` and `home` listen on a local socket while they hold the port, and
+//! `carrystep stop` and `status` talk to them through it.
 //!
 //! ```text
-//! claim    a lock file for each device, by its number: who holds the port
-//! door     the socket of the command that drives, looked at once for each exchange with the board
-//! caller   the other end: `stop` and `status`
-//! folder   where both files are: a folder of this user alone
+//! claim    a lock file per device, named after its number; it contains the holder of the port
+//! door     the socket of the driving command, polled once per exchange with the board
+//! caller   the other end of the socket, for `stop` and `status`
+//! folder   the folder of both files, which only this user can access
 //! ```
 //!
-//! Systems other than Unix have the claim's type but neither files nor socket.
+//! On systems other than Unix, the claim is a type without files and without a socket.
 #![cfg_attr(not(unix), allow(dead_code, reason = "nobody can be called there"))]
 
 #[cfg(unix)]
@@ -42,16 +43,16 @@ use std::sync::atomic::Ordering;
 /// The command that holds a port, as its lock file says.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 pub struct Holder {
-    /// Its process.
+    /// Its process id.
     pub pid: u32,
     /// Its subcommand: `run`, `jog`, `home`, `status`, `stop`.
     pub command: String,
-    /// The baud rate that it speaks.
+    /// Its baud rate.
     pub baud: u32,
     /// Whether it listens on its socket.
     pub listens: bool,
-    /// Ticks of the board's watchdog and the tick's length in ns, as the board said when this command connected;
-    /// nothing before that.
+    /// Ticks of the board's watchdog and the tick in ns, as the board reported them when this
+    /// command connected; `None` before that.
     pub watchdog: Option<(u32, u32)>,
 }
 
@@ -61,17 +62,17 @@ impl fmt::Display for Holder {
     }
 }
 
-/// What is asked through the socket; each is a line.
+/// A request through the socket; each is one line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Request {
-    /// What the board does.
+    /// Report the state of the board.
     Status,
-    /// Stop the axes by their ramps, and end.
+    /// Ramp the axes down and end the command.
     Stop,
 }
 
 impl Request {
-    /// The line that asks for it, without its end.
+    /// The word that is sent for the request, without the end of the line.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Status => "status",
@@ -80,7 +81,7 @@ impl Request {
     }
 }
 
-/// Who has stopped a command that drives.
+/// The source of a requested stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StoppedBy {
@@ -90,9 +91,9 @@ pub enum StoppedBy {
     Stop,
 }
 
-/// The hold on a port, and for a command that drives the ear for those who want it stopped.
+/// The claim on a port and, for a command that drives, its socket.
 pub struct Control {
-    // Fields are dropped in this order: the socket goes before the claim ends.
+    // Fields are dropped in this order: the socket is removed before the claim ends.
     door: Option<Door>,
     claim: Claim,
     known: Option<Known>,
@@ -100,24 +101,25 @@ pub struct Control {
 }
 
 impl Control {
-    /// A claimed port; `drives`: it listens from now on.
+    /// The control of a claimed port. If `drives`, it listens on the socket from now on.
     ///
-    /// # Errors
-    /// The system refuses a socket.
+    /// # Errors The system refuses to create the socket.
     pub fn new(claim: Claim, drives: bool) -> std::io::Result<Self> {
         let door = if drives { claim.listen()? } else { None };
         Ok(Self { door, claim, known: None, stopped_by: None })
     }
 
-    /// The board has said what it is; from now on `status` is answered, and `stop` knows the watchdog.
+    /// Stores the constants of the connected board. From now on requests for the status are
+    /// answered, and the lock file holds the watchdog's time.
     pub fn connected(&mut self, facts: &Facts, known: Known) {
         self.claim.connected(facts);
         self.known = Some(known);
     }
 
-    /// What they wish who can stop this command: Ctrl-C, and `carrystep stop` through the socket. Call it after every
-    /// exchange with the board (`watch` of [`Host::stream`](carrystep_link::Host::stream) is such a place), and
-    /// before a new move begins. Requests for the status are answered on the way.
+    /// Returns `Wish::Stop` once the user has asked for a stop, by Ctrl-C or by `carrystep stop`
+    /// through the socket. The caller must call it after every exchange with the board (for example
+    /// in the `watch` of [`Host::stream`](carrystep_link::Host::stream)) and before a new move
+    /// begins. It also answers requests for the status.
     pub fn wish(&mut self, status: &Status) -> Wish {
         if interrupt::watch().load(Ordering::Relaxed) {
             self.stopped_by.get_or_insert(StoppedBy::Interrupt);
@@ -138,7 +140,7 @@ impl Control {
         if self.stopped_by.is_some() { Wish::Stop } else { Wish::GoOn }
     }
 
-    /// Who has asked this command to stop; nothing where nobody has.
+    /// The source of the stop, or `None` if no stop was requested.
     pub const fn stopped_by(&self) -> Option<StoppedBy> {
         self.stopped_by
     }

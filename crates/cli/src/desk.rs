@@ -1,4 +1,5 @@
-//! A virtual board whose user is there: presses its switches, and ends it.
+//! A virtual board together with its operator's switches, and the main loop of
+//! `carrystep virtual-board`.
 
 use crate::failure::Failure;
 use crate::interrupt;
@@ -7,14 +8,14 @@ use carrystep_virtual_board::{Desk, DeskError, Edges, Gateware};
 use std::io::Write as _;
 use std::sync::atomic::Ordering;
 
-/// The board on its desk, and its switches.
+/// The board at its pseudo-terminal, and its switches.
 pub struct Manned<B> {
     pub desk: Desk<B>,
     pub panel: Panel,
 }
 
 impl<B: Gateware> Manned<B> {
-    /// Goes on until the first start; false where it is to end before.
+    /// Runs until the first start. Returns false if the board is to end before it.
     pub fn until_start(&mut self) -> Result<bool, Failure> {
         while self.desk.board.loads().is_empty() {
             if !self.step(&mut ())? {
@@ -24,12 +25,12 @@ impl<B: Gateware> Manned<B> {
         Ok(true)
     }
 
-    /// Goes on a little; false where it is to end.
+    /// Runs for a short time. Returns false if the board is to end.
     pub fn step(&mut self, to: &mut impl Edges) -> Result<bool, Failure> {
         let look = self.panel.look(|axis| self.desk.board.position(axis));
         for line in look.unknown {
-            // Nobody is left to tell if this fails.
-            let _ = writeln!(std::io::stderr(), "not understood: {line:?}; estop 1, min x 1, max x 0, end are");
+            // If this write fails, there is no channel left to report it.
+            let _ = writeln!(std::io::stderr(), "not understood: {line:?}; known are: estop 1, min x 1, max x 0, end");
         }
         if look.ends || interrupt::watch().load(Ordering::Relaxed) {
             return Ok(false);

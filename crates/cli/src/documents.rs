@@ -1,7 +1,9 @@
-//! The documents of `--json`: each has a name and a version, and a JSON Schema that is made from its Rust type.
+//! The documents that `--json` prints. Each has a name, a version and a JSON Schema that is derived
+//! from its Rust type.
 //!
-//! A new document is one line in [`documents!`] below; its types derive `JsonSchema`. `cargo xtask generate` writes
-//! `docs/schemas/` anew. New fields leave the version as it is; a field that goes, or means something else, raises it.
+//! To add a document, add one line to [`documents!`] below and derive `JsonSchema` for its types;
+//! `cargo xtask generate` rewrites `docs/schemas/`. A new field leaves the version unchanged. A
+//! field that is removed or changes its meaning increments it.
 
 use crate::commands::{boards, build, check, doctor, home, machine, plan, profile, table, verilog};
 use crate::{drive, failure, found, job};
@@ -11,9 +13,9 @@ use serde::Serialize;
 
 /// A document that `--json` prints.
 pub trait Document: Serialize + JsonSchema {
-    /// Its name behind `carrystep.`: that of its schema's file.
+    /// The name after `carrystep.`, which is also the name of the schema file.
     const NAME: &'static str;
-    /// Raised where a field goes, or means something else.
+    /// The version. It is incremented when a field is removed or changes its meaning.
     const VERSION: u32;
 }
 
@@ -52,7 +54,7 @@ documents! {
     "virtual-board", 1: crate::commands::virtual_board::Served;
 }
 
-/// A document with the name and the version of its schema before it.
+/// A document preceded by the name and the version of its schema.
 #[derive(Serialize)]
 pub struct Named<'a, D: Document> {
     schema: Name,
@@ -67,7 +69,7 @@ struct Name {
 }
 
 impl<'a, D: Document> Named<'a, D> {
-    /// Names a document.
+    /// Adds name and version to a document.
     pub fn new(document: &'a D) -> Self {
         Self { schema: Name { name: format!("carrystep.{}", D::NAME), version: D::VERSION }, document }
     }

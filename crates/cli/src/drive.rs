@@ -1,4 +1,6 @@
-//! A plan on a board: streamed with full queues, watched, stopped by Ctrl-C, and what came of it.
+//! Drives a board through a plan: it streams the segments, keeps the queues full, watches the
+//! board, stops on request and reports the outcome. All checks that refuse a run come before the
+//! first segment is sent.
 
 use crate::connection::{self, Connection};
 use crate::control::StoppedBy;
@@ -15,19 +17,19 @@ use serde::Serialize;
 use std::fmt;
 use std::time::Instant;
 
-/// How a drive ended.
+/// How a run on a board ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum How {
     /// All moves were made.
     Done,
-    /// Stopped as wished: by Ctrl-C or `carrystep stop`.
+    /// Stopped on request, by Ctrl-C or `carrystep stop`.
     Stopped,
     /// The machine stopped by itself.
     Fault,
 }
 
-/// What came of it; `--json` prints it as it is.
+/// The outcome of a run on a board; `--json` prints it as it is.
 #[derive(Debug, JsonSchema, Serialize)]
 pub struct Driven {
     /// All moves were made, and the machine is where they end.
@@ -38,30 +40,30 @@ pub struct Driven {
     pub build: String,
     /// How it ended.
     pub ended: How,
-    /// Who has stopped it, where it was stopped as wished.
+    /// The source of the stop, if it was requested.
     pub stopped_by: Option<StoppedBy>,
-    /// Why the machine stopped by itself, where it did.
+    /// Why the machine stopped by itself, if it did.
     pub cause: Option<&'static str>,
-    /// The axes that this stop came from.
+    /// The axes that caused this stop.
     pub culprits: Vec<Culprit>,
     /// The cause in a sentence.
     pub meaning: Option<&'static str>,
-    /// What to do about it.
+    /// What the user must do about it.
     pub remedy: Option<&'static str>,
     /// Seconds that the plan takes.
     pub planned_s: f64,
-    /// Seconds that it took, power and questions included.
+    /// Seconds that the run took, including power-up and status requests.
     pub run_s: f64,
     /// Each axis.
     pub axes: Vec<AxisDriven>,
 }
 
-/// An axis that a stop came from.
+/// An axis that caused a stop.
 #[derive(Debug, JsonSchema, Serialize)]
 pub struct Culprit {
     /// Its name.
     pub axis: String,
-    /// Which way it moved when it was last seen moving: 1 or -1; 0: it was not seen moving.
+    /// Direction in which it was last seen moving: 1 or -1; 0 if it was not seen moving.
     pub direction: i8,
 }
 
@@ -72,13 +74,13 @@ pub struct AxisDriven {
     pub axis: String,
     /// Position register before, steps.
     pub before: i32,
-    /// And after.
+    /// Position register after, steps.
     pub position: i32,
     /// Steps of the plan.
     pub steps_planned: i64,
-    /// What the axis is measured in.
+    /// The unit of the axis.
     pub unit: String,
-    /// Steps in one of these, as the nearest float.
+    /// Steps per unit, as the nearest float.
     pub steps_per_unit: f64,
 }
 
@@ -97,7 +99,7 @@ impl fmt::Display for Driven {
             (How::Done, false) => f.write_str("FAILED: the positions are not where the moves end\n"),
             (How::Stopped, _) => {
                 let by = if self.stopped_by == Some(StoppedBy::Stop) { "`carrystep stop`" } else { "Ctrl-C" };
-                writeln!(f, "STOPPED by {by}; the positions are true")
+                writeln!(f, "STOPPED by {by}; the positions are valid")
             }
             (How::Fault, _) => {
                 let cause = self.cause.unwrap_or("?");
@@ -110,7 +112,7 @@ impl fmt::Display for Driven {
                     };
                     write!(f, "{} {axis}{way}", if number == 0 { ", axis" } else { " and" })?;
                 }
-                f.write_str("; the positions are true\n")?;
+                f.write_str("; the positions are valid\n")?;
                 let words = self.meaning.zip(self.remedy);
                 words.map_or(Ok(()), |(meaning, remedy)| writeln!(f, "why:   {meaning}\nto do: {remedy}"))
             }
@@ -118,7 +120,7 @@ impl fmt::Display for Driven {
     }
 }
 
-/// A plan as the link has it.
+/// A plan in the form in which the link sends it.
 pub struct Streamed {
     commands: Vec<Command>,
     steps: Vec<i64>,
@@ -128,16 +130,18 @@ pub struct Streamed {
     guard: Guard,
 }
 
-/// What an axis does beside a limit that it has met.
+/// The motion of an axis beside a limit that it has met.
 struct Near {
-    /// Which way it goes first: 1, -1, or 0 where it stays.
+    /// Direction of its first motion: 1, -1, or 0 if it does not move.
     first: i8,
-    /// How far it must move away until the switch is open, steps.
+    /// Distance that it must move away until the switch is open, in steps.
     clear: u32,
 }
 
 impl Streamed {
-    /// The program of a plan, where this machine's line can carry it.
+    /// Converts a plan to commands of the link.
+    ///
+    /// # Errors The machine's line is too slow to keep the queues of this plan full.
     pub fn new(file: &MoveFile, plan: &Plan, baud: u32) -> Result<Self, Failure> {
         let commands: Vec<Command> = plan.program().iter().filter_map(Command::of).collect();
         let axes = file.machine.axes.len();
@@ -157,7 +161,8 @@ impl Streamed {
         Ok(Self { commands, steps, units, seconds, near, guard: file.machine.guard.clone() })
     }
 
-    /// Refuses a program that takes an axis further toward a limit that it has met and not left.
+    /// Refuses a program whose first motion takes an axis further toward a limit that it has met
+    /// and not left.
     fn check_limits(&self, memory: &Memory, status: &Status, axes: &[String]) -> Result<(), Failure> {
         for (number, Near { first, .. }) in self.near.iter().enumerate() {
             let Some(limit) = memory.limit(number).filter(|limit| limit.direction == *first) else { continue };
@@ -172,7 +177,7 @@ impl Streamed {
     }
 }
 
-/// Which way each axis was last seen moving.
+/// The direction in which each axis was last seen moving.
 #[derive(Default)]
 struct Ways {
     positions: Option<[i32; 8]>,
@@ -191,10 +196,15 @@ impl Ways {
     }
 }
 
-/// Makes the moves; further toward a limit that an axis has met only where `into_limit` says so.
+/// Executes the moves and returns the report. An axis moves further toward a limit that it has met
+/// only if `into_limit` is set.
+///
+/// # Errors The board has stopped already, a limit forbids the motion, or the line to the board is
+/// lost.
 pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> Result<Driven, Failure> {
     let mut memory = Memory::recall(&connection);
-    // The port is closed before the control gives up its claim: what is bound first is dropped last.
+    // `control` is bound before `board` so that it is dropped later: the port is closed before the
+    // claim on it ends.
     let Connection { mut control, port, mut board, axes, .. } = connection;
     let begun = Instant::now();
     let facts = *board.facts();
@@ -230,7 +240,7 @@ pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> R
     ways.see(&end);
     let cause = found::cause(&end.answer).filter(|_| ended == How::Fault);
     if ended == How::Stopped {
-        // It was our own stop, and nothing else: the next run need not be told.
+        // The stop was requested, so it is cleared here and the next run does not report it.
         board.clear().map_err(told)?;
     }
     if ended == How::Fault && memory::freezes(end.answer.cause, &streamed.guard) {
@@ -244,7 +254,7 @@ pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> R
             memory.set_limit(number, Some(Limit { direction, at: end.positions[number], clear: near.clear }));
         }
     }
-    // What cannot be written does not match the board, and counts for nothing.
+    // If the file cannot be written, the old one no longer matches the board and is ignored.
     let _ = memory.keep(&mut board);
     let culprit = |(number, axis): (usize, &String)| Culprit { axis: axis.clone(), direction: ways.last[number] };
     let is_culprit = |(number, _): &(usize, &String)| cause.is_some() && end.answer.culprits >> number & 1 == 1;
@@ -275,7 +285,8 @@ pub fn drive(connection: Connection, streamed: &Streamed, into_limit: bool) -> R
     })
 }
 
-/// One line on a terminal: how far, and where the axes are.
+/// The progress line on a terminal: elapsed part of the planned time, and the positions of the axes
+/// in steps.
 struct Line<'a> {
     bar: ProgressBar,
     axes: &'a [String],
@@ -284,7 +295,7 @@ struct Line<'a> {
 
 impl<'a> Line<'a> {
     fn new(axes: &'a [String], seconds: f64) -> Self {
-        // The target hides itself where standard error is no terminal.
+        // The bar hides itself if standard error is not a terminal.
         let total = (seconds * 1000.0) as u64;
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr_with_hz(10));
         let style = ProgressStyle::with_template("{bar:20} {percent:>3} % {msg}");

@@ -1,27 +1,28 @@
-//! The lines of a file that an error shows: the bad one and its neighbours, none of them longer than a screen.
+//! The excerpt of a file that an error message shows: the wrong line and its neighbours, each cut
+//! to [`WIDTH`] characters.
 
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 use std::ops::Range;
 
-/// Most characters of a line that are shown, around the place of the error.
+/// The greatest number of characters shown of a line, chosen around the error.
 const WIDTH: usize = 200;
-/// How many of them stand before it.
+/// The number of them before the error.
 const BEFORE: usize = 100;
 const CUT: &str = "...";
 
-/// A part of a file, cut to what is shown, with the place of the error in it.
+/// A part of a file, cut for display, with the position of the error in it.
 pub struct Excerpt {
     name: String,
     text: String,
     span: Range<usize>,
-    /// The file's line in which the text begins, from 0.
+    /// The line of the file, from 0, at which the excerpt begins.
     first_line: usize,
     /// The column of the error in the file, in characters from 0.
     column: usize,
 }
 
 impl Excerpt {
-    /// The lines around a span; of a span over several lines, its first one.
+    /// The lines around a span of bytes. A span over several lines is reduced to its first line.
     pub fn new(name: String, text: &str, span: &Range<usize>) -> Self {
         let start = span.start.min(text.len());
         let line = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
@@ -44,18 +45,18 @@ impl Excerpt {
         Self { name, text: shown, span: from..(from + length).min(longest.max(from)), first_line, column }
     }
 
-    /// Where in the text the error is.
+    /// The position of the error in the excerpt, in bytes.
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
     }
 }
 
-/// The beginning of a line.
+/// The beginning of a line, cut for display.
 fn head(line: &str) -> String {
     window(line.trim_end_matches('\r'), 0).0
 }
 
-/// The part of a line around a column, and the byte in it where that column is.
+/// The part of a line around a column, and the byte offset of that column in it.
 fn window(line: &str, column: usize) -> (String, usize) {
     let byte = |chars: usize| line.char_indices().nth(chars).map_or(line.len(), |(at, _)| at);
     if line.chars().nth(WIDTH).is_none() {
@@ -79,7 +80,8 @@ impl SourceCode for Excerpt {
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
         let inner = self.text.read_span(span, lines_before, lines_after)?;
         let line = self.first_line + inner.line();
-        // The column of the error's own line is that of the file; a neighbour is shown from its beginning.
+        // In the line with the error, the column is that of the file; neighbouring lines are shown
+        // from their beginning.
         let column = if inner.span().offset() == self.span.start { self.column } else { inner.column() };
         let (data, shown, count) = (inner.data(), *inner.span(), inner.line_count());
         Ok(Box::new(MietteSpanContents::new_named(self.name.clone(), data, shown, line, column, count)))
@@ -91,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_line_is_cut_around_the_error() {
+    fn long_line_is_cut_around_the_error() {
         let text = format!("short\n{}!{}\nnext", "a".repeat(1_000_000), "b".repeat(9_000_000));
         let excerpt = Excerpt::new("m.toml".into(), &text, &(1_000_006..10_000_007));
         assert_eq!(&excerpt.text[excerpt.span.start..=excerpt.span.start], "!");
@@ -105,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_of_a_long_line_is_shown_to_its_end() {
+    fn error_at_the_end_of_a_long_line_shows_the_end() {
         let text = "\u{17c}".repeat(500);
         let excerpt = Excerpt::new("m.toml".into(), &text, &(text.len()..text.len()));
         assert_eq!((excerpt.column, excerpt.span()), (500, excerpt.text.len()..excerpt.text.len()));
@@ -113,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn every_place_of_every_text_can_be_shown() {
+    fn excerpt_exists_for_every_span_of_every_text() {
         for text in
             ["", "\n", "a", "a\n", "\n\n", "\r\n\r\n", "a\r\nb\r\n", &"ab\u{e9}\n".repeat(3), &"\u{e9}".repeat(300)]
         {

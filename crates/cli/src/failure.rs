@@ -1,4 +1,5 @@
-//! How the command fails: what is told, and the exit status that goes with it.
+//! The failures of the command: messages, exit statuses and the document that `--json` prints on
+//! failure.
 
 use crate::colour;
 use crate::excerpt::Excerpt;
@@ -17,30 +18,31 @@ use std::io::{IsTerminal as _, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Why the command did not do what was asked.
+/// The reason why the command failed, which determines the exit status.
 #[derive(Debug)]
 pub enum Failure {
-    /// Status 1: the check failed. It has been reported already.
+    /// Status 1: the check failed. The report has been printed already.
     Check,
-    /// Status 1: the run itself failed.
+    /// Status 1: the run failed.
     Run(String),
-    /// Status 2: bad input, an impossible move included.
+    /// Status 2: the input is wrong or a move is impossible.
     Input(InputError),
     /// Status 3: a tool is missing.
     Tool(String),
-    /// Status 4: no case of a sweep ran, in an empty shard for one. It has been reported already.
+    /// Status 4: no case of a sweep ran, for example in an empty shard. The report has been printed
+    /// already.
     NothingTried,
-    /// Status 0: whoever read our output has gone.
+    /// Status 0: the reader of the output has closed the pipe.
     ReaderGone,
 }
 
 impl Failure {
-    /// Status 2, without a line of a file to show.
+    /// A failure with status 2 that points to no line of a file.
     pub fn input(message: impl Into<String>) -> Self {
         Self::Input(InputError::new(message))
     }
 
-    /// What is wrong, for a report of many runs.
+    /// The message, for a report of many runs.
     pub fn message(&self) -> String {
         match self {
             Self::Check => "the check failed".to_owned(),
@@ -51,11 +53,11 @@ impl Failure {
         }
     }
 
-    /// Tells the user, and gives the exit status. Where `--json` is wanted and no report was printed, the failure is
-    /// the document.
+    /// Prints the failure to standard error and returns the exit status. If `--json` is wanted and
+    /// no report was printed, it prints the failure as the document.
     pub fn tell(self) -> ExitCode {
         if let (true, Some(document)) = (output::lacks_json(), Document::of(&self)) {
-            // Where this fails, standard error still says what is wrong.
+            // If printing fails, standard error still reports the failure.
             let _ = output::print_json(&document);
         }
         let (status, text) = match self {
@@ -66,7 +68,7 @@ impl Failure {
             Self::Input(error) => (2, render(&error, std::io::stderr().is_terminal())),
             Self::Tool(message) => (3, format!("error: {message}")),
         };
-        // Nobody is left to tell if this fails.
+        // If this write fails, there is no channel left to report it.
         let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
         ExitCode::from(status)
     }
@@ -115,10 +117,11 @@ impl Document {
         Self { passed: false, error }
     }
 
-    /// The document of a failure; a reader who has gone needs none.
+    /// The document of a failure; `None` if none must be printed.
     fn of(failure: &Failure) -> Option<Self> {
         Some(match failure {
-            // A sweep has printed its report already.
+            // For `NothingTried`, the sweep has printed its report already; for `ReaderGone`,
+            // nobody reads it.
             Failure::ReaderGone | Failure::NothingTried => return None,
             Failure::Check => Self::new(Kind::Run, failure.message()),
             Failure::Run(message) => Self::new(Kind::Run, message),
@@ -135,22 +138,23 @@ impl Document {
     }
 }
 
-/// Tells what is wrong with the arguments, or prints the help that they ask for, and gives the exit status.
+/// Reports wrong arguments, or prints the requested help, and returns the exit status.
 pub fn usage(error: &clap::Error) -> ExitCode {
     if error.use_stderr() && output::lacks_json() {
         let text = error.render().to_string();
         let (message, help) = text.trim().split_once("\n\n").unwrap_or((text.trim(), ""));
         let mut document = Document::new(Kind::Usage, message.trim_start_matches("error: "));
         document.error.help = Some(help.trim().to_owned()).filter(|help| !help.is_empty());
-        // Where this fails, standard error still says what is wrong.
+        // If printing fails, standard error still reports the failure.
         let _ = output::print_json(&document);
     }
-    // Nobody is left to tell if this fails.
+    // If this write fails, there is no channel left to report it.
     let _ = error.print();
     u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from)
 }
 
-/// What is wrong, then file, line and column, and the line itself with what is wrong in it.
+/// Formats an input error: the message, then file, line and column, then the line with the wrong
+/// part marked.
 fn render(error: &InputError, terminal: bool) -> String {
     let Some((source, span)) = error.place.as_ref().filter(|(source, _)| !source.text.is_empty()) else {
         return format!("error: {}", harmless(&error.to_string()));
@@ -161,7 +165,8 @@ fn render(error: &InputError, terminal: bool) -> String {
     drawn(diagnostic.with_label(LabeledSpan::underline(code.span())), code, terminal)
 }
 
-/// Colours and lines on a terminal; elsewhere plain ASCII, and no message broken into lines.
+/// Draws the diagnostic with colours and line drawing on a terminal, and in plain ASCII without
+/// line wrapping elsewhere.
 fn drawn(diagnostic: MietteDiagnostic, code: Excerpt, terminal: bool) -> String {
     let report = Report::new(diagnostic).with_source_code(code);
     let mut theme = match (terminal, colour::wanted(&std::io::stderr())) {
@@ -169,7 +174,7 @@ fn drawn(diagnostic: MietteDiagnostic, code: Excerpt, terminal: bool) -> String 
         (true, false) => GraphicalTheme::unicode_nocolor(),
         (false, _) => GraphicalTheme::none(),
     };
-    // A word, where a theme has a cross that reads as a letter.
+    // The word replaces the theme's cross, which can be read as a letter.
     theme.characters.error = "error:".to_owned();
     let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(terminal);
     let mut text = String::new();
@@ -178,7 +183,8 @@ fn drawn(diagnostic: MietteDiagnostic, code: Excerpt, terminal: bool) -> String 
     text.trim_start().to_owned()
 }
 
-/// No control characters of a file reach the terminal; each byte keeps its place.
+/// Replaces control characters, so that a file's content cannot control the terminal. Each byte
+/// keeps its place.
 fn harmless(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
@@ -237,7 +243,7 @@ impl From<TraceError> for Failure {
     }
 }
 
-/// A refused move, with its place in the file.
+/// The failure for a move that the planner refuses, with the place of the move in the file.
 pub fn refused(file: &MoveFile, error: &PlanError) -> Failure {
     let message = error.to_string();
     Failure::Input(match error.move_index() {
@@ -252,12 +258,12 @@ mod tests {
     use carrystep_files::Source;
 
     #[test]
-    fn nothing_that_a_terminal_obeys_is_shown() {
+    fn control_characters_are_replaced_in_messages() {
         assert_eq!(harmless("a\u{1b}[31m\tb\u{0}\u{9b}\r\n\u{e9}"), "a?[31m\tb???\r\n\u{e9}");
     }
 
     #[test]
-    fn an_error_shows_its_first_line_only() {
+    fn error_over_several_lines_shows_only_the_first() {
         let source = Source { path: "m.toml".into(), text: "[[move]]\nto = {}\n".into() };
         let shown = render(&InputError::at(&source, 0..17, "too far").help("go less far"), false);
         let lines = [

@@ -1,4 +1,4 @@
-//! What a user has to know before trusting a curve, as a table with a column for each kind.
+//! The figures of a curve (jumps, greatest values, times), as a table with one column per curve.
 
 use carrystep_profile::reference::{Drive, Length, Reference};
 use schemars::JsonSchema;
@@ -16,7 +16,7 @@ pub struct FiguresJson {
     top_speed_steps_per_s: f64,
     peak_acceleration_steps_per_s2: f64,
     acceleration_jump_steps_per_s2: f64,
-    /// `None`, with a reason, where all jerk is impulses: it has no greatest value.
+    /// `None`, with a reason, if all jerk is impulses and therefore has no greatest value.
     peak_jerk_steps_per_s3: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_jerk_reason: Option<&'static str>,
@@ -46,10 +46,10 @@ impl FiguresJson {
     }
 }
 
-/// A row: its name, and what it says of a curve.
+/// A row of the table: its name, and the function that formats its value for a curve.
 type Line<'a> = (String, Box<dyn Fn(&Reference, &FiguresJson) -> String + 'a>);
 
-/// The table; where the motor moves something, its figures in millimetres too.
+/// The table with one column per curve; if the drive has a travel per turn, also in millimetres.
 pub fn table(references: &[Reference], drive: &Drive) -> String {
     let measured: Vec<(&Reference, FiguresJson)> = references.iter().map(|r| (r, FiguresJson::new(r))).collect();
     let mut lines = lines();
@@ -86,7 +86,7 @@ fn lines<'a>() -> Vec<Line<'a>> {
     ]
 }
 
-/// The rows that have a length in them.
+/// The rows whose unit contains a length; `steps` is the number of steps in one `unit`.
 fn in_unit<'a>(unit: &str, steps: f64) -> Vec<Line<'a>> {
     let line = |what: &str, power: &str, value: fn(&FiguresJson) -> f64| -> Line<'a> {
         (format!("{what}, {unit}/s{power}"), Box::new(move |_, f| number(value(f) / steps)))
@@ -104,7 +104,7 @@ fn in_unit<'a>(unit: &str, steps: f64) -> Vec<Line<'a>> {
     ]
 }
 
-/// Six digits, more where they stand before the point.
+/// Formats a number with six significant digits, or with all digits of a longer integer part.
 fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -1,5 +1,5 @@
-//! What a board does and where its axes are: what `status` and `stop` print, asked of the board itself or of the
-//! command that drives it.
+//! The state of a board and the positions of its axes, as `status` and `stop` print them. It comes
+//! from the board itself or from the command that drives the board.
 
 use crate::control::Holder;
 use carrystep_core::engine::{CAUSES, Cause};
@@ -8,23 +8,23 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What does not change while a board is connected.
+/// The constants of a connected board.
 #[derive(Debug, Clone)]
 pub struct Known {
-    /// The port.
+    /// The name of the port.
     pub port: String,
-    /// What the gateware said of itself.
+    /// The constants that the gateware reported.
     pub facts: Facts,
-    /// A name for each axis of the build.
+    /// The names of the axes of the build, in order.
     pub axes: Vec<String>,
-    /// Steps in a unit of each axis; empty where no machine is known.
+    /// Steps per unit of each axis; empty if no machine file is known.
     pub steps_per_unit: Vec<f64>,
 }
 
 /// What `--json` prints.
 #[derive(Debug, Clone, JsonSchema, Serialize, Deserialize)]
 pub struct Found {
-    /// It has answered.
+    /// True if the board has answered.
     pub passed: bool,
     /// The port.
     pub port: String,
@@ -42,21 +42,21 @@ pub struct Found {
     pub ready: bool,
     /// All axes are done.
     pub idle: bool,
-    /// A start waits.
+    /// A start is armed and waits for its axes.
     pub armed: bool,
     /// A stop has been called; only a clear resumes.
     pub fault: bool,
-    /// The stop is over.
+    /// The stop is complete: no axis moves.
     pub halted: bool,
-    /// Why the machine stands, in a word.
+    /// The cause of the stop, in one word.
     pub cause: Option<String>,
-    /// The same in a sentence.
+    /// The cause in one sentence.
     pub meaning: Option<String>,
-    /// What to do about it.
+    /// What the user must do about it.
     pub remedy: Option<String>,
-    /// The command that holds the port, where this was asked of it and not of the board.
+    /// The command that holds the port, if this report comes from it and not from the board.
     pub held_by: Option<Holder>,
-    /// The command that was stopped, where `carrystep stop` has stopped one.
+    /// The command that `carrystep stop` has stopped, if there was one.
     #[serde(default)]
     pub stopped: Option<Holder>,
     /// Each axis.
@@ -70,30 +70,31 @@ pub struct AxisFound {
     pub axis: String,
     /// Position register, steps.
     pub position: i32,
-    /// The same in the axis' own unit, where a machine is known.
+    /// The position in the axis' own unit, if a machine file is known.
     pub place: Option<f64>,
-    /// The machine coordinate in the axis' own unit, where the axis is homed and nobody else has moved it since.
+    /// The machine coordinate in the axis' own unit, if the axis is homed and no other host
+    /// has moved it since.
     #[serde(default)]
     pub machine: Option<f64>,
-    /// Steps that freezes have discarded; the command that drives does not ask for them.
+    /// Steps that freezes have discarded; unknown if the report comes from a driving command.
     pub discarded: Option<u32>,
-    /// It waits for its limit.
+    /// True if the axis waits for its limit.
     pub homing: bool,
-    /// The stop came from it.
+    /// True if the axis caused the stop.
     pub culprit: bool,
 }
 
-/// The cause of a stop by its number in an answer.
+/// The cause of a stop, decoded from an answer; `None` if no stop was called.
 pub fn cause(answer: &Answer) -> Option<Cause> {
     by_number(answer.cause).filter(|_| answer.fault)
 }
 
-/// The cause of this number.
+/// The cause with this number; `None` if there is none.
 pub fn by_number(cause: u8) -> Option<Cause> {
     CAUSES.get(usize::from(cause)).copied()
 }
 
-/// The names of the axes in a mask, a bit each.
+/// The names of the axes in a mask of one bit per axis, separated by commas.
 pub fn names(axes: &[String], mask: u8) -> String {
     let is_of = |number: usize| mask.checked_shr(number as u32).is_some_and(|bits| bits & 1 == 1);
     let names: Vec<&str> = (0..).zip(axes).filter(|&(number, _)| is_of(number)).map(|(_, name)| &**name).collect();
@@ -101,7 +102,8 @@ pub fn names(axes: &[String], mask: u8) -> String {
 }
 
 impl Found {
-    /// What a board has answered; `discarded` of each axis, where they were read.
+    /// Builds the report from a board's status. `discarded` are the discarded steps of each axis,
+    /// if they were read.
     pub fn new(status: &Status, known: &Known, discarded: Option<&[u32]>) -> Self {
         let Answer { ready, idle, armed, fault, halted, homing, culprits, .. } = status.answer;
         let Known { port, facts, axes, steps_per_unit } = known;
@@ -172,7 +174,7 @@ impl fmt::Display for Found {
             let place = place.map_or_else(String::new, |place| format!("  {place:>12.4}"));
             let discarded = discarded.map_or_else(|| "-".to_owned(), |count| count.to_string());
             let homing = if *homing { "  waits for its limit" } else { "" };
-            let culprit = if *culprit { "  the stop came from it" } else { "" };
+            let culprit = if *culprit { "  it caused the stop" } else { "" };
             writeln!(f, "{axis:<6}{place}  {position:>11}  {discarded:>9}{machine}{homing}{culprit}")?;
         }
         Ok(())

@@ -1,4 +1,5 @@
-//! The two cores behind one face: when a plan's first segments are loaded, and a run whose pins are watched.
+//! A common interface to the two cores: the cycle in which a plan's first segments are loaded, and
+//! a run with a callback for the pins.
 
 use carrystep_core::engine::Cause;
 use carrystep_simulators::engine::run::EngineJob;
@@ -11,12 +12,12 @@ pub enum Gateware<'a> {
     Engine(EngineJob<'a>),
 }
 
-/// How a run ended.
+/// The end of a run.
 pub struct Ended {
     pub clocks: u64,
-    /// Position registers, steps; of the machine's axes at least.
+    /// Position registers in steps, at least of the machine's axes.
     pub positions: Vec<i32>,
-    /// What the gateware latched.
+    /// The fault that the gateware latched, if there is one.
     pub fault: Option<String>,
 }
 
@@ -29,7 +30,8 @@ impl Gateware<'_> {
         }
     }
 
-    /// Runs it; hears of STEP and DIR, bit i is axis i, in each cycle in which any output changed.
+    /// Runs the plan. `watch` is called with cycle, STEP and DIR (bit i is axis i) in each cycle in
+    /// which any output has changed.
     pub fn run(&self, level: Level, watch: &mut dyn FnMut(u64, u8, u8)) -> Result<Ended, LevelError> {
         match self {
             Self::Parallel(job) => {
@@ -47,7 +49,7 @@ impl Gateware<'_> {
     }
 }
 
-/// A cause, and the axes that it came from.
+/// Formats a cause and the axes that caused it.
 pub fn told((cause, culprits): (Cause, u8)) -> String {
     let axes: Vec<String> = (0..8).filter(|axis| culprits >> axis & 1 == 1).map(|axis| axis.to_string()).collect();
     if axes.is_empty() { cause.to_string() } else { format!("{cause} on axis {}", axes.join(", ")) }

@@ -1,4 +1,5 @@
-//! How a machine homes, as its file says, and why it could not.
+//! Converts a machine's homing settings to the driver's form, and formats the failures of homing in
+//! the axes' units.
 
 use crate::failure::Failure;
 use crate::memory::Memory;
@@ -7,7 +8,10 @@ use carrystep_files::machine::{End, Home as AxisHome};
 use carrystep_files::{Axis, Machine};
 use carrystep_link::{AxisHoming, Homing, HomingFault, Status, Wiring};
 
-/// The axes to home, in the order of the machine, a bit each.
+/// The groups of axes to home, in the machine's order, one bit per axis. No names means all axes
+/// that can home.
+///
+/// # Errors An axis does not exist or has no home table, or no axis has one.
 pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
     let mut wanted = 0_u8;
     for name in names {
@@ -33,7 +37,7 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
     Ok(groups)
 }
 
-/// How the machine homes.
+/// The homing of the machine in the driver's form.
 pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
     let mut axes = [None; 8];
     for (place, axis) in axes.iter_mut().zip(&machine.axes) {
@@ -51,8 +55,9 @@ pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
     Homing { wiring, axes, groups, others: 0, round, debounce }
 }
 
-/// On one wire: the other axes that may stand on their switches, a bit each. One that is homed, and at least as far from its
-/// switch as homing leaves it, does not.
+/// If all switches share one wire: the other axes that may stand on their switches, one bit each. A
+/// homed axis that is at least as far from its switch as homing leaves it does not stand on its
+/// switch. In all other wirings the result is 0.
 pub fn others(machine: &Machine, wanted: u8, status: &Status, memory: &Memory) -> u8 {
     if machine.guard.limits != Limits::One {
         return 0;
@@ -70,7 +75,7 @@ pub fn others(machine: &Machine, wanted: u8, status: &Status, memory: &Memory) -
     machine.axes.iter().enumerate().filter_map(unclear).fold(0, |mask, bit| mask | bit)
 }
 
-/// Why homing has failed, in units of the axes, and what to do.
+/// The message for a failed homing: the cause, the distances in the axes' units, and the remedy.
 pub fn fault(machine: &Machine, mask: u8, why: HomingFault) -> String {
     let of = |distance: fn(&AxisHome) -> u32| {
         let axes = machine.axes.iter().enumerate().filter(|(number, _)| mask >> number & 1 == 1);

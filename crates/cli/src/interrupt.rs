@@ -1,5 +1,6 @@
-//! Ctrl-C, and whatever else asks the command to end: a flag from the first file that is begun, or the first run,
-//! so that nothing half written stays behind. Before that the command ends as any other.
+//! Handles Ctrl-C and the signals that end a program. From the first file that is begun, or the
+//! first run, they only set a flag, so that no incomplete file remains. Before that, they end the
+//! command as usual.
 
 use crate::failure::Failure;
 use std::sync::Once;
@@ -8,14 +9,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 static ASKED: AtomicBool = AtomicBool::new(false);
 static WATCH: Once = Once::new();
 
-/// From now on to be asked to end sets the flag. It is returned.
+/// Installs the handler and returns the flag that it sets.
 pub fn watch() -> &'static AtomicBool {
-    // Where there can be no handler, the command ends as any other.
+    // If no handler can be installed, signals end the command as usual.
     WATCH.call_once(|| drop(ctrlc::set_handler(|| ASKED.store(true, Ordering::Relaxed))));
     &ASKED
 }
 
-/// Fails once the flag is set.
+/// Fails if the flag is set.
 pub fn check() -> Result<(), Failure> {
     if ASKED.load(Ordering::Relaxed) { Err(Failure::Run("interrupted: nothing is kept".into())) } else { Ok(()) }
 }

@@ -1,4 +1,5 @@
-//! One planned move file through one level: sinks on, run, and what came of it.
+//! Runs one planned move file at one level: it opens the outputs, runs the gateware, checks every
+//! pulse and collects the results.
 
 use crate::arguments::Core;
 use crate::failure::Failure;
@@ -25,13 +26,13 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Longest run, in seconds: captures count ps in 64 bits.
+/// The longest run in seconds, because captures count ps in 64 bits.
 const LONGEST_S: u64 = 4_000_000;
 
-/// What a run came to; `--json` prints it as it is.
+/// The result of a run; `--json` prints it as it is.
 #[derive(Debug, JsonSchema, Serialize)]
 pub struct Done {
-    /// Everything below holds.
+    /// True if everything below holds.
     pub passed: bool,
     /// The gateware.
     pub core: &'static str,
@@ -41,7 +42,7 @@ pub struct Done {
     pub clocks: u64,
     /// Seconds that the simulation took, sinks included.
     pub run_s: f64,
-    /// What the gateware latched; "none" if all is well.
+    /// The faults that the gateware latched; "none" if there are none.
     pub faults: String,
     /// Position registers at the end, steps.
     pub positions: Vec<i32>,
@@ -49,12 +50,12 @@ pub struct Done {
     pub limits: Limits,
     /// The pulses against the profile.
     pub check: Report,
-    /// What was written.
+    /// The files that were written.
     pub files: Vec<PathBuf>,
 }
 
 impl Done {
-    /// Failure where anything does not hold; it has been reported in full.
+    /// Returns the failure if anything does not hold; the report has been printed already.
     pub fn verdict(&self) -> Result<(), Failure> {
         if self.passed { Ok(()) } else { Err(Failure::Check) }
     }
@@ -72,7 +73,7 @@ impl fmt::Display for Done {
     }
 }
 
-/// Reads a move file; `fit_ns` overrides the tolerance of its moves.
+/// Reads a move file. `fit_ns` (ns) overrides the fit tolerance of all its moves.
 pub fn load(path: &Path, fit_ns: Option<u64>) -> Result<MoveFile, Failure> {
     let mut file = MoveFile::load(path)?;
     if let Some(fit_ns) = fit_ns {
@@ -81,7 +82,7 @@ pub fn load(path: &Path, fit_ns: Option<u64>) -> Result<MoveFile, Failure> {
     Ok(file)
 }
 
-/// What a capture of this plan is checked against.
+/// The setup of the checker for a capture of this plan.
 pub fn check_setup<'a>(file: &'a MoveFile, plan: &Plan, timelines: &'a [Timeline], origin: Origin) -> Setup<'a> {
     let axis = |(i, (axis, timeline)): (usize, (&'a carrystep_files::Axis, &'a Timeline))| {
         let steps = plan.moves.iter().map(|m| m.axes[i].steps);
@@ -114,7 +115,7 @@ pub fn fits_a_capture(plan: &Plan) -> Result<(), Failure> {
     Err(Failure::input(format!("the moves take {seconds} s: a capture holds at most {LONGEST_S} s; split the file")))
 }
 
-/// The engine of a file's machine, where one is asked for.
+/// The engine build of the file's machine if `core` is the engine, otherwise `None`.
 fn engine(file: &MoveFile, core: Core) -> Result<Option<EngineBuild>, Failure> {
     if core == Core::Parallel {
         return Ok(None);
@@ -124,14 +125,14 @@ fn engine(file: &MoveFile, core: Core) -> Result<Option<EngineBuild>, Failure> {
     Ok(Some(engine))
 }
 
-/// Runs a plan on a core at a level, checks every pulse and writes what is wanted.
+/// Runs a plan on a core at a level, checks every pulse and writes the wanted files.
 pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
     let engine = engine(file, core)?;
     carrystep_simulators::available(level)?;
     fits_a_capture(plan)?;
     let mut files = wanted.begin()?;
     let program = plan.program();
-    // Nobody waits for the end of a run whose output cannot be written.
+    // Set when an output fails, so that the run ends early.
     let deaf = AtomicBool::new(false);
     let halt = &[interrupt::watch(), &deaf];
     let timebase = plan.build.timebase;
@@ -195,7 +196,7 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
         });
         interrupt::check()?;
         if let Err(LevelError::Halted) = outcome {
-            // The feed knows why.
+            // The feed holds the cause.
             return Err(feed.end(0).err().map_or(LevelError::Halted.into(), Failure::from));
         }
         let outcome = outcome?;
@@ -233,7 +234,7 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
     })
 }
 
-/// The path of the waveform as GTKWave sees it from the save file's folder.
+/// The path of the waveform as GTKWave must find it from the folder of the save file.
 fn seen_from(save: &Path, vcd: &Path) -> String {
     let beside = save.parent() == vcd.parent();
     let absolute = std::path::absolute(vcd).unwrap_or_else(|_| vcd.to_owned());

@@ -1,4 +1,5 @@
-//! The `carrystep` command: arguments in, reports out; no logic of its own.
+//! The `carrystep` command. It parses the arguments, calls the library crates and prints their
+//! reports; the logic is in those crates.
 
 mod arguments;
 mod colour;

@@ -1,17 +1,20 @@
-//! What the command remembers of a board from one call to the next: where machine zero is, and the limits that were met.
+//! The command's memory of a board between two calls: the machine zero of each axis, and the limits
+//! that the axes have met.
 //!
-//! The position register counts from where the board was configured and cannot be written. So the file of a board, named after
-//! its port and its build id, holds for each axis the machine coordinate of the register's zero. It holds as long as
-//! nobody else has driven the board, and its drivers have kept their power:
+//! The position register counts from the configuration of the board and cannot be written.
+//! Therefore a file, named after the port and the build id, holds the machine coordinate of the
+//! register's zero for each axis. The content is valid as long as nobody else has driven the board
+//! and its drivers have kept their power. Three values detect a change:
 //!
 //! ```text
 //! next        the number of the next write: any command of another host changes it
 //! positions   of all axes: any move changes them
-//! ready       0 behind every configuration, until a host switches the drivers on: a restart is always seen
+//! ready       0 after a configuration until a host switches the drivers on: detects a restart
 //! ```
 //!
-//! Where one of them is not as it was left, all is forgotten. Only a restart followed by another host that makes a multiple of
-//! 256 writes and leaves every register at the very same position would not be noticed.
+//! If one of them differs from the stored value, the content is discarded. One case is not
+//! detected: a restart, after which another host makes a multiple of 256 writes and leaves every
+//! register at its old position.
 
 use crate::connection::{Board, Connection};
 use crate::found;
@@ -21,12 +24,12 @@ use serde::{Deserialize, Serialize};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-/// The form of the file.
+/// The version of the file's format.
 const SCHEMA: u32 = 1;
-/// Names the folder, where tests or a user want another one.
+/// The environment variable that overrides the folder.
 const FOLDER: &str = "CARRYSTEP_STATE";
 
-/// The file.
+/// The content of the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Record {
     schema: u32,
@@ -37,37 +40,38 @@ struct Record {
     axes: Vec<AxisRecord>,
 }
 
-/// One axis in it.
+/// The entry of one axis.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct AxisRecord {
     position: i32,
-    /// Steps in a unit of the machine file that it was homed with.
+    /// Steps per unit in the machine file with which the axis was homed.
     steps_per_unit: f64,
-    /// The machine coordinate of the register's zero, steps, where the axis is homed.
+    /// The machine coordinate of the register's zero in steps, if the axis is homed.
     offset: Option<i64>,
     limit: Option<Limit>,
 }
 
-/// A limit that an axis has met, and has not moved away from yet.
+/// A limit that an axis has met and not yet left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limit {
-    /// Which way it moved: 1 or -1.
+    /// The direction in which the axis moved: 1 or -1.
     pub direction: i8,
-    /// Where it came to rest, steps of the register.
+    /// The position at which it came to rest, in steps of the register.
     pub at: i32,
-    /// How far it must move back until the switch is open, steps.
+    /// Distance that it must move back until the switch is open, in steps.
     pub clear: u32,
 }
 
 impl Limit {
-    /// How far an axis at this position has to move away still, steps; 0: far enough.
+    /// The distance that an axis at this position must still move away, in steps; 0 if it is far
+    /// enough.
     pub fn to_go(self, position: i32) -> u32 {
         let away = i64::from(self.at.wrapping_sub(position)) * i64::from(self.direction);
         u32::try_from(i64::from(self.clear) - away).unwrap_or(0)
     }
 }
 
-/// What is known of a board.
+/// What is known about a board.
 #[derive(Debug)]
 pub struct Memory {
     path: Option<PathBuf>,
@@ -75,10 +79,11 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// What holds of the board of this connection, as it stands now.
+    /// Reads the memory of the connected board. Entries that no longer match the board are
+    /// discarded.
     pub fn recall(connection: &Connection) -> Self {
         let Connection { board, axes, steps_per_unit, port, .. } = connection;
-        // A port has one name here, whatever link leads to it.
+        // The canonical path, so that every link to the port gives the same name.
         let port = Path::new(port).canonicalize().map_or_else(|_| port.clone(), |path| path.display().to_string());
         let build = format!("{:016x}", board.facts().build);
         let name: String = port.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
@@ -95,7 +100,7 @@ impl Memory {
             record.axes = stored.axes;
         }
         for (axis, &steps) in record.axes.iter_mut().zip(steps_per_unit) {
-            // A coordinate in steps means nothing where a step is another one.
+            // A coordinate in steps is meaningless if the size of a step has changed.
             if axis.steps_per_unit.to_bits() != steps.to_bits() {
                 *axis = AxisRecord { steps_per_unit: steps, ..AxisRecord::default() };
             }
@@ -103,49 +108,50 @@ impl Memory {
         Self { path, record }
     }
 
-    /// The machine coordinate of the register's zero of an axis, steps, where it is homed.
+    /// The machine coordinate of an axis' register zero, in steps; `None` if the axis is not homed.
     pub fn offset(&self, axis: usize) -> Option<i64> {
         self.record.axes.get(axis)?.offset
     }
 
-    /// The machine coordinate, in units of the axis, at a position of its register.
+    /// The machine coordinate in units of the axis for a position of its register; `None` if the
+    /// axis is not homed.
     pub fn coordinate(&self, axis: usize, position: i32) -> Option<f64> {
         let AxisRecord { steps_per_unit, offset, .. } = self.record.axes.get(axis)?;
         Some((i64::from(position) + (*offset)?) as f64 / steps_per_unit)
     }
 
-    /// The limit that an axis has met, and stands near.
+    /// The limit that an axis has met and not yet left.
     pub fn limit(&self, axis: usize) -> Option<Limit> {
         self.record.axes.get(axis)?.limit
     }
 
-    /// The machine coordinate of the register's zero of an axis; `None`: it is not homed.
+    /// Sets the machine coordinate of an axis' register zero, in steps; `None` means not homed.
     pub fn set_offset(&mut self, axis: usize, offset: Option<i64>) {
         self.record.axes.get_mut(axis).into_iter().for_each(|axis| axis.offset = offset);
     }
 
-    /// No axis is homed any more: after a freeze motors may have lost steps.
+    /// Marks every axis as not homed, because motors may lose steps in a freeze.
     pub fn forget_places(&mut self) {
         self.record.axes.iter_mut().for_each(|axis| axis.offset = None);
     }
 
-    /// The limit that an axis has met; `None`: it is away from it.
+    /// Sets the limit that an axis has met; `None` means that it is clear of limits.
     pub fn set_limit(&mut self, axis: usize, limit: Option<Limit>) {
         self.record.axes.get_mut(axis).into_iter().for_each(|axis| axis.limit = limit);
     }
 
-    /// Writes it, with the board as it stands now; the file appears whole or not at all.
+    /// Writes the memory together with the board's present state. The file appears only when it is
+    /// complete.
     ///
-    /// # Errors
-    /// The board does not answer, or the system refuses the file: what was there before does not match the board then, and
-    /// counts for nothing.
+    /// # Errors The board does not answer, or the system refuses the file. The old file then no
+    /// longer matches the board and is ignored.
     pub fn keep(&mut self, board: &mut Board) -> io::Result<()> {
         let Status { answer, positions } = board.look().map_err(io::Error::other)?;
         (self.record.next, self.record.ready) = (answer.next, answer.ready);
         for (axis, position) in self.record.axes.iter_mut().zip(positions) {
             axis.position = position;
             axis.limit = axis.limit.filter(|limit| limit.to_go(position) > 0);
-            // Without power a motor keeps no place.
+            // A motor without power does not keep its position.
             axis.offset = axis.offset.filter(|_| answer.ready);
         }
         let path = self.path.as_ref().ok_or_else(|| io::Error::other("the system names no folder for it"))?;
@@ -157,7 +163,7 @@ impl Memory {
     }
 }
 
-/// Whether a cause stops the axes at once, so that their motors may lose steps.
+/// True if a cause stops the axes at once on this machine, so that their motors may lose steps.
 pub fn freezes(cause: u8, guard: &Guard) -> bool {
     match found::by_number(cause) {
         Some(Cause::Limit) => guard.limit_freezes,
@@ -166,12 +172,12 @@ pub fn freezes(cause: u8, guard: &Guard) -> bool {
     }
 }
 
-/// Whether a cause stops the axes at once on every machine, whatever its file says of limits.
+/// True if a cause stops the axes at once on every machine, whatever its setting for limits.
 pub const fn always_freezes(cause: Cause) -> bool {
     matches!(cause, Cause::EStop | Cause::Overrun | Cause::Protocol | Cause::Overspeed)
 }
 
-/// Where the files are.
+/// The folder of the files.
 fn folder() -> Option<PathBuf> {
     match std::env::var_os(FOLDER) {
         Some(folder) => Some(folder.into()),
@@ -184,7 +190,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_axis_is_off_its_limit_when_it_has_moved_back_far_enough() {
+    fn axis_is_clear_of_its_limit_after_moving_back_the_clear_distance() {
         let back = Limit { direction: -1, at: -105, clear: 20 };
         assert_eq!([-105, -104, -86, -85, 300, -110].map(|position| back.to_go(position)), [20, 19, 1, 0, 0, 25]);
         let forth = Limit { direction: 1, at: 105, clear: 20 };

@@ -1,4 +1,5 @@
-//! Where results go: standard output, and files that appear whole or not at all.
+//! The command's output: text on standard output, and files. A file appears under its name only
+//! when it is complete.
 
 use crate::colour;
 use crate::documents::{Document, Named};
@@ -11,7 +12,10 @@ use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Prints text to standard output.
+/// Prints text to standard output, with verdicts in colour where colours are wanted.
+///
+/// # Errors `Failure::ReaderGone` if the reader has closed the pipe; `Failure::Input` if the write
+/// fails otherwise.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let painted = if colour::wanted(&out) { Cow::Owned(colour::painted(text)) } else { Cow::Borrowed(text) };
@@ -21,59 +25,61 @@ pub fn print(text: &str) -> Result<(), Failure> {
     })
 }
 
-/// `--json` is among the arguments.
+/// True if `--json` is one of the arguments.
 static JSON_WANTED: AtomicBool = AtomicBool::new(false);
-/// A document was printed: there is one for each run, on failure too.
+/// True if a document was printed. Each run prints one document, also if it fails.
 static JSON_PRINTED: AtomicBool = AtomicBool::new(false);
 
-/// Looks for `--json` before the arguments are parsed: it also holds for arguments that are refused.
+/// Looks for `--json` before the arguments are parsed, so that it also applies to arguments that
+/// the parser refuses.
 pub fn json_is_wanted(mut arguments: impl Iterator<Item = OsString>) {
     let options = arguments.by_ref().take_while(|argument| argument != "--");
     JSON_WANTED.store(options.into_iter().any(|argument| argument == "--json"), Ordering::Relaxed);
 }
 
-/// Whether a document is wanted that nobody has printed.
+/// True if a document is wanted and none has been printed yet.
 pub fn lacks_json() -> bool {
     JSON_WANTED.load(Ordering::Relaxed) && !JSON_PRINTED.load(Ordering::Relaxed)
 }
 
-/// Prints one JSON document, with the name and version of its schema.
+/// Prints one JSON document, preceded by the name and the version of its schema.
 pub fn print_json(document: &impl Document) -> Result<(), Failure> {
     JSON_PRINTED.store(true, Ordering::Relaxed);
     let text = serde_json::to_string_pretty(&Named::new(document)).map_err(|error| Failure::Run(error.to_string()))?;
     print(&format!("{text}\n"))
 }
 
-/// A file that is there under its name only once [`OutputFile::keep`] has succeeded. It is no input, and no other
-/// output, of the same command: `carrystep-files` compares them.
+/// An output file that appears under its name only when [`OutputFile::keep`] has succeeded.
+/// `carrystep-files` refuses a path that is an input or another output of the same command.
 pub struct OutputFile {
     writer: BufWriter<NewFile>,
 }
 
 impl OutputFile {
-    /// Makes the folder if need be. Whatever forbids the file is found here, before any work is done.
+    /// Creates the folder if it does not exist, and begins the file. Everything that prevents the
+    /// file from being written is detected here, before any work is done.
     pub fn create(path: &Path) -> Result<Self, Failure> {
         Self::begin(Self::claim(path)?)
     }
 
-    /// The first half of [`OutputFile::create`]: makes nothing. A command with several outputs claims all of them
-    /// before it begins the first.
+    /// The first half of [`OutputFile::create`]: checks the path and creates nothing. A command
+    /// with several outputs claims all of them before it begins the first one.
     pub fn claim(path: &Path) -> Result<Claim, Failure> {
         Ok(Claim::new(path)?)
     }
 
-    /// The second half of [`OutputFile::create`].
+    /// The second half of [`OutputFile::create`]: begins the file.
     pub fn begin(claim: Claim) -> Result<Self, Failure> {
         interrupt::watch();
         Ok(Self { writer: BufWriter::with_capacity(1 << 18, claim.begin(false)?) })
     }
 
-    /// Where the result will be.
+    /// The path under which the file will appear.
     pub fn path(&self) -> &Path {
         self.writer.get_ref().path()
     }
 
-    /// Who writes into us says only what is wrong; this adds where.
+    /// Adds the path to an error, because the writers that use this file report only the cause.
     fn named(&self, error: &std::io::Error) -> std::io::Error {
         std::io::Error::new(error.kind(), format!("{}: {error}", self.path().display()))
     }
@@ -87,18 +93,19 @@ impl OutputFile {
         self.writer.write_all(text.as_bytes()).map_err(|error| self.failed(error))
     }
 
-    /// Nothing is left to be written.
+    /// Flushes the buffer, so that all errors of writing are known.
     pub fn whole(&mut self) -> Result<(), Failure> {
         self.writer.flush().map_err(|error| self.failed(error))
     }
 
-    /// Everything is written: let it appear, unless somebody has asked us to end.
+    /// Lets the complete file appear under its name, unless the user has interrupted the command.
     pub fn keep(self) -> Result<PathBuf, Failure> {
         interrupt::check()?;
         self.appear()
     }
 
-    /// Everything is written: let it appear, where to be asked to end is how a command ends.
+    /// Lets the complete file appear, even after an interrupt. For commands that an interrupt ends
+    /// regularly.
     pub fn appear(mut self) -> Result<PathBuf, Failure> {
         self.whole()?;
         let (file, _) = self.writer.into_parts();
@@ -127,7 +134,7 @@ impl Seek for OutputFile {
     }
 }
 
-/// Writes a whole text file.
+/// Writes a whole text file, which appears when it is complete.
 pub fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
     let mut file = OutputFile::create(path)?;
     file.text(text)?;

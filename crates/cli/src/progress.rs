@@ -1,4 +1,4 @@
-//! Progress of anything longer than a second, on a terminal only.
+//! Progress displays for runs of more than a second, on a terminal only.
 
 use carrystep_simulators::{HowFar, Level, Stage};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -8,13 +8,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// From one look at the run to the next.
+/// Interval at which the watcher reads the progress of the run.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Nothing is shown of runs that are shorter.
+/// Shorter runs show no progress.
 const SHORT: Duration = Duration::from_secs(1);
 
-/// Progress of one run, in clocks: another thread looks how far it is, however seldom an edge comes.
+/// The progress of one run, in clocks. A separate thread polls it, so the display does not depend
+/// on how often edges occur.
 pub struct Progress {
     how_far: Arc<HowFar>,
     over: Arc<AtomicBool>,
@@ -22,7 +23,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A run of about `total` clocks at a level.
+    /// The progress of a run of about `total` clocks at this level.
     pub fn new(level: Level, total: u64) -> Self {
         let (how_far, over) = (Arc::new(HowFar::default()), Arc::new(AtomicBool::new(false)));
         let seen = (Arc::clone(&how_far), Arc::clone(&over));
@@ -31,7 +32,7 @@ impl Progress {
         Self { how_far, over, watcher }
     }
 
-    /// What the run tells.
+    /// The counters that the run updates.
     pub fn how_far(&self) -> &HowFar {
         &self.how_far
     }
@@ -42,13 +43,13 @@ impl Drop for Progress {
         self.over.store(true, Ordering::Relaxed);
         if let Some(watcher) = self.watcher.take() {
             watcher.thread().unpark();
-            // A bar that could not be drawn is no reason to fail.
+            // A failure to draw the bar does not fail the run.
             let _ = watcher.join();
         }
     }
 }
 
-/// Shows how far the run is until it is over.
+/// Displays the progress until the run is over.
 fn watch(level: Level, total: u64, how_far: &HowFar, over: &AtomicBool) {
     let begun = Instant::now();
     let mut stage = (how_far.stage(), begun);
@@ -83,7 +84,7 @@ fn begin(total: u64) -> ProgressBar {
     bar
 }
 
-/// Time left at the speed of this very run so far, and that speed.
+/// The remaining time at the average speed of this run so far, and that speed.
 fn told(elapsed: Duration, clock: u64, total: u64) -> String {
     let seconds = elapsed.as_secs_f64();
     if clock == 0 || seconds <= 0.0 {
@@ -94,7 +95,7 @@ fn told(elapsed: Duration, clock: u64, total: u64) -> String {
     format!("{} left at {:.0} k clocks/s", clock_face(left), speed / 1e3)
 }
 
-/// `12 s`, `3 min 20 s`, `2 h 5 min`.
+/// Formats a duration: `12 s`, `3 min 20 s`, `2 h 5 min`.
 fn clock_face(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     match whole {
@@ -104,11 +105,11 @@ fn clock_face(seconds: f64) -> String {
     }
 }
 
-/// What is going on, where nobody knows how long it takes.
+/// A spinner with the current stage, for work of unknown length.
 pub struct Stages(ProgressBar);
 
 impl Stages {
-    /// Nothing yet.
+    /// A spinner without a stage.
     pub fn new() -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
         let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
@@ -117,7 +118,7 @@ impl Stages {
         Self(bar)
     }
 
-    /// This begins.
+    /// Displays the name of a stage that begins now.
     pub fn next(&mut self, what: &str) {
         self.0.set_message(what.to_owned());
         self.0.reset_elapsed();
@@ -135,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_left_is_reckoned_from_the_speed_of_the_run_itself() {
+    fn remaining_time_is_estimated_from_the_speed_of_this_run() {
         let told = |seconds, clock| told(Duration::from_secs(seconds), clock, 480_000_000);
         assert_eq!(told(10, 48_000_000), "1 min 30 s left at 4800 k clocks/s");
         assert_eq!(told(10, 480_000), "2 h 46 min left at 48 k clocks/s");

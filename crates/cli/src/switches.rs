@@ -1,8 +1,9 @@
-//! The switches of a virtual board: limits at positions, and whatever its user presses on standard input.
+//! The switches of a virtual board: limit switches at fixed positions, and switches that the user
+//! operates through standard input.
 //!
 //! ```text
-//! estop 1     pressed, 0 released; so `min x 1`, `max x 0`
-//! end         ends it, as Ctrl-C does
+//! estop 1     presses the e-stop, `estop 0` releases it; likewise `min x 1`, `max x 0`
+//! end         ends the board, as Ctrl-C does
 //! ```
 
 use crate::failure::Failure;
@@ -19,7 +20,7 @@ enum End {
     Max,
 }
 
-/// A limit switch at a position.
+/// A limit switch at a position, in steps.
 #[derive(Debug, Clone, Copy)]
 struct Limit {
     axis: usize,
@@ -27,29 +28,31 @@ struct Limit {
     steps: i32,
 }
 
-/// All of them.
+/// All switches of a board.
 #[derive(Debug)]
 pub struct Panel {
     limits: Vec<Limit>,
     axes: Vec<String>,
-    /// Pressed by hand.
+    /// The switches that the user has pressed.
     hand: Switches,
     wiring: Limits,
     lines: Receiver<String>,
 }
 
-/// What a look at the panel brings.
+/// The result of polling the panel.
 pub struct Look {
-    /// The switches.
+    /// The state of the inputs.
     pub switches: Switches,
-    /// The user has had enough.
+    /// True if the user wants to end the board.
     pub ends: bool,
-    /// Lines that mean nothing.
+    /// Lines that are no command.
     pub unknown: Vec<String>,
 }
 
 impl Panel {
-    /// The panel of a machine, with these limits, `AXIS=STEPS`.
+    /// The panel of a machine with the given limit switches, each `AXIS=STEPS`.
+    ///
+    /// # Errors An option is malformed, names no axis, or the machine has no inputs for limits.
     pub fn new(machine: &Machine, min: &[String], max: &[String]) -> Result<Self, Failure> {
         if machine.guard.limits == Limits::None && !(min.is_empty() && max.is_empty()) {
             return Err(Failure::input(
@@ -76,7 +79,7 @@ impl Panel {
         Ok(Self { limits, axes, hand: Switches::default(), wiring: machine.guard.limits, lines: lines() })
     }
 
-    /// The switches where the axes are at these positions.
+    /// Reads pending commands and returns the state of the inputs for these positions (steps).
     pub fn look(&mut self, position: impl Fn(usize) -> i32) -> Look {
         let (mut ends, mut unknown) = (false, Vec::new());
         while let Ok(line) = self.lines.try_recv() {
@@ -99,7 +102,7 @@ impl Panel {
         Look { switches: wired(switches, self.wiring), ends, unknown }
     }
 
-    /// Does what a line says; false where it says nothing.
+    /// Executes a line that presses or releases a switch. Returns false if it is no such line.
     fn press(&mut self, line: &str) -> bool {
         let words: Vec<&str> = line.split_whitespace().collect();
         let level = match words.last() {
@@ -122,7 +125,8 @@ impl Panel {
     }
 }
 
-/// The switches on the inputs of this wiring: where both ends share a wire, either of them closes it.
+/// The levels of the inputs in this wiring. If several switches share a wire, each of them closes
+/// it.
 fn wired(switches: Switches, wiring: Limits) -> Switches {
     let any = switches.limit_min | switches.limit_max;
     let limit_min = match wiring {
@@ -133,7 +137,7 @@ fn wired(switches: Switches, wiring: Limits) -> Switches {
     Switches { limit_min, limit_max: 0, ..switches }
 }
 
-/// Lines of standard input as they come; none after its end.
+/// The lines of standard input as they arrive; none after its end.
 fn lines() -> Receiver<String> {
     let (to, from) = channel();
     std::thread::spawn(move || {
@@ -151,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn switches_are_on_the_inputs_of_their_wiring() {
+    fn switches_drive_the_inputs_of_their_wiring() {
         let pressed = Switches { estop: true, limit_min: 0b0010, limit_max: 0b0100 };
         let wires = |wiring| {
             let Switches { estop, limit_min, limit_max } = wired(pressed, wiring);

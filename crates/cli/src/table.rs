@@ -1,5 +1,5 @@
-//! What a plan asks of each axis, beside what the machine allows. No plan exceeds a limit: it would
-//! have been refused.
+//! The table of a plan: the greatest speeds and accelerations of each axis beside the machine's
+//! limits. A plan never exceeds a limit, because the planner would have refused it.
 
 use carrystep_core::Segment;
 use carrystep_files::unit::digits;
@@ -18,9 +18,9 @@ pub struct Limits {
     pub total_s: f64,
     /// The tick, ns.
     pub tick_ns: u64,
-    /// How the tick was chosen, where the machine file gives none and the clock is not the default.
+    /// How the tick was chosen, if the machine file gives none and the clock is not the default.
     pub tick_note: Option<String>,
-    /// One entry an axis.
+    /// One entry per axis.
     pub axes: Vec<AxisLimits>,
 }
 
@@ -28,15 +28,15 @@ pub struct Limits {
 #[derive(Debug, JsonSchema, Serialize)]
 pub struct AxisLimits {
     pub axis: String,
-    /// What it is measured in.
+    /// The unit of the axis.
     pub unit: String,
-    /// Steps in one of these, as the nearest float.
+    /// Steps per unit, as the nearest float.
     pub steps_per_unit: f64,
-    /// Segments sent to it.
+    /// Number of segments of the axis.
     pub segments: usize,
-    /// Steps forward less steps back.
+    /// Steps forward minus steps backward.
     pub steps: i64,
-    /// P at the end less P at the start, in 2^-64 step: exactly 0.
+    /// P at the end minus P at the start, in 2^-64 step: exactly 0.
     pub residue: i128,
     pub speed_steps_per_s: f64,
     pub speed_limit_steps_per_s: f64,
@@ -46,7 +46,7 @@ pub struct AxisLimits {
     pub start_speed_limit_steps_per_s: f64,
 }
 
-/// Measures a plan against its machine.
+/// Measures a plan against the limits of its machine.
 pub fn limits(file: &MoveFile, plan: &Plan) -> Limits {
     let axes: Vec<AxisLimits> =
         file.machine.axes.iter().enumerate().map(|(i, axis)| axis_limits(i, axis, plan)).collect();
@@ -85,7 +85,7 @@ fn axis_limits(index: usize, axis: &Axis, plan: &Plan) -> AxisLimits {
     }
 }
 
-/// What a segment travels, in 2^-64 step, exactly.
+/// The exact distance of a segment, in 2^-64 step.
 fn distance(segment: &Segment) -> i128 {
     let n = i128::from(segment.ticks);
     let (v, a, j) = (i128::from(segment.v), i128::from(segment.a), i128::from(segment.j));
@@ -93,19 +93,19 @@ fn distance(segment: &Segment) -> i128 {
 }
 
 impl Limits {
-    /// Every axis ends exactly where it should, P included.
+    /// True if every axis ends exactly at its target, including P.
     pub fn landed(&self) -> bool {
         self.axes.iter().all(|axis| axis.residue == 0)
     }
 }
 
 impl AxisLimits {
-    /// Its unit, which shows lengths and speeds.
+    /// The unit in which lengths and speeds are displayed.
     fn unit(&self) -> Unit {
         Unit { name: self.unit.clone(), steps: self.steps_per_unit }
     }
 
-    /// What it does, in steps.
+    /// The row of the first table, in steps.
     fn in_steps(&self) -> [String; 7] {
         [
             self.axis.clone(),
@@ -118,10 +118,10 @@ impl AxisLimits {
         ]
     }
 
-    /// What it reaches of its limits, in its own unit.
+    /// The row of the second table: the reached values and the limits, in the axis' unit.
     fn in_units(&self) -> [String; 4] {
         let unit = self.unit();
-        // A start speed of one unit of V is none.
+        // A start speed of one unit of V is displayed as 0.
         let seen = |found: f64| if found < 1e-6 { 0.0 } else { found };
         let of = |found: f64, limit: f64, seconds| {
             format!("{} of {}", digits(seen(found / unit.steps)), unit.own(limit, seconds))
@@ -149,7 +149,8 @@ impl fmt::Display for Limits {
     }
 }
 
-/// Rows in columns as wide as their widest cell, two blanks apart, numbers to the right and what is `left` to the left.
+/// Writes rows in columns as wide as their widest cell, separated by two blanks. Columns for which
+/// `left` is true are aligned to the left, the others to the right.
 pub fn columns<const N: usize>(
     out: &mut impl fmt::Write,
     head: [&str; N],

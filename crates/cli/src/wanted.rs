@@ -1,11 +1,11 @@
-//! The files that a run is to write: all begun before it, so that a wrong path costs no time, and all
-//! kept after it.
+//! The output files of a run. All of them are begun before the run, so that a wrong path is
+//! detected at once, and they appear after it.
 
 use crate::failure::Failure;
 use crate::output::OutputFile;
 use std::path::PathBuf;
 
-/// What is asked for.
+/// The paths of the wanted files.
 #[derive(Debug, Default)]
 pub struct Wanted {
     pub vcd: Option<PathBuf>,
@@ -15,7 +15,7 @@ pub struct Wanted {
     pub plot: Option<PathBuf>,
 }
 
-/// The same, begun.
+/// The same files after they were begun.
 pub struct Files {
     pub vcd: Option<OutputFile>,
     pub fst: Option<OutputFile>,
@@ -25,7 +25,8 @@ pub struct Files {
 }
 
 impl Wanted {
-    /// Begins all files, or none where one of them is an input, another of them, or cannot be written.
+    /// Begins all files. If one of them is an input, equals another output or cannot be written,
+    /// none is begun.
     pub fn begin(&self) -> Result<Files, Failure> {
         let claim = |path: &Option<PathBuf>| path.as_deref().map(OutputFile::claim).transpose();
         let claims = [claim(&self.vcd)?, claim(&self.fst)?, claim(&self.save)?, claim(&self.csv)?, claim(&self.plot)?];
@@ -35,7 +36,7 @@ impl Wanted {
 }
 
 impl Files {
-    /// Lets all files appear, or none where one is not whole; their paths.
+    /// Lets all files appear and returns their paths. If one of them is incomplete, none appears.
     pub fn keep(self) -> Result<Vec<PathBuf>, Failure> {
         let mut files: Vec<OutputFile> =
             [self.vcd, self.fst, self.save, self.csv, self.plot].into_iter().flatten().collect();

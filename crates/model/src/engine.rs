@@ -1,5 +1,6 @@
-//! The engine as a description of what it does, not of how: six accumulators with queues, whose ticks
-//! take effect at the strobe, for all axes at once (docs/clock-by-clock.md, "engine").
+//! The engine, described by its behaviour rather than by its structure: up to eight accumulators
+//! with queues. The results of a tick take effect for all axes together at the strobe that ends it.
+//! The contract is the section "engine" of docs/clock-by-clock.md; change both together.
 //!
 //! ```text
 //! strobe      ^ n - 1        ^ n            ^ n + 1        ^
@@ -20,32 +21,33 @@ use guard::{Stop, Watch, freezes};
 use lane::{Lane, Look, Segment, Tick};
 use std::sync::Arc;
 
-/// The beat of a turn in which an axis that waits for its limit says its position.
+/// The beat of an axis' turn (its time slot of 13 clocks) in which the engine outputs the position
+/// of an axis that waits for its limit.
 const LATCH_BEAT: u32 = 6;
 
-/// The beat of a turn in which a limit's pin counts.
+/// The beat of a turn in which the limit pin is sampled.
 const LOOK_BEAT: u32 = 10;
 
-/// The engine's state; [`Engine::outputs`] and [`Engine::clock`] are its one clock cycle.
+/// The state of the engine. [`Engine::outputs`] and [`Engine::clock`] together are one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Engine {
     build: Arc<EngineBuild>,
-    /// Clock in the tick.
+    /// Number of the clock in the tick, from 0.
     clock: u32,
-    /// This is not the first tick: there are turns.
+    /// False in the first tick after configuration, which has no turns.
     turns: bool,
     armed: Option<u8>,
     stop: Stop,
     watch: Watch,
-    /// Whole ticks in which nothing ran or waited, up to 2.
+    /// Number of whole ticks, saturating at 2, in which no axis ran and no queue held a segment.
     rest: u32,
     lanes: Vec<Lane>,
-    /// What the limits' pins were in their turn.
+    /// The level of each axis' limit pin, as sampled in its last turn; true is active.
     pins: Vec<bool>,
 }
 
 impl Engine {
-    /// The engine as it is configured.
+    /// The engine at configuration.
     pub fn new(build: &EngineBuild) -> Self {
         let lane = |(pins, stop): (_, &u64)| {
             Lane::new(build.phase.start_value(), *stop, shaper::State::at_configuration(pins))
@@ -63,17 +65,17 @@ impl Engine {
         }
     }
 
-    /// P of an axis.
+    /// P of an axis, in 2^-64 step. Panics if the axis does not exist.
     pub fn fraction(&self, axis: usize) -> u64 {
         self.lanes[axis].p
     }
 
-    /// The registers of one shaper.
+    /// The registers of an axis' step shaper. Panics if the axis does not exist.
     pub fn shaper(&self, axis: usize) -> &shaper::State {
         &self.lanes[axis].shaper
     }
 
-    /// The outputs in this cycle, given its inputs.
+    /// The outputs in this cycle for these inputs.
     pub fn outputs(&self, inputs: &EngineInputs) -> EngineOutputs {
         let free = self.stop.fault.is_none();
         let (strobe, guard) = (self.strobe(), &self.build.guard);
@@ -96,13 +98,13 @@ impl Engine {
         }
     }
 
-    /// Goes to the next cycle.
+    /// Advances by one cycle.
     pub fn clock(&mut self, inputs: &EngineInputs) {
         let outputs = self.outputs(inputs);
         let (strobe, before) = (self.strobe(), self.stop);
         let build = Arc::clone(&self.build);
         let guard = &build.guard;
-        // Causes are called in the order in which they count.
+        // The order of these calls is the priority of the causes: the first one is latched.
         let mut stop = before;
         let busy = self.pins_busy();
         let late = self.shape();
@@ -155,7 +157,8 @@ impl Engine {
         self.lanes.iter().any(|lane| lane.shaper.owed.is_some() || lane.shaper.step)
     }
 
-    /// One clock of all shapers; the axes that owe a second step.
+    /// Executes one clock of all shapers; returns the axes for which a second step arrived while
+    /// one was held back, one bit each.
     fn shape(&mut self) -> u8 {
         let per_phase = self.build.timebase.clocks_per_phase();
         let (phase, sub) = (self.clock / per_phase, self.clock % per_phase);
@@ -167,12 +170,14 @@ impl Engine {
         bits(&self.lanes, |lane| lane.shaper.overrun)
     }
 
-    /// A word is taken in its axis' turn, unless the queue is full; for an axis that does not exist, at once.
+    /// True if a word for this axis is accepted in this clock. The axis accepts it in its turn if
+    /// its queue has room. A word for an axis that does not exist is accepted at once (and is a
+    /// protocol fault).
     fn takes(&self, axis: usize) -> bool {
         self.lanes.get(axis).is_none_or(|lane| self.turn_at(PUT_BEAT) == Some(axis) && lane.room() > 0)
     }
 
-    /// The axis whose turn it is, where this is that beat of it.
+    /// The axis whose turn it is, if this clock is the given beat of the turn.
     fn turn_at(&self, beat: u32) -> Option<usize> {
         let axis = (self.clock / TURN) as usize;
         (self.turns && self.clock % TURN == beat && axis < self.lanes.len()).then_some(axis)
@@ -188,7 +193,7 @@ impl Engine {
         }
     }
 
-    /// Keeps the pin of the axis whose turn it is.
+    /// Samples the limit pin of the axis whose turn it is.
     fn look(&mut self, inputs: &EngineInputs) {
         let (axis, beat) = ((self.clock / TURN) as usize, self.clock % TURN);
         if axis < self.lanes.len() && beat == LOOK_BEAT {
@@ -196,7 +201,7 @@ impl Engine {
         }
     }
 
-    /// The limit's pin that an axis sees in this tick of the round; true is active.
+    /// The limit input that an axis samples in this tick of the round; true is active.
     fn pin(&self, inputs: &EngineInputs, axis: usize, tick_of_round: u32) -> bool {
         let guard = &self.build.guard;
         let pins = if tick_of_round == 1 { inputs.limit_max } else { inputs.limit_min };
@@ -213,14 +218,14 @@ impl Engine {
         }
     }
 
-    /// How an axis looks at its limits in this tick, if it does.
+    /// The limit input that an axis evaluates in this tick, if it evaluates one.
     fn look_of(&self, axis: usize) -> Option<Look> {
         let max = self.watch.tick_of_round == 1 && self.build.guard.limits == Limits::Pair;
         let looks = self.turns && (self.watch.tick_of_round == 0 || max);
         looks.then_some(Look { max, pin: self.pins[axis] })
     }
 
-    /// At the end of its turn an axis that waits for its limit may meet it.
+    /// In the last beat of its turn, an axis that waits for its limit may find it active.
     fn meet(&mut self) {
         let Some(axis) = self.turn_at(TURN - 1).filter(|axis| self.lanes[*axis].homing.waits) else { return };
         if self.look_of(axis).is_some_and(|look| self.lanes[axis].hits(self.tick(), look)) {
@@ -229,7 +234,7 @@ impl Engine {
         }
     }
 
-    /// The axes after this tick, and the causes that they find, the first axis first.
+    /// The axes after this tick, and the causes of stops that they found, in the order of the axes.
     fn ticked(&self) -> (Vec<Lane>, Vec<(Cause, usize)>) {
         let tick = self.tick();
         let mut found = Vec::new();
@@ -241,11 +246,11 @@ impl Engine {
         (lanes.collect(), found)
     }
 
-    /// What becomes of the armed start at this strobe.
+    /// Decides at this strobe about the armed start.
     fn decision(&self, (ticked, found): &(Vec<Lane>, Vec<(Cause, usize)>)) -> Decision {
         let free = self.stop.fault.is_none() && found.is_empty();
         let Some(mask) = self.armed.filter(|_| free) else { return Decision::Wait };
-        // What counts is what waited before this tick.
+        // A start needs a segment that was in the queue before this tick.
         if mask & bits(&self.lanes, |lane| lane.queue.is_empty()) != 0 {
             Decision::Unfed
         } else if mask & (bits(ticked, |lane| lane.running.is_some()) | bits(&self.lanes, |lane| lane.homing.slows))
@@ -257,7 +262,8 @@ impl Engine {
         }
     }
 
-    /// The strobe: everything that the tick has brought takes effect. The stop that is under way then.
+    /// Executes the strobe: commits the results of the tick, and returns the state of the stop
+    /// after it.
     fn end_tick(&mut self, inputs: &EngineInputs, outputs: &EngineOutputs, mut stop: Stop, busy: bool) -> Stop {
         let before = self.stop;
         let build = Arc::clone(&self.build);
@@ -309,11 +315,11 @@ impl Engine {
     }
 }
 
-/// What becomes of an armed start.
+/// The decision about an armed start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Decision {
     Wait,
-    /// A masked axis has nothing waiting.
+    /// A masked axis has no segment in its queue: a protocol fault.
     Unfed,
     Go(u8),
 }

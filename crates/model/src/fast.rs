@@ -1,16 +1,22 @@
-//! Both cores without visiting every clock: the same states, outputs and faults as [`SixAxis`] and
-//! [`Engine`](crate::Engine), exactly.
+//! Both cores without visiting every clock. States, outputs and faults are exactly those of
+//! [`SixAxis`] and [`Engine`](crate::Engine); only the way to compute them may change here.
 //!
-//! Between two loads an axis is a cubic with integer coefficients, so a *window* of clocks in which
-//! nothing but STEP, DIR and positions can change is passed at once, axis by axis. Within it each stretch
-//! of V's constant sign is searched for the ticks that step: from edge to edge by a root, guessed in
-//! floating point and put right in integers, where edges are far apart; by adding tick after tick
-//! where more than one in [a few ticks](crossings) is expected, because an addition a tick is then cheaper
-//! than a root an edge. What is taken several at a time by the processor is the edges of one axis, in jumps and in
-//! phases, not the axes: side by side they do not tick faster (docs/decisions/0024). The shaper goes from request
-//! to request while it is calm. Whatever is not plain (a load, a start, a fault, a frozen core, an owed step) is
-//! left to the clock-by-clock code itself: a window ends before it. A window in which a fault turns up is taken
-//! back and passed again up to the fault.
+//! Between two loads of a segment, the position of an axis is a cubic with integer coefficients. A
+//! *window* is a run of clocks in which nothing but STEP, DIR and the positions can change. The
+//! fast model passes a window at once, axis by axis:
+//!
+//! - It divides the window into stretches in which V keeps its sign, and finds the ticks of each
+//!   stretch that step. Where edges are far apart, it jumps from edge to edge: it guesses each root
+//!   in floating point and corrects it in integers.
+//! - Where it expects more than one edge in [a few ticks](crossings), it adds tick by tick, because
+//!   one addition per tick is then cheaper than one root per edge.
+//! - Vector instructions work on several edges of one axis, both in jumps and in phases. Running
+//!   the axes side by side was not faster (docs/decisions/0024).
+//! - The shaper goes from request to request while nothing is held back.
+//!
+//! All other events (a load, a start, a fault, a frozen core, a held-back step) are executed by the
+//! clock-by-clock code; a window ends before them. If a fault occurs in a window, the window is
+//! undone and passed again up to the fault.
 
 mod crossings;
 mod cubic;
@@ -30,7 +36,7 @@ use carrystep_core::Build;
 use carrystep_core::ports::{Inputs, Outputs};
 use passage::Passages;
 
-/// The parallel core, and the clock cycle that it is in.
+/// The parallel core, and the number of the clock cycle that it is in.
 #[derive(Debug, Clone)]
 pub struct Fast {
     core: SixAxis,
@@ -39,27 +45,27 @@ pub struct Fast {
 }
 
 impl Fast {
-    /// The core as it is configured, in cycle 0.
+    /// The core at configuration, in cycle 0.
     pub fn new(build: &Build) -> Self {
         Self { core: SixAxis::new(build), cycle: 0, passages: Passages::default() }
     }
 
-    /// Its registers.
+    /// The registers of the core.
     pub fn core(&self) -> &SixAxis {
         &self.core
     }
 
-    /// The cycle it is in.
+    /// The number of the current cycle, from 0.
     pub fn cycle(&self) -> u64 {
         self.cycle
     }
 
-    /// The outputs in this cycle, given its inputs.
+    /// The outputs in this cycle for these inputs.
     pub fn outputs(&self, inputs: &Inputs) -> Outputs {
         self.core.outputs(inputs)
     }
 
-    /// Goes to the next cycle.
+    /// Advances by one cycle and reports the edges on the pins to `to`.
     pub fn clock(&mut self, inputs: &Inputs, to: &mut impl Edges) {
         let before = self.core.lanes.map(|lane| lane.shaper);
         self.core.clock(inputs);
@@ -69,8 +75,9 @@ impl Fast {
         }
     }
 
-    /// Passes as many cycles as it can, `most` at the most, in which nothing but STEP, DIR and positions
-    /// changes while the inputs stay; how many they were. After 0 the next cycle needs [`Fast::clock`].
+    /// Skips as many cycles as possible, up to `most`, and returns how many they were. In these
+    /// cycles nothing changes but STEP, DIR and the positions, provided that the inputs stay the
+    /// same. If the result is 0, the caller must execute the next cycle with [`Fast::clock`].
     pub fn leap(&mut self, inputs: &Inputs, most: u64, to: &mut impl Edges) -> u64 {
         let mut clocks = most;
         if !self.core.is_still(inputs) {
@@ -87,7 +94,7 @@ impl Fast {
         clocks
     }
 
-    /// Cycles before the strobe that ends the first segment.
+    /// Cycles before the strobe that ends the first of the running segments.
     fn clocks_to_load(&self) -> u64 {
         let left =
             |lane: &crate::parallel::six_axis::Lane| lane.axis.running.then_some(lane.axis.left.saturating_sub(1));

@@ -1,9 +1,14 @@
-//! The gateware as integer functions: `state, input -> state, output`, tick by tick for the
-//! accumulator, clock by clock for the pins and the host link.
+//! The executable model of the gateware in integer arithmetic. Each part is a pure function from
+//! state and inputs to the next state and outputs: one call is one tick for the accumulator, and
+//! one clock for the step shaper, the cores and the host link.
 //!
-//! Written from docs/clock-by-clock.md and from nothing of `crates/hdl`: the two are strangers, so
-//! that their agreement proves something (docs/decisions/0004). Start with
-//! [`parallel::axis::tick`]: it is the whole idea.
+//! The model is written from docs/clock-by-clock.md and uses nothing of `crates/hdl`. The two
+//! implementations share no code, so their agreement is evidence that both are right
+//! (docs/decisions/0004). [`parallel::axis::tick`] is the central function and the best place to start
+//! reading.
+//!
+//! Any change of behaviour here must be made in docs/clock-by-clock.md and in `crates/hdl` as well;
+//! the tests compare them in every clock.
 
 pub mod engine;
 pub mod fast;

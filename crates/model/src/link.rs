@@ -1,4 +1,6 @@
-//! The gateware's end of the host link, clock by clock: a machine with a program between a UART and the engine.
+//! The host link in the gateware, clock by clock: a small processor with a fixed program between a
+//! UART or SPI line and the engine. It must stay equal to docs/link.md and to `crates/hdl` in every
+//! clock.
 //!
 //! ```text
 //!          .---------. bytes  .---------. put, start, home, control
@@ -10,7 +12,7 @@
 //!                                                '-------'
 //! ```
 //!
-//! What the machine's instructions mean is in `carrystep_core::link::machine`, what they do in its `image()`.
+//! The instruction set is defined in `carrystep_core::link::machine`; the program is its `image()`.
 
 mod check;
 mod facts;
@@ -26,10 +28,10 @@ use facts::Facts;
 use line::End;
 use machine::{Inputs, Machine, Waits};
 
-/// The link's state; [`Link::outputs`] and [`Link::clock`] are its one clock cycle.
+/// The state of the link. [`Link::outputs`] and [`Link::clock`] together are one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Link {
-    /// The axes that there are, a bit each.
+    /// Mask of the axes that exist, one bit per axis.
     axes: u8,
     line: End,
     machine: Machine,
@@ -37,7 +39,7 @@ pub struct Link {
 }
 
 impl Link {
-    /// The link of this build over this line, as it is configured.
+    /// The link of this build over this line, at configuration.
     pub fn new(build: &EngineBuild, line: impl Into<Line>) -> Self {
         let line = line.into();
         Self {
@@ -48,7 +50,7 @@ impl Link {
         }
     }
 
-    /// The outputs in this clock: all of them come from registers.
+    /// The outputs in this clock. All of them come from registers.
     pub fn outputs(&self) -> LinkOutputs {
         let machine = self.machine.outputs();
         let (get_axis, get_item) = self.facts.asks();
@@ -69,12 +71,12 @@ impl Link {
         LinkOutputs { tx: self.line.level(), engine, get_axis, get_item }
     }
 
-    /// The line to the host in this clock.
+    /// The level of the line to the host (TX or MISO) in this clock.
     pub const fn tx(&self) -> bool {
         self.line.level()
     }
 
-    /// Goes to the next clock.
+    /// Advances by one clock.
     pub fn clock(&mut self, inputs: &LinkInputs) {
         let machine = self.machine.outputs();
         let taken = self.line.takes(machine.goes);
@@ -89,8 +91,9 @@ impl Link {
         self.line.clock(inputs, taken.then_some(machine.a));
     }
 
-    /// For so many clocks nothing happens in here, whatever the engine says, while the line from the host stays at
-    /// `rx`: the machine waits for a byte or to send one, and no bit is due. 0 where something happens in this clock.
+    /// Returns the number of clocks in which nothing happens in the link, whatever the engine
+    /// outputs, provided that the line from the host stays at `rx`: the processor waits for a byte
+    /// or for the transmitter, and no bit is due. Returns 0 if something happens in this clock.
     pub fn quiet(&self, rx: bool) -> u64 {
         let waits = self.machine.waits();
         if waits == Waits::No {
@@ -99,29 +102,32 @@ impl Link {
         self.line.quiet(rx, waits == Waits::ToSend)
     }
 
-    /// Nothing that the engine says matters to this clock, and nothing is told to it but what it is told already.
+    /// True if this clock does not depend on the engine's outputs and the link's outputs to the
+    /// engine stay the same.
     pub fn is_alone(&self) -> bool {
         !self.machine.minds_the_engine()
     }
 
-    /// Goes to the next clock, alone.
+    /// Advances by one clock with default inputs from the engine; valid while [`Link::is_alone`].
     pub fn clock_alone(&mut self, rx: bool, spi: [bool; 2]) {
         self.clock(&LinkInputs { rx, spi, ..LinkInputs::default() });
     }
 
-    /// So many clocks of [`Link::quiet`] have passed.
+    /// Skips `clocks` clocks, at most [`Link::quiet`], with the line from the host at `rx`.
     pub fn pass(&mut self, clocks: u64, rx: bool) {
         self.machine.pass(clocks);
         self.line.pass(clocks, rx);
     }
 
-    /// Meanwhile the engine has had so many turns of axes; `said` is what it says of an axis and an item. Before anything
-    /// of it is read, the program waits until it has been asked for anew.
+    /// Updates the memory of facts after `turns` time slots of axes that were skipped; `said`
+    /// returns the engine's current answer for an axis and an item. The order in time does not
+    /// matter: the program waits for a complete new scan before it reads any of these words.
     pub fn catch_up(&mut self, turns: u64, said: impl Fn(u8, u8) -> u32) {
         self.facts.pass(turns, said);
     }
 
-    /// Meanwhile the engine has said where an axis is that waits for its limit.
+    /// Stores the latched position (in steps) that the engine output in a skipped clock for an axis
+    /// that waits for its limit.
     pub fn latch(&mut self, axis: u8, position: u32) {
         self.facts.latch(axis, position);
     }

@@ -1,6 +1,7 @@
-//! No text at all makes reading or planning a move file panic, hang, or refuse without a word.
+//! Whatever the text of a move file is, reading and planning it neither panics nor hangs, and a
+//! refusal has a message.
 
-#![allow(clippy::unwrap_used)] // a test may panic
+#![allow(clippy::unwrap_used)] // Tests may panic.
 
 use carrystep_files::{MoveFile, Source};
 use carrystep_plan::plan;
@@ -21,7 +22,7 @@ fn good() -> String {
         &format!("{GUARD}[[machine.axis]]\nstop_accel = 5e3"),
         1,
     );
-    // One axis in the words of its mechanics.
+    // One axis is described by its mechanics.
     let screw = "lead = 8\nsteps_per_rev = 200\nmicrosteps = 16\nstart_speed_per_min = 0";
     let machine = machine.replacen("steps_per_unit = 400", screw, 1);
     let machine = machine.replacen("speed_limit = 30\n", "speed_limit_per_min = 1_800\n", 1);
@@ -30,7 +31,7 @@ fn good() -> String {
     lines.map(|line| line.split('#').next().unwrap_or("")).collect::<Vec<_>>().join("\n")
 }
 
-/// What a hand, a bad disk or a careless program does to a file.
+/// A change of a file as made by a user, a bad disk or a faulty program.
 #[derive(Debug, Clone)]
 enum Mutation {
     Byte(Index, u8),
@@ -42,7 +43,7 @@ enum Mutation {
     DropLine(Index),
 }
 
-/// A number of any kind that a file can hold, in place of another.
+/// Replaces a number by any kind of number that a file can hold.
 fn number() -> impl Strategy<Value = Mutation> {
     const EXTREMES: [&str; 18] = [
         "nan",
@@ -104,7 +105,7 @@ fn mutation() -> impl Strategy<Value = Mutation> {
     ]
 }
 
-/// Where the pieces of a text are that hold only such characters.
+/// The ranges of a text that consist only of such characters.
 fn pieces(text: &str, of: impl Fn(char) -> bool) -> Vec<(usize, usize)> {
     let mut found = Vec::new();
     let mut from = None;
@@ -170,7 +171,7 @@ impl Mutation {
     }
 }
 
-/// Reads and plans a text, within a second; what is said about it.
+/// Reads and plans a text within a second; returns the result as a message.
 fn read_and_plan(text: &str) -> Result<String, TestCaseError> {
     let started = Instant::now();
     let source = Source { path: "mutated.toml".into(), text: text.into() };
@@ -195,7 +196,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(5_000))]
 
     #[test]
-    fn a_mutated_move_file_is_planned_or_refused_in_words(mutations in vec(mutation(), 1..6)) {
+    fn mutated_move_file_is_planned_or_refused_with_a_message(mutations in vec(mutation(), 1..6)) {
         let text = mutations.into_iter().fold(good(), |text, mutation| mutation.apply(&text));
         prop_assert!(!read_and_plan(&text)?.is_empty());
     }

@@ -1,11 +1,11 @@
-//! What a board is told and shows on its pins, all of them but the oscillator's.
+//! Records the inputs and outputs of a board's pins, except the oscillator.
 
 use carrystep_boards::Board;
 use carrystep_core::AXES;
 use carrystep_core::engine::{EngineInputs, EngineOutputs};
 use carrystep_simulators::vectors::{Bits, Vectors};
 
-/// Cycles from the lock to the first edge of the late clock (docs/decisions/0033).
+/// Cycles from the lock of the PLL to the first edge of the gated clock (docs/decisions/0033).
 const LATE: u64 = 1026;
 
 const MASK: u32 = AXES as u32;
@@ -13,16 +13,16 @@ const MASK: u32 = AXES as u32;
 const INPUTS: &[(&str, u32)] = &[("uart_rx", 1), ("estop", 1), ("limit_min", MASK)];
 const OUTPUTS: &[(&str, u32)] = &[("uart_tx", 1), ("enable_n", 1), ("step", MASK), ("dir", MASK)];
 
-/// The pins of a board with one limit switch an axis.
+/// The pins of a board with one limit switch per axis.
 #[derive(Debug)]
 pub struct BoardPins {
     board: &'static Board,
-    /// From the lock on, in cycles of the oscillator.
+    /// Levels from the lock on, in cycles of the oscillator.
     pub vectors: Vectors,
 }
 
 impl BoardPins {
-    /// The clock was not let through yet.
+    /// The recording up to the first edge of the gated clock.
     pub fn new(board: &'static Board) -> Self {
         let mut vectors = Vectors::new(INPUTS, OUTPUTS);
         vectors.clock = "oscillator";
@@ -36,7 +36,7 @@ impl BoardPins {
         pins
     }
 
-    /// One more cycle.
+    /// Adds one cycle.
     pub(super) fn add(&mut self, rx: bool, pins: &EngineInputs, tx: bool, shown: &EngineOutputs) {
         let told = Bits::default().and(1, u64::from(rx)).and(1, u64::from(pins.estop));
         let mut showed = Bits::default()
@@ -45,7 +45,7 @@ impl BoardPins {
             .and(MASK, u64::from(shown.step))
             .and(MASK, u64::from(shown.dir));
         if self.board.bits("led") > 0 {
-            // Lit where no stop has been called.
+            // The LED is lit while no stop has been called.
             showed = showed.and(1, u64::from(shown.fault.is_none() != self.board.led_low));
         }
         let showed = self.board.ties.iter().fold(showed, |showed, tie| showed.and(1, u64::from(tie.level)));

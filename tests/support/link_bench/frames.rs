@@ -1,9 +1,9 @@
-//! Requests and answers, written from docs/protocol.md and from nothing of the clients.
+//! Requests and answers, written from docs/protocol.md and independent of the clients.
 
 use carrystep_core::engine::{CAUSES, Cause};
 use carrystep_core::link::{END, ESC, ESC_END, ESC_ESC};
 
-/// A whole request.
+/// A complete request with its CRC.
 pub fn frame(sequence: u8, address: u8, words: &[u32]) -> Vec<u8> {
     let head = [sequence, address];
     let words = words.iter().flat_map(|word| word.to_le_bytes());
@@ -22,7 +22,7 @@ pub fn on_the_line(frame: &[u8]) -> Vec<u8> {
     std::iter::once(END).chain(escaped).chain([END]).collect()
 }
 
-/// A frame without its escapes and its CRC, which is right.
+/// A frame without its escapes and its CRC; `None` if the CRC or an escape is wrong.
 pub fn unframe(line: &[u8]) -> Option<Vec<u8>> {
     let mut frame = Vec::new();
     let mut bytes = line.iter();
@@ -41,13 +41,13 @@ pub fn unframe(line: &[u8]) -> Option<Vec<u8>> {
     (crc(&frame).to_le_bytes()[..] == sum).then_some(frame)
 }
 
-/// CRC-32 bit by bit.
+/// The CRC-32, computed bit by bit.
 fn crc(bytes: &[u8]) -> u32 {
     let shift = |sum: u32| sum >> 1 ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 };
     !bytes.iter().fold(u32::MAX, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), |sum, _| shift(sum)))
 }
 
-/// An answer, its fields apart: written from the page, not from the table.
+/// An answer, divided into its fields according to the page and independent of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs, reason = "docs/protocol.md, \"The answer\"")]
 pub struct Said {
@@ -67,7 +67,7 @@ pub struct Said {
 }
 
 impl Said {
-    /// The answer in this frame without its CRC.
+    /// Decodes a frame without its CRC.
     pub fn of(frame: &[u8]) -> Self {
         let &[sequence, address, next, state, room, culprits, homing, a, b, c, d] = frame else {
             panic!("{frame:02x?} is not as long as an answer")

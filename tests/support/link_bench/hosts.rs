@@ -6,9 +6,9 @@ use std::collections::VecDeque;
 /// The host's transmitter.
 pub(super) struct Sender {
     bit_clocks: u32,
-    /// Bits of the present byte, the next one lowest: start, eight, stop.
+    /// Bits of the present byte, least significant first: start bit, eight data bits, stop bit.
     bits: u32,
-    /// Clocks that they take yet.
+    /// Clocks that they still take.
     pub(super) left: u32,
 }
 
@@ -17,7 +17,7 @@ impl Sender {
         Self { bit_clocks, bits: 0, left: 0 }
     }
 
-    /// The line in this cycle.
+    /// The level of the line in this cycle.
     pub(super) fn clock(&mut self, bytes: &mut VecDeque<u8>) -> bool {
         if self.left == 0 {
             let Some(byte) = bytes.pop_front() else { return true };
@@ -33,10 +33,10 @@ impl Sender {
     }
 }
 
-/// The host's receiver: looks at the middle of each bit.
+/// The host's receiver, which samples the middle of each bit.
 pub(super) struct Receiver {
     bit_clocks: u32,
-    /// Clocks since the start bit began.
+    /// Clocks since the beginning of the start bit.
     since: Option<u32>,
     bits: u32,
 }
@@ -46,7 +46,7 @@ impl Receiver {
         Self { bit_clocks, since: None, bits: 0 }
     }
 
-    /// One cycle of the line; a byte that is whole with it.
+    /// Samples one cycle of the line and returns the byte that is complete with it.
     pub(super) fn clock(&mut self, line: bool) -> Option<u8> {
         let since = match self.since {
             None if line => return None,
@@ -66,9 +66,10 @@ impl Receiver {
     }
 }
 
-/// A host that speaks SPI all the time, mode 0: END where it has nothing to say. It lets go of select behind each seventh byte.
+/// A host that uses SPI mode 0 without pause and sends END while it has no data. It deasserts
+/// select after every seventh byte.
 pub(super) struct SpiHost {
-    /// Half a period of SCK, and when its next edge is, in tenths of a clock from now.
+    /// Half a period of SCK, and the time to its next edge, both in tenths of a clock.
     half: u32,
     due: u32,
     pub(super) sends: Option<u8>,
@@ -85,13 +86,13 @@ impl SpiHost {
         Self { half, due: 0, sends: None, bit: 0, bytes: 0, rest: 0, sck: false, rises: false, comes: 0 }
     }
 
-    /// SCK, select (low), MOSI.
+    /// SCK, select (active low) and MOSI.
     pub(super) fn pins(&self) -> [bool; 3] {
         let mosi = self.sends.is_some_and(|byte| byte << self.bit >> 7 == 1);
         [self.sck, self.sends.is_none(), mosi]
     }
 
-    /// What the pins are in this cycle.
+    /// Updates the pins for this cycle.
     pub(super) fn clock(&mut self, bytes: &mut VecDeque<u8>) {
         self.rises = false;
         if self.rest > 0 {
@@ -121,7 +122,7 @@ impl SpiHost {
         }
     }
 
-    /// Looks at MISO as SCK rises; a byte that is whole with it.
+    /// Samples MISO at the rising edge of SCK and returns the byte that is complete with it.
     pub(super) fn look(&mut self, miso: bool) -> Option<u8> {
         if !self.rises {
             return None;

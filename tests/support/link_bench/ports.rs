@@ -1,4 +1,4 @@
-//! The ports of link and line as the replay on their Verilog has them.
+//! The ports of link and line as the replay on their Verilog names them.
 
 use carrystep_core::AXES;
 use carrystep_core::link::{LinkInputs, LinkOutputs};
@@ -54,17 +54,17 @@ const SPI_INPUTS: &[(&str, u32)] = &[("sck", 1), ("select_n", 1), ("mosi", 1), (
 const UART_OUTPUTS: &[(&str, u32)] = &[("received_valid", 1), ("received", 8), ("answer_take", 1), ("tx", 1)];
 const SPI_OUTPUTS: &[(&str, u32)] = &[("received_valid", 1), ("received", 8), ("answer_take", 1), ("miso", 1)];
 
-/// No cycles of a link yet.
+/// An empty recording of a link.
 pub const fn link() -> Vectors {
     Vectors::new(LINK_INPUTS, LINK_OUTPUTS)
 }
 
-/// No cycles of a UART yet.
+/// An empty recording of a UART.
 pub const fn uart() -> Vectors {
     Vectors::new(UART_INPUTS, UART_OUTPUTS)
 }
 
-/// No cycles of an SPI yet.
+/// An empty recording of an SPI.
 pub const fn spi() -> Vectors {
     Vectors::new(SPI_INPUTS, SPI_OUTPUTS)
 }

@@ -1,5 +1,6 @@
-//! Mutants of Verilog, by yosys' `mutate`: named by what is wrong and the line where, drawn evenly over the lines,
-//! and all put into one text with an input that chooses.
+//! Draws mutants of Verilog with yosys' `mutate`. Each is named after its change and its source
+//! line. They are drawn evenly over the lines, and all of them are put into one Verilog text with
+//! an input that selects one.
 
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
@@ -7,50 +8,54 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
-/// Which mutants are drawn, and on which other bit a conditional one depends.
+/// The seed for the drawing, and for the other bit on which a conditional mutant depends.
 const SEED: u32 = 2009;
 
-/// To what mutants are made of: no constants, no gates that do nothing, memories as they are.
+/// The yosys commands before mutation. They remove constants and gates without effect, so that no
+/// mutant changes only those, and keep memories whole.
 const PREPARE: &str = "proc; opt -full; memory -nomap; opt -full; wreduce; opt -full";
 
-/// Away with names that no gate needs: mutants are drawn without them, promises look at some.
+/// Removes names that no gate needs. Mutants are drawn without them, but promises look at some of
+/// them.
 const PURGE: &str = "opt_clean -purge";
 
-/// Wires that are not logic.
+/// Wires that are clocks and therefore not mutated.
 const CLOCKS: [&str; 4] = ["clock", "CLK", "RD_CLK", "WR_CLK"];
 
 /// One change of the netlist.
 pub struct Mutant {
-    /// What is wrong, and the line of Verilog.
+    /// The change, and the line of Verilog.
     pub name: String,
-    /// Where it is, without `carrystep_`.
+    /// Its module, without the prefix `carrystep_`.
     pub module: String,
-    /// What yosys is told to make it.
+    /// The yosys command that makes the mutant.
     pub(super) command: String,
 }
 
-/// A sample, and the Verilog of them all: `+mutant=N` chooses one by its place, from 1; without it there is none.
+/// A sample of mutants, and one Verilog text with all of them: `+mutant=N` selects one by its
+/// number from 1; without it, none is active.
 pub struct Sample {
-    /// The mutants, those first that a shorter sample has too.
+    /// The mutants. Those that a shorter sample also contains come first.
     pub mutants: Vec<Mutant>,
-    /// The text.
+    /// The Verilog text.
     pub verilog: String,
-    /// The engine without a mutant, as yosys keeps it (RTLIL): what a mutant is made of, and compared with.
+    /// The engine without a mutant in yosys' format (RTLIL). Mutants are made from it and compared
+    /// with it.
     pub(super) netlist: String,
 }
 
-/// Draws so many mutants.
+/// Draws `count` mutants.
 ///
-/// Every line of the source has its turn before a line has its second; which comes first is a hash of its name. So a
-/// change of one line leaves nearly all other mutants in the sample.
+/// Every source line is used once before any line is used a second time. A hash of the mutant's
+/// name determines the order, so a change of one source line leaves nearly all other mutants in the
+/// sample.
 ///
-/// # Panics
-/// Where yosys is missing or fails.
+/// # Panics If yosys is missing or fails.
 pub fn sample(verilog: &str, top: &str, count: usize) -> Sample {
     let folder = tempfile::tempdir().expect("a folder");
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("what yosys has written");
     std::fs::write(folder.path().join("core.v"), verilog).expect("a file");
-    // More than there are: all.
+    // The number is greater than that of all mutants, so yosys lists all of them.
     let list = format!("mutate -list 1000000 -seed {SEED} -o list");
     yosys(
         folder.path(),
@@ -70,10 +75,9 @@ pub fn sample(verilog: &str, top: &str, count: usize) -> Sample {
 }
 
 impl Sample {
-    /// The Verilog of one mutant by itself; without one, of the engine as it was taken apart.
+    /// The Verilog with a single mutant, or of the engine without a mutant.
     ///
-    /// # Panics
-    /// Where yosys is missing or fails.
+    /// # Panics If yosys is missing or fails.
     pub fn alone(&self, mutant: Option<&Mutant>) -> String {
         let folder = tempfile::tempdir().expect("a folder");
         std::fs::write(folder.path().join("core.il"), &self.netlist).expect("a file");
@@ -85,7 +89,8 @@ impl Sample {
     }
 }
 
-/// The input that chooses is a variable that is set once: as a port, Verilator would look at it in every clock.
+/// The selecting input is replaced by a variable that is set once. As a port, Verilator would
+/// evaluate it in every clock.
 fn with_choice(verilog: &str, top: &str, width: u32) -> String {
     let (wire, top) = (format!("wire [{}:0] mutant;", width - 1), format!("module {top}("));
     let (before, top_module) = verilog.split_at(verilog.find(&top).expect("the top module"));
@@ -103,10 +108,10 @@ pub(super) fn yosys(folder: &Path, script: &str) {
     assert!(output.status.success(), "yosys: {}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// A mutant and the place that it stands in: module and line.
+/// A mutant and its place, which is a module and a line.
 type Candidate = (Mutant, String);
 
-/// Every mutant that yosys knows.
+/// All mutants that yosys can make.
 fn candidates(list: &str, verilog: &str) -> Vec<Candidate> {
     let lines: Vec<&str> = verilog.lines().collect();
     let mut seen: HashMap<String, u32> = HashMap::new();
@@ -141,12 +146,12 @@ fn candidates(list: &str, verilog: &str) -> Vec<Candidate> {
     mutants.collect()
 }
 
-/// What a cell is: of its name, the part that does not count cells or lines.
+/// The type of a cell, taken from its name without the number and the line.
 fn kind(cell: &str) -> &str {
     cell.strip_prefix('$').and_then(|name| name.split('$').next()).unwrap_or(cell)
 }
 
-/// The first of each place, then the second of each, ...
+/// Draws the first mutant of each place, then the second of each, and so on.
 fn draw(candidates: Vec<Candidate>, count: usize) -> Vec<Mutant> {
     let mut ranked: Vec<_> =
         candidates.into_iter().map(|(mutant, place)| (hash(&mutant.name), mutant, place)).collect();

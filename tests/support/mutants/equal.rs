@@ -1,10 +1,13 @@
-//! Proofs that a mutant is the engine: from configuration on, for any inputs, without bound, by yosys and yosys-abc.
+//! Proves by yosys and yosys-abc that a mutant equals the engine: from configuration on, for any
+//! inputs, without bound.
 //!
-//! The mutant and what it was made of stand side by side, with the same inputs; all outputs are compared. `scorr` merges
-//! what is equal by induction, `pdr` finds what keeps the rest equal, or a run that shows that it is not.
+//! The mutant and the original stand side by side with the same inputs, and all outputs are
+//! compared. `scorr` merges by induction what is equal. `pdr` finds an invariant that keeps the
+//! rest equal, or a run that shows a difference.
 //!
-//! Memories are cut out: what one reads is any word, the same on both sides; what it is asked and told is compared. Only
-//! where that is not enough, small ones are taken in as flip-flops; their outputs begin at 0 then, on both sides.
+//! Memories are cut out: a word that is read is arbitrary but the same on both sides, and
+//! addresses, data and enables are compared. Only if that is not enough, small memories are
+//! converted to flip-flops, whose outputs then begin at 0 on both sides.
 
 use super::draw::{Mutant, Sample, yosys};
 use std::collections::BTreeMap;
@@ -12,40 +15,41 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
-/// How much of the engine stands around the mutant; what is proved of less holds of more.
+/// The part of the engine around the mutant that a proof includes. A proof in a smaller scope also
+/// holds in a greater one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
-    /// Its module alone, the memories in it cut out.
+    /// Its module alone, with the memories in it cut out.
     Module,
     /// Its module with the memories in it.
     Memories,
-    /// The whole engine, memories cut out.
+    /// The whole engine, with the memories cut out.
     Engine,
 }
 
-/// Seconds for one question, four times what the slowest takes; of the whole engine only what `scorr` proves has ever been
-/// proved, in no time. A mutant for which this is not enough is not proved.
+/// Time limit of one question in seconds, four times what the slowest question takes. A mutant for
+/// which this is not enough counts as not proved. In the scope of the whole engine only `scorr` has
+/// ever proved a mutant, almost at once, so the limit is lower.
 const LIMIT: u32 = 100;
 const LIMIT_OF_ENGINE: u32 = 15;
 
 /// The top module.
 const ENGINE: &str = "carrystep_engine";
 
-/// Most bits of the memories that are taken in.
+/// The greatest number of memory bits that are converted to flip-flops.
 const MOST_BITS: usize = 1024;
 
-/// The smallest scope in which a mutant is proved to be what it was made of.
+/// The smallest scope in which a mutant is proved equal to the original.
 ///
-/// # Panics
-/// Where a tool is missing or fails.
+/// # Panics If a tool is missing or fails.
 pub fn proved(sample: &Sample, mutant: &Mutant) -> Option<Scope> {
     [Scope::Module, Scope::Memories, Scope::Engine].into_iter().find(|scope| is_proved(sample, mutant, *scope))
 }
 
-/// Whether a mutant is proved to be what it was made of in this scope; not, where there is no such question.
+/// True if a mutant is proved equal to the original in this scope; false if the scope does not
+/// apply.
 ///
-/// # Panics
-/// Where a tool is missing or fails.
+/// # Panics If a tool is missing or fails.
 pub fn is_proved(sample: &Sample, mutant: &Mutant, scope: Scope) -> bool {
     let modules = Modules::of(&sample.netlist);
     let own = format!("carrystep_{}", mutant.module);
@@ -67,7 +71,8 @@ pub fn is_proved(sample: &Sample, mutant: &Mutant, scope: Scope) -> bool {
     holds(folder.path(), if top == ENGINE { LIMIT_OF_ENGINE } else { LIMIT })
 }
 
-/// One system in gates, whose one output tells a difference. What hangs free is any value, before anything is made simpler by it.
+/// Makes one system in gates whose single output signals a difference. Undriven wires become
+/// arbitrary values before any simplification.
 const SIDE_BY_SIDE: &str = "design -copy-from gold -as gold gold\ndesign -copy-from gate -as gate gate\n\
      miter -equiv -flatten gold gate miter\nhierarchy -check -top miter\nselect -assert-count 1 o:*\n\
      setundef -undriven -anyseq\nopt -full\nmemory_map\nsetundef -init -zero\nopt -full\ntechmap\nopt -full\ndffunmap\nabc -g AND -fast\nopt_clean\n\
@@ -83,14 +88,14 @@ fn holds(folder: &Path, limit: u32) -> bool {
     verdicts[0]
 }
 
-/// What a netlist (RTLIL) says of its modules.
+/// The module hierarchy of a netlist (RTLIL).
 struct Modules<'a>(BTreeMap<&'a str, Module<'a>>);
 
 #[derive(Default)]
 struct Module<'a> {
-    /// Bits of the memories that lie in it.
+    /// Number of memory bits in the module itself.
     bits: usize,
-    /// Modules of which it has instances.
+    /// The modules of which it has instances.
     parts: Vec<&'a str>,
 }
 
@@ -106,7 +111,7 @@ impl<'a> Modules<'a> {
                     size = None;
                 }
                 ["parameter", "\\SIZE", words] => size = words.parse::<usize>().ok(),
-                // Only a memory has both.
+                // Only a memory has both parameters.
                 ["parameter", "\\WIDTH", width] => {
                     let bits = width.parse::<usize>().ok().zip(size).map_or(0, |(width, size)| width * size);
                     all.entry(name).or_default().bits += bits;
@@ -117,7 +122,8 @@ impl<'a> Modules<'a> {
         Self(all)
     }
 
-    /// The module that is looked at as a whole, and the memories that are cut out of it. Never the mutant's own: it would be cut out with it.
+    /// The module that is compared as a whole, and the memories that are cut out of it. The
+    /// mutant's own module is never cut out, because the mutant would be removed with it.
     fn around(&self, own: &'a str, scope: Scope) -> Option<(&'a str, Vec<&'a str>)> {
         let has_memory = |name: &&str| self.0.get(*name).is_some_and(|module| module.bits > 0);
         let top = if scope == Scope::Engine { ENGINE } else { own };
@@ -131,7 +137,7 @@ impl<'a> Modules<'a> {
         }
     }
 
-    /// All modules inside a module, however deep.
+    /// All modules inside a module, at any depth.
     fn inside(&self, name: &str) -> Vec<&'a str> {
         let parts = self.0.get(name).map(|module| module.parts.clone()).unwrap_or_default();
         let mut all: Vec<&str> = parts.iter().flat_map(|part| self.inside(part)).chain(parts.clone()).collect();

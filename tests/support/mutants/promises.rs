@@ -1,14 +1,15 @@
-//! The last judge: the promises of rung 7, asked of a mutant's module.
+//! The last judge of a mutant: the promises of rung 7 for the mutant's module.
 //!
-//! Only a run that breaks a promise counts: one that is found, clock by clock, from configuration on. An induction that fails would say nothing.
+//! Only a run from configuration on that breaks a promise counts, found clock by clock. A failing
+//! induction proves nothing.
 
 use super::draw::{Mutant, Sample};
 use crate::proofs::{self, Case, Proof, ProofError, Question};
 
-/// The module whose promises a mutant breaks. Promises that the engine breaks as it was taken apart would be no judge.
+/// The module whose promises a mutant breaks. A promise that the engine itself breaks in this form
+/// cannot judge.
 ///
-/// # Panics
-/// Where a tool is missing or fails.
+/// # Panics If a tool is missing or fails.
 pub fn broken(sample: &Sample, mutant: &Mutant) -> Option<&'static str> {
     let engine = proofs::shipped_engine();
     let dut = format!("carrystep_{}", mutant.module);
@@ -20,7 +21,7 @@ pub fn broken(sample: &Sample, mutant: &Mutant) -> Option<&'static str> {
             match proofs::ask(&proof.promises, &case, Question::Broken(proof.reach)) {
                 Ok(()) => true,
                 Err(ProofError::Refuted(_)) => false,
-                // A promise that looks inside may look for a wire that a mutant's netlist has no more.
+                // A promise may refer to an internal wire that the mutant's netlist no longer has.
                 Err(ProofError::Tool { said, .. }) if said.contains("Failed to parse set rhs") => false,
                 Err(error) => panic!("{dut}: {error}"),
             }

@@ -1,4 +1,5 @@
-//! What the mutants are run against: the model's recordings of the shipped machine at work, and of all that stops it.
+//! The stimuli of the mutants: the model's recordings of the shipped machine in normal work and in
+//! all kinds of stops.
 
 mod stops;
 mod work;
@@ -11,29 +12,30 @@ use carrystep_simulators::engine::replay::Recording;
 use proptest::strategy::{Strategy, ValueTree as _};
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 
-/// Random programs are drawn from this: every run has the same.
+/// The seed of the random programs, so that every run has the same ones.
 const SEED: u64 = 2009;
 
-/// More than any program takes.
+/// More clocks than any program takes.
 const MOST_CLOCKS: u64 = 20_000_000;
 
-/// A recording and what it is of.
+/// A recording and its description.
 #[derive(Clone)]
 pub struct Stimulus {
-    /// For a person.
+    /// Description for a person.
     pub name: String,
-    /// The model's.
+    /// The model's recording.
     pub recording: Recording,
-    /// The modules whose mutants are run against it; none: all. Of the long ones, so that a survivor takes seconds.
+    /// The modules whose mutants run against this recording; empty means all. Long recordings are
+    /// restricted, so that a surviving mutant takes only seconds.
     modules: &'static [&'static str],
 }
 
-/// The build that `hdl-out/core/carrystep_engine.v` is made from.
+/// The build from which `hdl-out/core/carrystep_engine.v` is made.
 pub fn build() -> EngineBuild {
     Machine::load(&root().join("sim/engine.toml")).expect("the shipped machine").engine()
 }
 
-/// All recordings in the order in which they are tried: what finds much in few clocks first.
+/// All recordings in the order of use: those that catch many mutants in few clocks come first.
 pub fn all(build: &EngineBuild) -> Vec<Stimulus> {
     [work::all(build), stops::all(build)].concat()
 }
@@ -47,13 +49,13 @@ impl Stimulus {
         Self { modules, ..self }
     }
 
-    /// Whether the mutants of a module are run against it.
+    /// True if the mutants of a module run against this recording.
     pub fn is_for(&self, module: &str) -> bool {
         self.modules.is_empty() || self.modules.contains(&module)
     }
 }
 
-/// So many programs, each from the same seed.
+/// Draws `count` programs with the fixed seed.
 fn drawn<T>(strategy: &impl Strategy<Value = T>, count: usize) -> Vec<T> {
     let config = Config { rng_seed: RngSeed::Fixed(SEED), failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new(config);

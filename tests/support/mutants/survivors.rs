@@ -1,4 +1,5 @@
-//! The mutants that nothing catches, as `docs/mutants.md` lists them: a line for the name, the reason below it.
+//! The mutants that nothing catches, as `docs/mutants.md` lists them: one line with the name, and
+//! the reason below it.
 //!
 //! ```text
 //! - `watch: eq B[3] always 1: wire silent = silence == WATCHDOG;`
@@ -14,13 +15,14 @@ use std::path::PathBuf;
 const BEGIN: &str = "<!-- `cargo xtask mutants --write` writes from here ... -->";
 const END: &str = "<!-- ... to here -->";
 
-/// What stands where nobody has found a reason yet; the test fails as long as it does.
+/// The placeholder for a reason that nobody has found yet. The test fails as long as the page
+/// contains it.
 pub const NO_REASON: &str = "WHY IS IT HARMLESS?";
 
-/// Before what is proved, not written by a person.
+/// The beginning of a reason that is a proof and not written by a person.
 pub const PROVED: &str = "Proved equal";
 
-/// How a mutant is proved to be the engine, in words.
+/// The reason for a mutant that is proved equal in this scope.
 pub fn proved(scope: Scope) -> String {
     let of = match scope {
         Scope::Module => "its module, for any inputs",
@@ -30,17 +32,16 @@ pub fn proved(scope: Scope) -> String {
     format!("{PROVED}: {of}.")
 }
 
-/// Reasons by name.
+/// Reasons by the names of the mutants.
 pub type Survivors = BTreeMap<String, String>;
 
 fn page() -> PathBuf {
     root().join("docs/mutants.md")
 }
 
-/// The listed survivors.
+/// Reads the listed survivors.
 ///
-/// # Panics
-/// Where the page has lost its list.
+/// # Panics If the page has no list.
 pub fn read() -> Survivors {
     let text = std::fs::read_to_string(page()).expect("docs/mutants.md");
     let list =
@@ -49,10 +50,9 @@ pub fn read() -> Survivors {
     items.map(|(name, reason)| (name.to_owned(), reason.split_whitespace().collect::<Vec<_>>().join(" "))).collect()
 }
 
-/// Writes the list anew.
+/// Rewrites the list.
 ///
-/// # Panics
-/// Where the page cannot be written.
+/// # Panics If the page cannot be written.
 pub fn write(survivors: &Survivors) {
     let text = std::fs::read_to_string(page()).expect("docs/mutants.md");
     let (before, rest) = text.split_once(BEGIN).expect("the list in docs/mutants.md");

@@ -1,4 +1,5 @@
-//! The proof of the one adder. A turn is proved as a whole: the induction is as deep as it is long.
+//! The proof of the engine's adder. A turn is proved as a whole, so the induction is as deep as a
+//! turn has clocks.
 
 use super::builds::shipped_engine;
 use super::{Bug, Case, Promises, Proof};

@@ -1,4 +1,4 @@
-//! The axis' proof, sequencer and edge inside it.
+//! The proof of the axis, with sequencer and edge inside it.
 
 use super::builds::{shipped, small_from};
 use super::{Bug, Case, Promises, Proof};

@@ -1,4 +1,5 @@
-//! The builds that are proved: the shipped machine's, from the committed text, and small and extreme ones.
+//! The builds that are proved: the shipped machines from their committed Verilog, and small and
+//! extreme builds.
 
 use super::Case;
 use crate::{lockstep, moves};
@@ -8,19 +9,20 @@ use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use std::sync::Arc;
 
-/// The shipped machine: its build, and the Verilog in `hdl-out/` as it is committed.
+/// The shipped machine: its build, and its committed Verilog in `hdl-out/`.
 pub fn shipped() -> (Build, Arc<str>) {
     let file = moves::root().join("hdl-out/core/carrystep_six_axis.v");
     let text = std::fs::read_to_string(file).expect("the committed Verilog");
     (moves::demo().build, text.into())
 }
 
-/// The fewest clocks in a tick, and pins in which every timer is at times the one that forbids.
+/// A build with the fewest clocks in a tick, and pin timings in which every timer is at times the
+/// one that forbids an edge.
 pub fn small(phases: u32) -> (Build, Arc<str>) {
     small_from(phases, StartPhase::Half)
 }
 
-/// The same, with P that starts elsewhere.
+/// The same build with another start value of P.
 pub fn small_from(phases: u32, start: StartPhase) -> (Build, Arc<str>) {
     let pins = |width, gap, setup, hold| PinTiming { width, gap, setup, hold };
     let pins: [PinTiming; AXES] = [
@@ -36,7 +38,7 @@ pub fn small_from(phases: u32, start: StartPhase) -> (Build, Arc<str>) {
     (build, text)
 }
 
-/// The shipped engine: its build, and the Verilog in `hdl-out/` as it is committed.
+/// The shipped engine: its build, and its committed Verilog in `hdl-out/`.
 pub fn shipped_engine() -> (EngineBuild, Arc<str>) {
     let root = moves::root();
     let text = std::fs::read_to_string(root.join("hdl-out/core/carrystep_engine.v")).expect("the committed Verilog");
@@ -44,7 +46,8 @@ pub fn shipped_engine() -> (EngineBuild, Arc<str>) {
     (machine.engine(), text.into())
 }
 
-/// An engine of so many axes, at a tick of so many clocks, with extreme pins, and a guard whose figures are small.
+/// An engine with this many axes and clocks per tick, with extreme pin timings and a guard with
+/// small figures.
 pub fn small_engine(axes: usize, clocks: u32, phases: u32, limits: Limits) -> (EngineBuild, Arc<str>) {
     let timebase = Timebase::new(u64::from(clocks) * 1_000_000, 1000, phases).expect("a fine timebase");
     let mut minimal = EngineBuild::minimal(&Build { timebase, ..small(phases).0 }, 1 << 40);
@@ -67,12 +70,12 @@ pub fn small_engine(axes: usize, clocks: u32, phases: u32, limits: Limits) -> (E
     (build, text)
 }
 
-/// How many axes an engine has, as `promises.sv` takes it.
+/// The parameter with the number of axes for `promises.sv`.
 pub fn axes(build: &EngineBuild) -> (&'static str, String) {
     ("AXES", build.axes().to_string())
 }
 
-/// Clocks and phases of a tick, as `promises.sv` takes them.
+/// The parameters with clocks and phases of a tick for `promises.sv`.
 pub fn beat(time: &Timebase) -> Vec<(&'static str, String)> {
     vec![("CLOCKS", time.clocks_per_tick().to_string()), ("PHASES", time.phases().to_string())]
 }
@@ -82,7 +85,8 @@ pub fn beat_name(time: &Timebase) -> String {
     format!("{} clocks in {} phases", time.clocks_per_tick(), time.phases())
 }
 
-/// A case for each pin timing of the builds: the module of this kind that was exported for it.
+/// One case for each pin timing of the builds, with the module of this kind that was exported for
+/// it.
 pub fn pin_cases(kind: &str, builds: &[(Vec<PinTiming>, Arc<str>)]) -> Vec<Case> {
     let mut cases: Vec<Case> = Vec::new();
     for (pins, verilog) in builds {

@@ -1,4 +1,4 @@
-//! The edge's proof, with the tick that gives it the beat.
+//! The proof of the edge module, with the tick module that drives it.
 
 use super::builds::{beat, beat_name, shipped, small};
 use super::{Bug, Case, Promises, Proof};

@@ -1,4 +1,4 @@
-//! The engine's proof: the whole exported file.
+//! The proof of the whole exported engine.
 
 use super::builds::{axes, beat, beat_name, shipped_engine, small_engine};
 use super::{Bug, Case, Promises, Proof};

@@ -1,9 +1,11 @@
-//! The engine against the parallel axes, both as exported, in one miter (`crates/hdl/src/engine/equals_axes.sv`):
-//! the same pins from the first word to the last step of a move, for any numbers in its segments.
+//! Proves in one miter (`crates/hdl/src/engine/equals_axes.sv`) that the exported engine equals the
+//! exported parallel axes: the same pins from the first word to the last step of a move, for any
+//! numbers in its segments.
 //!
-//! Bounded: ticks, and so clocks, are counted out. The move is unrolled whole, from configuration on, and what both
-//! sides share is found by sweeping it (`&fraig` of ABC): their sums are the same sums, and so are those of the two
-//! bisections, complemented or not. They are equal where nothing is left of the miter. A planted bug goes the same way.
+//! The proof is bounded to a fixed number of ticks. The move is unrolled completely from
+//! configuration on, and sweeping (`&fraig` of ABC) merges what both sides share: their sums are
+//! the same sums, and so are those of the two bisections, complemented or not. The cores are equal
+//! if nothing is left of the miter. A planted bug is treated in the same way.
 
 use super::builds::{small, small_engine};
 use super::solver::{LIMIT, ProofError, reached, run};
@@ -16,50 +18,52 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-/// To gates; a port that the miter does not name stands at 0, a register without a value at configuration is any.
+/// Conversion to gates. A port that the miter does not name is 0; a register without a value at
+/// configuration is arbitrary.
 const TO_GATES: &str = "opt_clean -purge\nmemory_map\nopt_clean\ntechmap\ndffunmap\nsetundef -undriven -zero\n\
      aigmap\nwrite_aiger -zinit promises.aig\n";
 
-/// What is said of the two, and covers.
+/// The assertions about both cores, and the covers.
 pub const EQUAL: Promises = Promises { text: include_str!("../../../crates/hdl/src/engine/equals_axes.sv") };
 
-/// A move of two segments on engine and axes.
+/// A move of two segments on engine and parallel axes.
 pub struct Move {
-    /// The engine, and what the miter takes from outside.
+    /// The engine, and the parameters of the miter.
     pub engine: Case,
-    /// The parallel axes.
+    /// The Verilog of the parallel axes.
     pub axes: Arc<str>,
-    /// Clocks from configuration until the pins have done all.
+    /// Clocks from configuration until the pins have done everything.
     pub clocks: u32,
 }
 
-/// What is asked of a move.
+/// The question about a move.
 #[derive(Debug, Clone, Copy)]
 pub enum Asked {
-    /// They are equal, for any numbers.
+    /// The cores are equal for any numbers.
     Equal,
     /// Every cover is reached.
     Covers,
-    /// They differ, and this assertion says so.
+    /// The cores differ, and this assertion fails.
     Differ(&'static str),
 }
 
-/// Bits of V, A and J that are any.
+/// Mask of the bits of V, A and J that are arbitrary: all.
 const ALL: u64 = u64::MAX;
-/// The top, and those around the seam of the halves.
+/// The top bits, and those around the boundary of the halves.
 const SEAM: u64 = 0xff00_000f_c000_0000;
 
-/// Every move that is compared: the shortest ticks that one and two axes fit in, and that 16 phases fit in.
+/// Every move that is compared: the shortest ticks for one and two axes, and for 16 phases.
 pub fn moves() -> Vec<Move> {
     vec![new_move(2, 32, 16, [2, 2], SEAM), new_move(1, 32, 16, [2, 3], SEAM), new_move(1, 16, 4, [2, 2], ALL)]
 }
 
-/// The move that bugs are looked for in: all four bits of the phase count. Covers are in the last of [`moves`].
+/// The move in which bugs are searched, which uses all four bits of the phase count. The last of
+/// [`moves`] has the covers.
 pub fn move_with_bugs() -> Move {
     new_move(1, 32, 16, [2, 2], SEAM)
 }
 
-/// What must not go unnoticed: the module, and the bug in it.
+/// The bugs that must be detected, with their modules.
 pub const BUGS: &[(&str, Bug)] = &[
     ("adder", Bug { breaks: "equal_step", text: "beat[10]) & carry_2)", becomes: "beat[10]) & carry_1)" }),
     ("adder", Bug { breaks: "equal_step", text: "if (!crosses_now) begin", becomes: "if (!top) begin" }),
@@ -95,21 +99,21 @@ fn new_move(axes: usize, clocks: u32, phases: u32, ticks: [u32; 2], free: u64) -
             numbers: numbers.into(),
         },
         axes: carrystep_verilog::six_axis_verilog(&parallel, "a proof").expect("the axes").into(),
-        // A tick in which nothing is worked out, 16 for the words, 2 until the start, 2 until the pins, one for what
-        // they are late.
+        // One tick without turns, 16 ticks for the words, 2 until the start, 2 until the pins, and
+        // one for the delay of the pins.
         clocks: clocks * (1 + 16 + 2 + ticks[0] + ticks[1] + 3),
     }
 }
 
 impl Move {
-    /// The same with a bug planted in a module of the engine.
+    /// The same move with a bug planted in a module of the engine.
     pub fn with(&self, module: &str, bug: &Bug) -> Self {
         let module = Case { dut: format!("carrystep_{module}"), ..self.engine.clone() };
         Self { engine: Case { dut: self.engine.dut.clone(), ..module.with(bug) }, axes: self.axes.clone(), ..*self }
     }
 }
 
-/// Asks one question about one move; `Ok` where the answer is the one that is wanted.
+/// Asks one question about one move. `Ok` is the expected answer.
 pub fn compare(pair: &Move, asked: Asked) -> Result<(), ProofError> {
     let dir = tempfile::tempdir()?;
     let text = match asked {
@@ -133,10 +137,10 @@ pub fn compare(pair: &Move, asked: Asked) -> Result<(), ProofError> {
     if wanted { Ok(()) } else { Err(ProofError::Refuted(said)) }
 }
 
-/// Whether the unrolled miter, swept, is nothing any more (or something: a run in which an assertion fails), and all
-/// that was said.
+/// Unrolls and sweeps the miter. Returns whether nothing is left of it (or, if `equal` is false,
+/// whether a run fails an assertion), and the output of the tool.
 fn swept(dir: &Path, clocks: u32, assertions: usize, equal: bool) -> Result<(bool, String), ProofError> {
-    // The head counts what is asked: aig, variables, inputs, latches, outputs, gates, assertions.
+    // The header counts: format, variables, inputs, latches, outputs, gates, assertions.
     let file = fs::read(dir.join("promises.aig"))?;
     let head = String::from_utf8_lossy(file.split(|byte| *byte == b'\n').next().unwrap_or_default()).into_owned();
     if head.split(' ').nth(6) != Some(&*assertions.to_string()) {
@@ -149,7 +153,8 @@ fn swept(dir: &Path, clocks: u32, assertions: usize, equal: bool) -> Result<(boo
     Ok((fine && answer == Some(equal), said))
 }
 
-/// The steps of yosys: each core flat and by itself, for both have modules of one name; then the miter of both.
+/// The commands of yosys. Each core is flattened separately, because both have modules of the same
+/// name; then the miter combines them.
 fn script(pair: &Move, asked: Asked) -> String {
     let cores = ["engine", "six_axis"];
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! The proof of homing: who waits for a limit, and who slows down.
+//! The proof of homing: which axes wait for a limit, and which slow down.
 
 use super::builds::{axes, shipped_engine, small_engine};
 use super::{Bug, Case, Promises, Proof};

@@ -1,4 +1,4 @@
-//! The proof of the limit switches' debouncer, for each way to wire them.
+//! The proof of the limit switches' debouncer for each kind of wiring.
 
 use super::builds::{axes, shipped_engine, small_engine};
 use super::{Bug, Case, Promises, Proof};

@@ -1,8 +1,8 @@
-//! What a `promises.sv` says of itself: its labels, and which signals it looks at inside the module.
+//! Reads a `promises.sv`: its labels, and the signals inside the module that it refers to.
 
-/// The text, read by its few conventions.
+/// The text of a `promises.sv`, which follows a few conventions.
 pub struct Promises {
-    /// All of it.
+    /// The whole text.
     pub text: &'static str,
 }
 
@@ -17,7 +17,8 @@ impl Promises {
         self.labelled("cover (").collect()
     }
 
-    /// The text with each cover as the assertion that it is never reached, which must fail.
+    /// The text with each cover replaced by the assertion that it is never reached, which must
+    /// fail.
     pub fn covers_as_assertions(&self) -> String {
         let turned = |line: &str| match line.split_once(": cover (").zip(line.strip_suffix(");")) {
             Some(((label, what), _)) => format!("{label}: assert (!({}));\n", &what[..what.len() - 2]),
@@ -26,7 +27,7 @@ impl Promises {
         self.text.lines().map(turned).collect()
     }
 
-    /// The promises that are proved here, by number.
+    /// The numbers of the promises that are proved here.
     pub fn numbers(&self) -> Vec<u32> {
         let mut numbers: Vec<u32> = self.labels().into_iter().filter_map(number).collect();
         numbers.sort_unstable();
@@ -34,8 +35,8 @@ impl Promises {
         numbers
     }
 
-    /// Names that stand for a signal inside the module, and that signal: `(* inside = "dut.busy" *) wire [16:0] busy;`.
-    /// A star is all axes, the highest first.
+    /// Names that stand for a signal inside the module, with that signal, as declared by
+    /// `(* inside = "dut.busy" *) wire [16:0] busy;`. A star stands for all axes, the highest first.
     pub fn inside(&self, axes: usize) -> Vec<(&'static str, String)> {
         let declared = self.text.lines().filter_map(|line| line.trim().strip_prefix("(* inside = \"")?.split_once('"'));
         declared
@@ -49,8 +50,9 @@ impl Promises {
             .collect()
     }
 
-    /// Signals inside the module that may be anything in any clock, so that what drives them is left out:
-    /// `// (* free = "dut.word" *)`. What holds then holds all the more.
+    /// Signals inside the module that may have any value in any clock, so that their drivers are
+    /// left out: `// (* free = "dut.word" *)`. A promise that holds without the drivers also holds
+    /// with them.
     pub fn free(&self) -> Vec<&'static str> {
         let told = self.text.lines().filter_map(|line| line.trim().strip_prefix("// (* free = \"")?.split_once('"'));
         told.map(|(signal, _)| signal).collect()
@@ -64,7 +66,7 @@ impl Promises {
     }
 }
 
-/// The promise that a label belongs to.
+/// The number of the promise to which a label belongs.
 pub fn number(label: &str) -> Option<u32> {
     label.strip_prefix("promise_")?.split('_').next()?.parse().ok()
 }

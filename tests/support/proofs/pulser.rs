@@ -1,4 +1,5 @@
-//! The proof of the engine's pulser: the pin timings of its builds, from the shortest to the longest that can be built.
+//! The proof of the engine's pulser for the pin timings of its builds, from the shortest to the
+//! longest possible one.
 
 use super::builds::{pin_cases, shipped_engine, small_engine};
 use super::{Bug, Promises, Proof};

@@ -1,4 +1,4 @@
-//! The proof of which segment runs and which wait.
+//! The proof of the queue: which segment runs and which segments wait.
 
 use super::builds::shipped_engine;
 use super::{Bug, Case, Promises, Proof};

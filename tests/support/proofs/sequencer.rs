@@ -1,4 +1,4 @@
-//! The sequencer's proof.
+//! The proof of the sequencer.
 
 use super::builds::shipped;
 use super::{Bug, Case, Promises, Proof};

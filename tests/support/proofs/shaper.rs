@@ -1,4 +1,4 @@
-//! The shaper's proof: eleven pin timings, from the shortest to the longest that can be built.
+//! The proof of the shaper for eleven pin timings, from the shortest to the longest possible one.
 
 use super::builds::{pin_cases, shipped, small};
 use super::{Bug, Promises, Proof};

@@ -1,4 +1,4 @@
-//! The core's proof: the whole exported file.
+//! The proof of the whole exported parallel core.
 
 use super::builds::{beat_name, shipped, small};
 use super::{Bug, Case, Promises, Proof};

@@ -1,5 +1,6 @@
-//! Yosys makes a transition system of Verilog and promises. What holds for ever, yosys-smtbmc and z3 are asked;
-//! runs that reach something (covers, bugs) are looked for by yosys-abc, bit by bit, which is a hundred times faster.
+//! Runs the provers. Yosys makes a transition system of Verilog and promises. Yosys-smtbmc with z3
+//! proves what holds for ever. Yosys-abc searches runs that reach something (covers, bugs) bit by
+//! bit, which is a hundred times faster.
 
 use super::{Case, Promises};
 use carrystep_tools::programs::{Tool, YOSYS, YOSYS_ABC, YOSYS_SMTBMC, Z3};
@@ -9,10 +10,11 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use thiserror::Error;
 
-/// Seconds for one question; the slowest takes a tenth of it on an idle machine.
+/// Time limit for one question in seconds; the slowest takes a tenth of it on an idle machine.
 pub(super) const LIMIT: &str = "300";
 
-/// A word of a memory that lies in the exported module: `look #("\\dut.words", ABITS, WIDTH) name (1'b0, 1'b1, address, word);`.
+/// Declares `look`, which reads a word of a memory inside the exported module. It is used as
+/// `look #("\\dut.words", ABITS, WIDTH) name (1'b0, 1'b1, address, word);`.
 const LOOK: &str = r#"
 (* blackbox *)
 module look #(parameter MEMID = "", ABITS = 1, WIDTH = 1)
@@ -20,55 +22,56 @@ module look #(parameter MEMID = "", ABITS = 1, WIDTH = 1)
 endmodule
 "#;
 
-/// After `flatten` the memory is there under its name, and a look becomes one more port of it, which only reads.
+/// After `flatten` the memory has its own name, and a `look` becomes one more read port of it.
 const LOOKS_ARE_READ_PORTS: &str = "setparam -set CLK_ENABLE 0 -set CLK_POLARITY 0 -set TRANSPARENT 0 t:look\n\
      chtype -set $memrd t:look\n";
 
-/// The system in gates; flip-flops without a value at configuration may have any.
+/// Conversion of the system to gates; flip-flops without a value at configuration may have any
+/// value.
 const TO_GATES: &str = "opt_clean -purge\nmemory_map\nopt -full\ntechmap\nopt -full\ndffunmap\n\
      setundef -undriven -anyseq\nabc -g AND -fast\nopt_clean\nwrite_aiger -zinit promises.aig\n";
 
-/// Why there is no answer, or not the one that was wanted.
+/// The reason why there is no answer, or not the expected one.
 #[derive(Debug, Error)]
 pub enum ProofError {
-    /// A tool is not there.
+    /// A tool is not installed.
     #[error("{} is not installed: {} installs it", .0.name, .0.ways())]
     Missing(Tool),
-    /// A tool stopped.
+    /// A tool failed.
     #[error("{tool} failed: {said}")]
     Tool {
-        /// Its name.
+        /// The name of the tool.
         tool: &'static str,
-        /// What it printed.
+        /// The output of the tool.
         said: String,
     },
-    /// An assertion of the file is not in what the solver was given.
+    /// An assertion of the file is missing in the input of the solver.
     #[error("{0} was lost on the way to the solver")]
     Lost(&'static str),
-    /// The solver does not say what it should.
+    /// The solver gave another answer than the expected one.
     #[error("the solver does not agree:\n{0}")]
     Refuted(String),
-    /// Files.
+    /// Reading or writing a file failed.
     #[error(transparent)]
     Io(#[from] std::io::Error),
 }
 
-/// What the solver is asked.
+/// A question to a solver.
 #[derive(Debug, Clone, Copy)]
 pub enum Question {
-    /// All holds in the first clocks.
+    /// Everything holds in the first clocks (their number).
     Base(u32),
-    /// Where all held for k clocks, it holds in the next.
+    /// If everything held for k clocks, it holds in the next one.
     Induction(u32),
-    /// Every cover is reached within so many clocks.
+    /// Every cover is reached within this number of clocks.
     Covers(u32),
-    /// This promise, by itself, fails within so many clocks.
+    /// This single promise fails within this number of clocks.
     Fails(&'static str, u32),
-    /// Any of the promises fails within so many clocks.
+    /// Any of the promises fails within this number of clocks.
     Broken(u32),
 }
 
-/// Fails where a tool is missing.
+/// Fails if a tool is missing.
 pub fn tools() -> Result<(), ProofError> {
     for tool in [YOSYS, YOSYS_SMTBMC, YOSYS_ABC, Z3] {
         let started = Command::new(tool.name).arg("--help").stdout(Stdio::null()).stderr(Stdio::null()).status();
@@ -77,7 +80,7 @@ pub fn tools() -> Result<(), ProofError> {
     Ok(())
 }
 
-/// Asks one question about one case; `Ok` where the answer is the one that is wanted.
+/// Asks one question about one case. `Ok` is the expected answer.
 pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), ProofError> {
     let dir = tempfile::tempdir()?;
     fs::write(dir.path().join("exported.v"), case.verilog.as_bytes())?;
@@ -102,10 +105,11 @@ pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), P
     if wanted { Ok(()) } else { Err(ProofError::Refuted(said)) }
 }
 
-/// Whether z3 says that all assertions hold, and all that was said.
+/// Returns whether z3 proves all assertions, and its output.
 fn holds(promises: &Promises, dir: &Path, question: &[&str]) -> Result<(bool, String), ProofError> {
     nothing_lost(promises, &fs::read_to_string(dir.join("promises.smt2"))?)?;
-    // One equation a clock, without the solver's functions over states: minutes become seconds.
+    // With one equation per clock instead of the solver's functions over states, minutes become
+    // seconds.
     let mut arguments = vec!["-s", "z3", "--unroll", "--noprogress", "--timeout", LIMIT];
     arguments.extend(question);
     arguments.push("promises.smt2");
@@ -114,23 +118,25 @@ fn holds(promises: &Promises, dir: &Path, question: &[&str]) -> Result<(bool, St
     Ok((fine && said.contains("Status: PASSED") && !trouble, said))
 }
 
-/// Whether so many assertions, which are all, fail within so many clocks, and all that was said.
+/// Returns whether all `count` assertions fail within this number of clocks, and the output of the
+/// tool.
 pub(super) fn reached(dir: &Path, clocks: u32, count: usize) -> Result<(bool, String), ProofError> {
-    // One after the other: asked for all at once, bmc3 of ABC 1.01 may crash.
+    // They are asked one after the other: asked for all at once, bmc3 of ABC 1.01 may crash.
     let ask = |output| format!("read_aiger promises.aig; fold; cone -s -O {output}; bmc3 -F {clocks} -T {LIMIT}");
     let commands: Vec<String> = (0..count).map(ask).collect();
     let (fine, said) = run(dir, YOSYS_ABC, &["-c", &commands.join("; ")])?;
     Ok((fine && count > 0 && said.matches("was asserted in frame").count() == count, said))
 }
 
-/// Whether any assertion fails within so many clocks.
+/// Returns whether any assertion fails within this number of clocks, and the output of the tool.
 fn any_reached(dir: &Path, clocks: u32) -> Result<(bool, String), ProofError> {
     let ask = format!("read_aiger promises.aig; fold; orpos; bmc3 -F {clocks} -T {LIMIT}");
     let (fine, said) = run(dir, YOSYS_ABC, &["-c", &ask])?;
     Ok((fine && said.contains("was asserted in frame"), said))
 }
 
-/// The steps of yosys: the exported text as it is, the promises, and names for what they see inside.
+/// The commands of yosys: they read the unchanged exported text and the promises, and name the
+/// internal signals that the promises refer to.
 fn script(promises: &Promises, case: &Case, question: Question) -> String {
     let mut text = format!("read_verilog -sv exported.v look.sv\nread_verilog -formal -sv -D DUT={}", case.dut);
     for (name, number) in &case.numbers {
@@ -148,12 +154,14 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
     for signal in promises.free() {
         let _ = writeln!(text, "cutpoint w:{signal}");
     }
-    // Two that are both plain by now would be merged, and one label lost.
+    // Two assertions that have become identical would be merged, and one label would be lost.
     text.push_str("setattr -set keep 1 t:$assert t:$cover\n");
-    // Nothing may hang free: a free wire is any value, and a proof about it says nothing.
-    // The register behind a memory stays one: a port of its own would be free where it reads what is being written.
+    // No wire may be undriven: it would be arbitrary, and a proof about it would mean nothing. The
+    // register behind a memory must stay a register: a synchronous read port would be arbitrary
+    // while it reads a word that is being written.
     text.push_str("check -assert\nprep -nordff -top promises\n");
-    // What is not asked goes, and with it the part of the module that only it looks at.
+    // Everything that is not asked is deleted, together with the part of the module that only it
+    // uses.
     text.push_str(&match question {
         Question::Covers(_) => "delete t:$assert c:cover_* %d\n".to_owned(),
         Question::Fails(label, _) => format!("delete t:$cover\ndelete t:$assert c:{label} %d\n"),
@@ -166,7 +174,7 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
     text
 }
 
-/// Every label of the file is in the transition system.
+/// Checks that every label of the file is in the transition system.
 fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
     let there = |label: &&str| {
         system.lines().any(|line| line.starts_with("; yosys-smt2-assert ") && line.ends_with(&format!(" {label}")))
@@ -177,7 +185,7 @@ fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
     }
 }
 
-/// Whether it ended well, and all that it printed.
+/// Runs a tool; returns whether it succeeded, and its output.
 pub(super) fn run(dir: &Path, tool: Tool, arguments: &[&str]) -> Result<(bool, String), ProofError> {
     let output = Command::new(tool.name).args(arguments).current_dir(dir).output();
     let output = output.map_err(|_| ProofError::Missing(tool))?;

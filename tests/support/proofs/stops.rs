@@ -1,4 +1,4 @@
-//! The proof of who stops the axes.
+//! The proof of the stops: which cause stops the axes, and how.
 
 use super::builds::{axes, shipped_engine, small_engine};
 use super::{Bug, Case, Promises, Proof};

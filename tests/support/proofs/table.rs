@@ -1,4 +1,4 @@
-//! What is proved, as a table: a row a promise and module.
+//! The table of what is proved: one row per promise and module.
 
 use super::promises::number;
 use super::{Proof, all};

@@ -1,4 +1,4 @@
-//! The tick's proof.
+//! The proof of the tick module.
 
 use super::builds::{beat, beat_name, shipped, small};
 use super::{Bug, Case, Promises, Proof};

@@ -1,4 +1,4 @@
-//! The proof of the schedule.
+//! The proof of the schedule of turns.
 
 use super::builds::{axes, shipped_engine, small_engine};
 use super::{Bug, Case, Promises, Proof};

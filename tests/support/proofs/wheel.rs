@@ -1,4 +1,4 @@
-//! The proof of the wheel of events, with the turns that fill it.
+//! The proof of the event wheel, with the turns that fill it.
 
 use super::builds::{axes, beat, beat_name, shipped_engine, small_engine};
 use super::{Bug, Case, Promises, Proof};

@@ -1,5 +1,6 @@
-//! iCE40: the Verilog and the bitstream, read back. The PLL is one model of the bench at both stages: it hands its reference on,
-//! locked. No other hard block than block RAM is in them.
+//! iCE40 boards: the Verilog of a whole board, and its bitstream read back. At both stages the PLL
+//! is replaced by one model of the bench, which passes its reference clock on and is locked from
+//! the start. The designs contain no other hard blocks except block RAMs.
 
 use carrystep_boards::{Board, Family, board, boards};
 use carrystep_tests::board_session::Session;
@@ -22,14 +23,16 @@ module bench_pll #(
 endmodule
 ";
 
-/// With yosys' models of its cells, but for the PLL, which takes its reference from a pad or from a wire.
+/// The Verilog with yosys' models of its cells and the bench's PLL, whose reference comes from a
+/// pad or from a wire.
 fn simulated(verilog: &str) -> String {
     let verilog = verilog.replace("SB_PLL40_CORE", "bench_pll").replace("SB_PLL40_PAD", "bench_pll");
     let pll = if verilog.contains(".PACKAGEPIN(") { PLL.replace("REFERENCECLK", "PACKAGEPIN") } else { PLL.to_owned() };
     ice40::simulated(&verilog).expect("models of its cells") + &pll
 }
 
-/// The configuration with one bit of the link's first instructions flipped: its program is the fullest of all block RAMs.
+/// The configuration with one bit of the link's first instructions flipped. The link's program
+/// fills its block RAM more than any other memory.
 fn with_a_flipped_bit(asc: &str) -> String {
     let contents = |tile: &str| {
         tile.split("\n.")
@@ -75,7 +78,7 @@ fn from_verilog_to_bitstream(board: &'static Board) {
 }
 
 #[test]
-fn bitstreams() {
+fn ice40_bitstreams_equal_rust_hdl_on_every_pin() {
     let ice40s: Vec<_> = boards().iter().filter(|board| board.family == Family::Ice40).collect();
     if !effort::is_every_board() {
         return from_verilog_to_bitstream(board("icestick").expect("a board"));

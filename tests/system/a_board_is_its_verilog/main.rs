@@ -1,8 +1,9 @@
-//! A whole board, clocked from its pins: bytes into the UART, pulses out. What the tools make of its Verilog shows on every pin in
-//! every cycle what link and engine show in Rust-HDL.
+//! Whole boards, clocked from their pins: bytes go into the UART and pulses come out. In every
+//! cycle, every pin of what the tools make from a board's Verilog must equal link and engine in
+//! Rust-HDL.
 //!
-//! A test run does it for the iCEstick and for a Spartan-6, `cargo xtask long equivalence` for every iCE40 board and every family of
-//! Spartans, with faults that must be seen.
+//! A test run covers the iCEstick and a Spartan-6. `cargo xtask long equivalence` covers every
+//! iCE40 board and every family of Spartans, with planted faults that must be detected.
 
 mod ice40;
 mod spartan;

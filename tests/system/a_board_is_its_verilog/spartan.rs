@@ -1,12 +1,13 @@
-//! Spartans: the Verilog, and the cells that yosys makes of it, in the EDIF that the shipped build script hands to ISE, read back. Cells
-//! are yosys' models; DCM and MMCM are one model of the bench at both stages, and block RAMs are models of ours.
+//! Spartan boards: the Verilog, and the cells that yosys makes of it, read back from the EDIF that
+//! the shipped build script hands to ISE. The cells are simulated with yosys' models. At both
+//! stages DCM and MMCM are replaced by one model of the bench, and block RAMs by our own models.
 
 use carrystep_boards::{Toolchain, board};
 use carrystep_tests::board_session::Session;
 use carrystep_tests::{effort, jobs};
 use carrystep_tools::xilinx;
 
-/// One board of each family, Spartan-3, 3E, 6 and 7.
+/// One board of each family: Spartan-3, 3E, 6 and 7.
 const BOARDS: [&str; 4] = ["s3board", "nexys2", "papilio-pro", "arty-s7"];
 
 /// The EDIF with one bit of the link's first instruction flipped.
@@ -18,7 +19,8 @@ fn with_a_flipped_bit(edif: &str) -> String {
     format!("{}{:x}{}", &edif[..at], digit ^ 1, &edif[at + 1..])
 }
 
-/// A name of the constraints of which the EDIF has no net. The build script has put the bits of a bus into the brackets of yosys.
+/// A name in the constraints for which the EDIF has no net. The build script has converted the bits
+/// of a bus to yosys' bracket notation.
 fn unknown_pin<'a>(ucf: &'a str, edif: &str) -> Option<&'a str> {
     let names = ucf.lines().filter_map(|line| line.strip_prefix("NET \"")?.split('"').next());
     let is_there = |name: &str| {
@@ -55,7 +57,7 @@ fn from_verilog_to_edif(name: &str) {
 }
 
 #[test]
-fn netlists() {
+fn spartan_netlists_equal_rust_hdl_on_every_pin() {
     if !effort::is_every_board() {
         return from_verilog_to_edif("papilio-pro");
     }

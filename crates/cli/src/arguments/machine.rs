@@ -1,9 +1,9 @@
-//! `carrystep machine`
+//! The arguments of `carrystep machine`. The docstrings of the fields are the command's help.
 
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
-/// `carrystep machine`
+/// The arguments of `carrystep machine`.
 #[derive(Debug, Args)]
 pub struct Machine {
     /// What to do with a machine file.
@@ -11,14 +11,14 @@ pub struct Machine {
     pub command: MachineCommand,
 }
 
-/// What can be done with machine files.
+/// The subcommands for machine files.
 #[derive(Debug, Subcommand)]
 pub enum MachineCommand {
-    /// Write a commented machine file. On a terminal it asks for what the options leave open.
+    /// Write a commented machine file. On a terminal it asks for missing options.
     New(MachineNew),
 }
 
-/// `carrystep machine new`
+/// The arguments of `carrystep machine new`.
 #[derive(Debug, Args)]
 #[command(after_help = NOTES)]
 pub struct MachineNew {
@@ -28,16 +28,18 @@ pub struct MachineNew {
     /// The board that the machine is built with: its clock, tick and baud rate are written.
     #[arg(long, value_name = "BOARD", conflicts_with = "clock_hz")]
     pub board: Option<String>,
-    /// The FPGA's clock, where it is on no board that carrystep knows; the tick is the shortest that the engine takes.
+    /// The FPGA's clock, if carrystep does not know the board; the tick is the shortest that the
+    /// engine allows.
     #[arg(long, value_name = "HZ")]
     pub clock_hz: Option<u64>,
-    /// How the limit switches are wired: two switches an axis, one an axis, one for all axes, or none.
+    /// How the limit switches are wired: two switches per axis, one per axis, one for all axes, or
+    /// none.
     #[arg(long, value_name = "WIRING", value_parser = ["pair", "each", "one", "none"])]
     pub limits: Option<String>,
     /// An axis: its name, then keys of [[machine.axis]]. Repeat for each axis.
     #[arg(long = "axis", value_name = "NAME,KEY=VALUE,...")]
     pub axes: Vec<String>,
-    /// Replace a file that is there.
+    /// Replace an existing file.
     #[arg(long)]
     pub force: bool,
     /// One JSON document instead of the text.

@@ -1,9 +1,10 @@
-//! The arguments of the commands that talk to a board.
+//! The arguments of the commands that talk to a board. The docstrings of the fields are the
+//! command's help.
 
 use clap::Args;
 use std::path::PathBuf;
 
-/// Where the board is.
+/// The port of the board.
 #[derive(Debug, Args)]
 pub struct Port {
     /// The serial port of the board; `carrystep doctor` lists them.
@@ -11,20 +12,20 @@ pub struct Port {
     pub name: String,
 }
 
-/// What the board is, where the command does not need a machine.
+/// The board, for commands that do not need a machine.
 #[derive(Debug, Args)]
 pub struct Peer {
     #[command(flatten)]
     pub port: Port,
-    /// The machine that the board's gateware must be made for; names the axes. Default: any.
+    /// The machine from which the board's gateware must be built; it names the axes. Default: any.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
-    /// The baud rate, where no machine says it.
+    /// The baud rate, if no machine is given.
     #[arg(long, value_name = "BAUD", conflicts_with = "machine", default_value_t = carrystep_core::link::DEFAULT_BAUD)]
     pub baud: u32,
 }
 
-/// `carrystep run`
+/// The arguments of `carrystep run`.
 #[derive(Debug, Args)]
 pub struct Run {
     /// The move file.
@@ -32,10 +33,12 @@ pub struct Run {
     pub file: PathBuf,
     #[command(flatten)]
     pub port: Port,
-    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own fit_ns.
+    /// Greatest error of an edge where a curve is fitted, ns from 1 up; overrides the moves' own
+    /// fit_ns.
     #[arg(long, value_name = "NS", value_parser = clap::value_parser!(u64).range(1..))]
     pub fit_ns: Option<u64>,
-    /// Begin even where an axis goes further toward a limit that it has just met: today's gateware may not see its switch.
+    /// Begin even if an axis moves further toward a limit that it has just met, although the
+    /// gateware may not detect the closed switch.
     #[arg(long)]
     pub into_limit: bool,
     /// One JSON document instead of the table.
@@ -43,10 +46,11 @@ pub struct Run {
     pub json: bool,
 }
 
-/// `carrystep home`
+/// The arguments of `carrystep home`.
 #[derive(Debug, Args)]
 pub struct Home {
-    /// Axes to home, by their names; default: all that have `home = { ... }` in their table. They go in the order of home_order.
+    /// Axes to home, by their names; default: all that have `home = { ... }` in their table. They
+    /// go in the order of home_order.
     #[arg(value_name = "AXIS")]
     pub axes: Vec<String>,
     /// The machine.
@@ -59,22 +63,23 @@ pub struct Home {
     pub json: bool,
 }
 
-/// `carrystep jog`
+/// The arguments of `carrystep jog`.
 #[derive(Debug, Args)]
 pub struct Jog {
     /// The axis, by its name.
     #[arg(value_name = "AXIS")]
     pub axis: String,
-    /// How far, in units of the axis; negative is back.
+    /// Distance in units of the axis; negative is backward.
     #[arg(value_name = "DISTANCE", allow_negative_numbers = true)]
     pub distance: f64,
     /// The machine.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: PathBuf,
-    /// In so many seconds; default: as fast as the axis' limits allow.
+    /// Duration of the move; default: as fast as the axis' limits allow.
     #[arg(long, value_name = "SECONDS")]
     pub time: Option<f64>,
-    /// Jog further toward a limit that the axis has just met: today's gateware may not see its switch.
+    /// Jog further toward a limit that the axis has just met, although the gateware may not detect
+    /// the closed switch.
     #[arg(long)]
     pub into_limit: bool,
     #[command(flatten)]
@@ -84,7 +89,7 @@ pub struct Jog {
     pub json: bool,
 }
 
-/// `carrystep status`
+/// The arguments of `carrystep status`.
 #[derive(Debug, Args)]
 pub struct Status {
     #[command(flatten)]
@@ -94,16 +99,16 @@ pub struct Status {
     pub json: bool,
 }
 
-/// `carrystep stop`
+/// The arguments of `carrystep stop`.
 #[derive(Debug, Args)]
 pub struct Stop {
     #[command(flatten)]
     pub peer: Peer,
-    /// Then resume: queues empty, positions as they are. Whatever had stopped the machine is forgotten. A `run`, `jog` or
-    /// `home` that is stopped clears its own stop.
+    /// Then clear the stop and its cause: the queues are emptied, the positions stay. A `run`,
+    /// `jog` or `home` that is stopped clears its own stop.
     #[arg(long)]
     pub clear: bool,
-    /// Then take the drivers' power away.
+    /// Then switch the drivers off.
     #[arg(long)]
     pub off: bool,
     /// One JSON document instead of the table.
@@ -111,7 +116,8 @@ pub struct Stop {
     pub json: bool,
 }
 
-/// What a virtual board is made of; values without a word each, or clap makes the help of all options twice as long.
+/// The implementation of a virtual board. The values have no docstrings, because clap would then
+/// print the help of all options in its long form.
 #[cfg(unix)]
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 pub enum BoardLevel {
@@ -119,29 +125,30 @@ pub enum BoardLevel {
     Verilator,
 }
 
-/// `carrystep virtual-board`
+/// The arguments of `carrystep virtual-board`.
 #[cfg(unix)]
 #[derive(Debug, Args)]
 pub struct VirtualBoard {
-    /// The machine whose gateware it has.
+    /// The machine whose gateware the board runs.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: PathBuf,
-    /// What it is made of: models, or the exported Verilog, which is far slower than a real board.
+    /// The implementation: models, or the exported Verilog, which is far slower than a real board.
     #[arg(long, value_enum, default_value_t = BoardLevel::Model)]
     pub level: BoardLevel,
-    /// Do not wait for the clock on the wall, but for a host that is late.
+    /// Run as fast as possible and not in real time, and wait for a host that is late.
     #[arg(long)]
     pub fast: bool,
     /// Write the pins and positions, from the first start to the end: `carrystep check` reads it.
     #[arg(long, value_name = "FILE")]
     pub vcd: Option<PathBuf>,
-    /// A limit switch at the low end of an axis, at this position in steps: x=-200. Repeat for each axis.
+    /// A limit switch at the low end of an axis, at this position in steps: x=-200. Repeat for each
+    /// axis.
     #[arg(long = "min", value_name = "AXIS=STEPS")]
     pub min: Vec<String>,
     /// A limit switch at the high end of an axis, at this position in steps.
     #[arg(long = "max", value_name = "AXIS=STEPS")]
     pub max: Vec<String>,
-    /// One JSON document at the end; the port is told on standard error.
+    /// One JSON document at the end; the port is printed on standard error.
     #[arg(long)]
     pub json: bool,
 }

@@ -1,11 +1,11 @@
-//! `carrystep profile`
+//! The arguments of `carrystep profile`. The docstrings of the fields are the command's help.
 
 use carrystep_core::StartPhase;
 use carrystep_profile::reference::{Drive, Kind, Length, Listing, Quantity, Request, Travel};
 use clap::Args;
 use std::path::PathBuf;
 
-/// `carrystep profile`
+/// The arguments of `carrystep profile`.
 #[derive(Debug, Args)]
 #[command(after_help = NOTES, next_help_heading = "Curve")]
 pub struct Profile {
@@ -18,7 +18,8 @@ pub struct Profile {
     /// In exactly this time, seconds; default: as fast as the limits allow.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     time: Option<f64>,
-    /// Centre of a logistic ramp: half of its speed is reached after this time; default: the ramp is symmetric.
+    /// Centre of a logistic ramp: half of its speed is reached after this time; default: the ramp
+    /// is symmetric.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     ti: Option<f64>,
 
@@ -42,8 +43,8 @@ pub struct Profile {
     /// One JSON document, with each step, instead of the table.
     #[arg(long, help_heading = "Output")]
     pub json: bool,
-    /// Where in a step its pulse is: `zero` lists t_0, t_1 ... as the sources do, `half` the middle of each step, as the
-    /// gateware emits by default.
+    /// Where in a step its pulse is: `zero` lists t_0, t_1 ... as the sources do, `half` the middle
+    /// of each step, as the gateware emits by default.
     #[arg(long, value_name = "PHASE", default_value = "zero", value_parser = phase(), help_heading = "Output")]
     phase: StartPhase,
     /// Delays in counts of a timer with this clock, Hz, besides.
@@ -64,7 +65,7 @@ Examples:
   One turn in one second, every step as CSV, delays in counts of a 1 MHz timer too:
     carrystep profile trapezoid --deg 360 --time 1 --accel-deg-s2 1800 --timer-hz 1e6 --csv -";
 
-/// How far a move goes; without, it is a ramp.
+/// The distance of a move; without it the curve is a ramp.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 struct Distance {
@@ -79,7 +80,7 @@ struct Distance {
     deg: Option<f64>,
 }
 
-/// The speed that a ramp goes to, the speed limit of a move.
+/// The final speed of a ramp, or the speed limit of a move.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[command(next_help_heading = "Speed: of a ramp the speed that it goes to, of a move the limit")]
@@ -101,7 +102,7 @@ struct Speed {
     speed_deg_s: Option<f64>,
 }
 
-/// The jump that the motor takes.
+/// The speed to which the motor can jump from rest.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[command(next_help_heading = "Start speed: the jump from rest that the motor takes; default 0")]
@@ -117,7 +118,7 @@ struct StartSpeed {
     start_mm_s: Option<f64>,
 }
 
-/// Acceleration limit.
+/// The acceleration limit.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[command(next_help_heading = "Acceleration: the limit")]
@@ -133,7 +134,7 @@ struct Acceleration {
     accel_deg_s2: Option<f64>,
 }
 
-/// Jerk limit.
+/// The jerk limit.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[command(next_help_heading = "Jerk: the limit, of all curves but trapezoid and ranade; needed by scurve")]
@@ -149,7 +150,7 @@ struct Jerk {
     jerk_deg_s3: Option<f64>,
 }
 
-/// What one step is.
+/// The size of one step.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Motor: for all that is not in steps")]
 struct Motor {
@@ -175,18 +176,18 @@ fn phase() -> impl clap::builder::TypedValueParser<Value = StartPhase> {
         .map(|name| if name == "half" { StartPhase::Half } else { StartPhase::Zero })
 }
 
-/// The one that was given.
+/// The option that was given, with its unit; `None` if there is none.
 fn given<const N: usize>(flags: [(Option<f64>, Length); N]) -> Option<Quantity> {
     flags.into_iter().find_map(|(value, length)| Some(Quantity::new(value?, length)))
 }
 
 impl Profile {
-    /// What is listed of each curve.
+    /// The settings of the listing of each step.
     pub fn listing(&self) -> Listing {
         Listing { phase: self.phase, clock_hz: self.timer_hz }
     }
 
-    /// What the flags ask for.
+    /// The request that the options describe.
     pub fn request(&self) -> Request {
         use Length::{Degree, Millimetre, Step, Turn};
         let Self { distance, speed, start, acceleration, jerk, motor, .. } = self;

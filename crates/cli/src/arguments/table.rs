@@ -1,11 +1,11 @@
-//! `carrystep table`
+//! The arguments of `carrystep table`. The docstrings of the fields are the command's help.
 
 use carrystep_table::{AVR_PRESCALERS, Arithmetic, Kind, Mode, Motor, Options, Pulses, Speed, TableError};
 use carrystep_table::{TableRequest, Timer, Width};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
-/// `carrystep table`
+/// The arguments of `carrystep table`.
 #[derive(Debug, Args)]
 #[command(after_help = NOTES)]
 pub struct Table {
@@ -49,8 +49,8 @@ pub enum TableKind {
         /// Steps of the ramp.
         #[arg(long, value_name = "N")]
         ramp_steps: u32,
-        /// Put the small inverse table with this many intervals (256 is good) into the header too, for
-        /// ramps that are computed on the controller.
+        /// Put the small inverse table with this many intervals (256 is good) into the header too,
+        /// for ramps that are computed on the controller.
         #[arg(long, value_name = "INTERVALS")]
         inverse: Option<u32>,
         #[command(flatten)]
@@ -71,7 +71,7 @@ const SINE: &str = "\
 Example, each entry lasting 1 ms or more, for a shorter table:
   carrystep table sine --ramp-steps 2000 --clock-hz 16000000 --prescaler 64 --top-speed 10000 --pulses-by-time 0.001";
 
-/// What all kinds share.
+/// The options that all kinds share.
 #[derive(Debug, Args)]
 pub struct Common {
     #[command(flatten)]
@@ -99,7 +99,8 @@ struct TimerFlags {
     /// Width of its counter.
     #[arg(long, value_name = "BITS", default_value = "16", value_parser = ["8", "16"])]
     bits: String,
-    /// ctc: clear timer on compare; free-running: the interrupt adds the value to the compare register.
+    /// ctc: clear timer on compare; free-running: the interrupt adds the value to the compare
+    /// register.
     #[arg(long, value_name = "MODE", default_value = "ctc", value_parser = ["ctc", "free-running"])]
     mode: String,
     /// Clocks that the interrupt needs from one pulse to the next; 0: not checked.
@@ -140,7 +141,7 @@ struct Top {
     rpm: Option<f64>,
 }
 
-/// Without either, one pulse an entry.
+/// The number of pulses per entry; without either option it is one.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[command(next_help_heading = "Pulses per entry: one, unless")]
@@ -174,21 +175,21 @@ pub struct Output {
 }
 
 impl Output {
-    /// How the header is to be written.
+    /// The settings of the header.
     pub fn options(&self) -> Result<Options, TableError> {
         Ok(Options::new(&self.name)?.program_memory(self.progmem).player(!self.bare))
     }
 }
 
 impl TableKind {
-    /// What all kinds share.
+    /// The options that all kinds share.
     pub fn common(&self) -> &Common {
         match self {
             Self::Logistic { common, .. } | Self::Avr446 { common, .. } | Self::Sine { common, .. } => common,
         }
     }
 
-    /// What the flags ask for.
+    /// The request that the options describe.
     pub fn request(&self) -> TableRequest {
         let kind = match self {
             &Self::Logistic { entries, steepness, centre, .. } => Kind::Logistic { entries, steepness, centre },

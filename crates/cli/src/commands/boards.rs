@@ -1,4 +1,4 @@
-//! `carrystep boards`: what is supported, and which pin does what.
+//! `carrystep boards`: the supported boards and the assignment of their pins.
 
 use crate::arguments::Boards;
 use crate::failure::Failure;
@@ -13,14 +13,14 @@ use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// The truth about all of them.
+/// The notice under every list: no board has been tested.
 const UNTRIED: &str = "None of these boards was at hand: nothing of carrystep was ever run on one.\n";
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
 pub struct Shown<'a> {
     passed: bool,
-    /// Whether carrystep was ever run on a real one.
+    /// Whether carrystep was ever tested on real hardware.
     tried_on_hardware: bool,
     boards: Vec<ShownBoard<'a>>,
 }
@@ -29,7 +29,7 @@ pub struct Shown<'a> {
 struct ShownBoard<'a> {
     #[serde(flatten)]
     board: &'a Board,
-    /// What the shipped gateware takes of it.
+    /// The resources that the shipped gateware uses.
     #[serde(skip_serializing_if = "Option::is_none")]
     measured: Option<Measured>,
 }
@@ -45,7 +45,7 @@ pub fn run(arguments: &Boards) -> Result<(), Failure> {
     output::print(&one.as_deref().map_or_else(list, in_full))
 }
 
-/// A board by its name, or of a file.
+/// A board by its name, or from a board file.
 pub fn find(name: &str) -> Result<Cow<'static, Board>, Failure> {
     match board(name) {
         Ok(board) => Ok(Cow::Borrowed(board)),
@@ -68,7 +68,7 @@ pub fn gateware<'a>(board: &'a Board, part: Option<&str>, machine: Option<&Path>
     })
 }
 
-/// A line for each.
+/// The list of all boards, one line each.
 fn list() -> String {
     let mut text = format!(
         "{:<12}  {:<9}  {:>5}  {:>4}  {:>6}  {:>14}  {:>8}  {:>5}  board\n",
@@ -104,7 +104,7 @@ fn list() -> String {
         + UNTRIED
 }
 
-/// Everything about one.
+/// All data of one board.
 fn in_full(board: &Board) -> String {
     let parts: Vec<String> = board.parts.iter().map(Part::ordered).collect();
     let mut text = format!(

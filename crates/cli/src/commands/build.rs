@@ -1,4 +1,4 @@
-//! `carrystep build`: a board's bitstream, and what the tools say of it.
+//! `carrystep build`: makes a board's bitstream and reports the results of the tools.
 
 use crate::arguments::Build;
 use crate::commands::boards;
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 pub struct Report {
     /// Whether the clock is reached.
     passed: bool,
-    /// Whether carrystep was ever run on a real one.
+    /// Whether carrystep was ever tested on real hardware.
     tried_on_hardware: bool,
     board: String,
     part: String,
@@ -33,13 +33,13 @@ pub struct Report {
     mhz: f64,
     icetime_mhz: f64,
     seed: u32,
-    /// Where the clock is reached.
+    /// Present if the clock is reached.
     #[serde(skip_serializing_if = "Option::is_none")]
     bitstream: Option<PathBuf>,
     load: String,
 }
 
-/// So many of so many.
+/// A used amount and the available amount.
 #[derive(JsonSchema, Serialize)]
 struct Use {
     used: u32,
@@ -63,7 +63,8 @@ pub fn run(arguments: &Build) -> Result<(), Failure> {
     }
 }
 
-/// Refuses at once a clock that placement was measured not to reach: to find that out takes minutes.
+/// Refuses a clock that placement has been measured not to reach, because placement would need
+/// minutes to find that out.
 fn reachable(board: &Board, part: Option<&str>, machine: &Path) -> Result<(), Failure> {
     let part = board.part(part)?;
     let read = Machine::load(machine)?;

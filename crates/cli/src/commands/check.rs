@@ -1,4 +1,4 @@
-//! `carrystep check`: any VCD against a move file.
+//! `carrystep check`: checks any VCD against a move file.
 
 use crate::arguments::Check;
 use crate::failure::{Failure, refused};
@@ -20,7 +20,7 @@ pub struct Checked<'a> {
     check: &'a Report,
 }
 
-/// Checks a capture.
+/// Checks a capture and prints the report.
 pub fn run(arguments: &Check) -> Result<(), Failure> {
     let file = job::load(&arguments.file, arguments.fit_ns)?;
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
@@ -81,7 +81,8 @@ fn read(
     Ok(checker.finish())
 }
 
-/// Refuses times so uncertain that a pulse could be another: then nothing is checked.
+/// Refuses a slack of more than half of the shortest period, because a pulse could then match the
+/// neighbouring step.
 fn uncertain_by_less_than_a_period(slack_ns: u64, plan: &carrystep_plan::Plan) -> Result<(), Failure> {
     let axes = plan.moves.iter().flat_map(|planned| &planned.axes);
     let fastest = axes.map(|axis| axis.peaks.steps_per_s(&plan.build.timebase)).fold(0.0, f64::max);
@@ -94,7 +95,8 @@ fn uncertain_by_less_than_a_period(slack_ns: u64, plan: &carrystep_plan::Plan) -
     Ok(())
 }
 
-/// Whether moves that start at `origin_ps` are in a capture that ends at `end_ps`; if not, why.
+/// Checks that moves that start at `origin_ps` overlap a capture that ends at `end_ps`; the error
+/// is the reason.
 fn overlap(origin_ps: i64, end_ps: u64, plan: &carrystep_plan::Plan) -> Result<(), String> {
     let length_ps = i128::from(plan.total_ticks()) * i128::from(plan.build.timebase.tick_ns()) * 1000;
     let (from, to) = (i128::from(origin_ps), i128::from(origin_ps) + length_ps);
@@ -106,7 +108,7 @@ fn overlap(origin_ps: i64, end_ps: u64, plan: &carrystep_plan::Plan) -> Result<(
     ))
 }
 
-/// What makes two builds' time the same.
+/// The settings in which two builds must agree to have the same time base.
 fn figures(timebase: &Timebase) -> String {
     format!("clock_hz = {}, tick_ns = {}, phases = {}", timebase.clock_hz(), timebase.tick_ns(), timebase.phases())
 }

@@ -1,4 +1,4 @@
-//! `carrystep demo`: the main job on the shipped machine, into one folder.
+//! `carrystep demo`: the main job on the shipped machine, with all files in one folder.
 
 use crate::arguments::{Core, Demo};
 use crate::failure::{Failure, refused};
@@ -9,7 +9,7 @@ use carrystep_files::{Machine, MoveFile};
 use carrystep_plan::plan;
 use std::path::Path;
 
-/// The shipped machine's file name.
+/// The file name of the shipped machine.
 pub const MACHINE_FILE: &str = "six-axis.toml";
 const MACHINE: &str = include_str!("../../../../sim/six-axis.toml");
 const MOVES: &str = include_str!("../../../../sim/demo.toml");
@@ -20,7 +20,7 @@ pub fn machine() -> Result<Machine, Failure> {
     Ok(Machine::from_source(&source)?)
 }
 
-/// Plans, exports, simulates, checks, writes and prints.
+/// Plans, exports, simulates and checks the demo, writes its files and prints the report.
 pub fn run(arguments: &Demo) -> Result<(), Failure> {
     let out = |name: &str| arguments.out.join(name);
     write_file(&out(MACHINE_FILE), MACHINE)?;

@@ -1,4 +1,4 @@
-//! `carrystep doctor`: tools, serial ports and permissions.
+//! `carrystep doctor`: checks tools, serial ports and permissions.
 
 use crate::arguments::Doctor;
 use crate::commands::boards;
@@ -18,7 +18,8 @@ pub struct Examined {
     report: Report,
 }
 
-/// Looks, tells, and fails where something is missing (3) or may not be used (1).
+/// Prints the report. Fails with status 3 if a tool is missing and with status 1 if a device cannot
+/// be used.
 pub fn run(arguments: &Doctor) -> Result<(), Failure> {
     let board = arguments.board.as_deref().map(boards::find).transpose()?;
     let report = Report::of(&Host::this(), board.as_deref());

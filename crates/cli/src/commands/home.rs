@@ -1,4 +1,5 @@
-//! `carrystep home`: the axes of a machine find their limit switches, and the command remembers where machine zero is.
+//! `carrystep home`: the axes of a machine find their limit switches, and the command stores where
+//! machine zero is.
 
 use crate::arguments::Home;
 use crate::connection::{self, Connection};
@@ -35,13 +36,14 @@ pub struct Report {
 #[derive(JsonSchema, Serialize)]
 struct AxisReport {
     axis: String,
-    /// Position registers before, where the limit was accepted in the slow approach, and after; steps.
+    /// Position register before homing, in steps. `edge` is the position at which the slow approach
+    /// found the limit; `position` is the register after homing.
     before: i32,
     edge: Option<i32>,
     position: i32,
-    /// Where it stands, machine coordinate in units of the axis; nothing where it is not homed.
+    /// Machine coordinate in units of the axis; null if the axis is not homed.
     machine: Option<f64>,
-    /// What the axis is measured in.
+    /// The unit of the axis.
     unit: String,
     homed: bool,
 }
@@ -71,7 +73,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// Homes the axes that are named, or all that can.
+/// Homes the named axes, or all that have a home table.
 pub fn run(arguments: &Home) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
     let groups = homing::groups(&machine, &arguments.axes)?;
@@ -97,7 +99,8 @@ fn drive(
     homing: &Homing<'_>,
     memory: &mut Memory,
 ) -> Result<Report, Failure> {
-    // The port is closed before the control gives up its claim: what is bound first is dropped last.
+    // `control` is bound before `board` so that it is dropped later: the port is closed before the
+    // claim on it ends.
     let Connection { mut control, port, mut board, axes, .. } = connection;
     let begun = Instant::now();
     let facts = *board.facts();
@@ -121,7 +124,7 @@ fn drive(
         }),
     };
     line.finish_and_clear();
-    // An axis that was to be homed is nowhere until it is.
+    // From here until homing has succeeded, the axes to be homed have no machine coordinate.
     (0..axes.len())
         .filter(|number| homing.mask() >> number & 1 == 1)
         .for_each(|number| memory.set_offset(number, None));
@@ -154,7 +157,8 @@ fn drive(
             for number in (0..axes.len()).filter(|number| why == HomingFault::Closed && mask >> number & 1 == 1) {
                 memory.set_limit(number, closed(machine, number, last.1, positions[number]));
             }
-            // A file that cannot be written does not match the board, and counts for nothing.
+            // If the file cannot be written, the old one no longer matches the board and is
+            // ignored.
             let _ = memory.keep(&mut board);
             return Err(Failure::Run(homing::fault(machine, mask, why)));
         }
@@ -197,7 +201,7 @@ fn drive(
     }
 }
 
-/// The way of an axis that met a limit while it moved away from its switch, as its limit to be remembered.
+/// The limit to remember for an axis that met a limit while it moved away from its home switch.
 fn closed(machine: &Machine, number: usize, stage: Stage, at: i32) -> Option<Limit> {
     let home = machine.axes[number].home.as_ref()?;
     let away = if home.toward == End::Max { -1 } else { 1 };

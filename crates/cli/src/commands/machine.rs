@@ -1,4 +1,5 @@
-//! `carrystep machine new`: a machine file from options or answers, read by our own reader before it is written.
+//! `carrystep machine new`: makes a machine file from options or answers, and reads it back as any
+//! machine file before it is written.
 
 mod ask;
 mod axis;
@@ -32,13 +33,13 @@ pub struct Written<'a> {
     build_id: String,
 }
 
-/// Where the clock comes from.
+/// The source of the clock.
 pub enum Clock {
     Board(Box<Cow<'static, Board>>),
     Hz(u64),
 }
 
-/// What is to be written, as far as it is known.
+/// The content of the new file, as far as it is known.
 pub struct Wishes {
     clock: Option<Clock>,
     limits: Option<String>,
@@ -108,7 +109,7 @@ fn new(arguments: &MachineNew) -> Result<(), Failure> {
 }
 
 impl Wishes {
-    /// What is open, a line each.
+    /// The open points, one line each.
     fn missing(&self) -> Vec<String> {
         let mut missing = Vec::new();
         if self.clock.is_none() {
@@ -126,7 +127,7 @@ impl Wishes {
         missing
     }
 
-    /// The file.
+    /// The text of the file.
     fn text(&self) -> Result<String, Failure> {
         let (clock_hz, tick_ns, phases, why) = self.time()?;
         let title = match &self.clock {
@@ -166,7 +167,7 @@ impl Wishes {
         ))
     }
 
-    /// Clock, tick and phases, and why this tick.
+    /// Clock (Hz), tick (ns), number of phases, and the reason for this tick.
     fn time(&self) -> Result<(u64, u64, u32, String), Failure> {
         let axes = self.axes.len();
         let no_tick = |hz: u64| Failure::input(format!("no tick at {} MHz holds the turns of {axes} axes", mhz(hz)));
@@ -196,7 +197,8 @@ impl Wishes {
         }
     }
 
-    /// Reads the text as any machine file is read, and sees whether its engine can be, on the board where there is one.
+    /// Reads the text as any machine file is read, and checks that its engine can be built, on the
+    /// board if there is one.
     fn check(&self, source: &Source) -> Result<(Machine, String), Failure> {
         let machine = Machine::from_source(source)?;
         let refused = |error: String| Failure::input(format!("{}: {error}", source.path.display()));

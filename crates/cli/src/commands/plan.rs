@@ -1,4 +1,4 @@
-//! `carrystep plan`: the integer segments of a move file, or why there are none.
+//! `carrystep plan`: the integer segments of a move file, or the reason why it cannot be planned.
 
 use crate::arguments::Plan as Arguments;
 use crate::failure::{Failure, refused};
@@ -35,12 +35,12 @@ struct AxisJson<'a> {
     axis: &'a str,
     shape: &'a str,
     steps: i64,
-    /// Exact target less rounded target so far, steps.
+    /// Exact target minus rounded target so far, in steps.
     rounding_steps: f64,
     segments: Vec<SegmentJson>,
 }
 
-/// Numbers of 64 bits as strings: many JSON readers keep only 53.
+/// Numbers of 64 bits are strings, because many JSON readers keep only 53 bits.
 #[derive(JsonSchema, Serialize)]
 struct SegmentJson {
     ticks: u32,
@@ -124,9 +124,9 @@ fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
     text
 }
 
-/// What rounding to whole steps added, where it did.
+/// The line that reports the rounding to whole steps; empty if there is none.
 fn rounded(axis: &Axis, rounding: f64) -> String {
-    // What four places do not show is not said.
+    // A rounding that four decimal places do not show is not reported.
     if rounding.abs() < 5e-5 {
         return String::new();
     }

@@ -1,4 +1,4 @@
-//! `carrystep profile`: the curves of the literature, listed, drawn and summed up.
+//! `carrystep profile`: the curves of the literature as figures, tables and plots.
 
 use crate::arguments::Profile;
 use crate::failure::Failure;
@@ -33,7 +33,7 @@ struct ProfileJson {
     steps: Vec<Row>,
 }
 
-/// Shows, lists and draws what is asked for.
+/// Prints, lists and draws the requested curves.
 pub fn run(arguments: &Profile) -> Result<(), Failure> {
     only_once(arguments)?;
     let request = arguments.request();
@@ -68,7 +68,7 @@ fn to_stdout(arguments: &Profile) -> bool {
     arguments.csv.as_deref() == Some(Path::new("-"))
 }
 
-/// All files begun, then all written, then all there.
+/// Begins all files, then writes them, then lets them appear.
 fn files(arguments: &Profile, references: &[Reference], drive: &Drive) -> Result<Vec<PathBuf>, Failure> {
     let claim = |path: Option<&PathBuf>| path.map(|path| OutputFile::claim(path)).transpose();
     let claims = [claim(arguments.csv.as_ref().filter(|_| !to_stdout(arguments)))?, claim(arguments.plot.as_ref())?];
@@ -83,7 +83,7 @@ fn files(arguments: &Profile, references: &[Reference], drive: &Drive) -> Result
     [csv, plot].into_iter().flatten().map(OutputFile::keep).collect()
 }
 
-/// In millimetres where the motor moves something.
+/// The unit of the plot: millimetres if the drive has a travel per turn, otherwise steps.
 fn scale(drive: &Drive) -> Result<Scale, ReferenceError> {
     let unit = drive.travel_per_rev_mm.map_or(Length::Step, |_| Length::Millimetre);
     Ok(Scale { unit, steps: drive.steps_in(unit)? })

@@ -1,4 +1,5 @@
-//! `carrystep run` and `jog`: plan, connect, stream, tell.
+//! `carrystep run` and `jog`: plan the moves, connect to the board, stream them and report the
+//! outcome.
 
 use crate::arguments::{Jog, Port, Run};
 use crate::connection;
@@ -9,7 +10,7 @@ use carrystep_files::{Machine, MoveFile, Source, decimal};
 use carrystep_plan::plan;
 use std::path::Path;
 
-/// Makes the moves of a file.
+/// Executes the moves of a file.
 pub fn run(arguments: &Run) -> Result<(), Failure> {
     let file = job::load(&arguments.file, arguments.fit_ns)?;
     let name = arguments.file.as_path();
@@ -20,7 +21,7 @@ pub fn run(arguments: &Run) -> Result<(), Failure> {
 pub fn jog(arguments: &Jog) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
     let Jog { axis, distance, time, .. } = arguments;
-    // A key of TOML in quotes: no name on the command line is more than a name.
+    // Quoted as a TOML key, so that the name cannot contain TOML syntax.
     let axis = serde_json::to_string(axis).map_err(|error| Failure::Run(error.to_string()))?;
     let time = time.map_or_else(String::new, |seconds| format!("time = {seconds:?}\n"));
     let text = format!("[[move]]\nprofile = \"trapezoid\"\n{time}to = {{ {axis} = {distance:?} }}\n");
@@ -31,7 +32,8 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
     told(&moved(&file, &arguments.machine, &arguments.port, "jog", arguments.into_limit)?, arguments.json)
 }
 
-/// Plans everything before the port is opened, and connects before anything moves.
+/// Plans and executes the moves. Everything is planned before the port is opened, and nothing moves
+/// before the board is identified.
 fn moved(
     file: &MoveFile,
     name: &Path,
@@ -45,7 +47,7 @@ fn moved(
     drive(connection, &streamed, into_limit)
 }
 
-/// A jog of less than half a step, with the size of a step.
+/// The failure for a jog of less than half a step, which states the size of a step.
 fn nothing_to_do(file: &MoveFile, arguments: &Jog) -> Option<Failure> {
     let first = file.moves.first().filter(|only| only.steps.iter().all(|&steps| steps == 0))?;
     let (number, axis) = (0..).zip(&file.machine.axes).find(|(_, axis)| axis.name == arguments.axis)?;

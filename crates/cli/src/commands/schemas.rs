@@ -1,4 +1,4 @@
-//! `carrystep schemas`: the JSON Schemas of all documents, as `docs/schemas/` has them.
+//! `carrystep schemas`: writes the JSON Schemas of all documents, as they are in `docs/schemas/`.
 
 use crate::arguments::Schemas;
 use crate::documents;
@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::output::{self, write_file};
 use std::fmt::Write as _;
 
-/// Writes a file for each document.
+/// Writes one file per document.
 pub fn run(arguments: &Schemas) -> Result<(), Failure> {
     let mut wrote = String::new();
     for (name, schema) in documents::schemas() {

@@ -1,4 +1,5 @@
-//! `carrystep simulate`: plan, run, check; waveform, CSV and plot on the way.
+//! `carrystep simulate`: plans, simulates and checks a move file, and writes waveform, CSV and
+//! plot.
 
 use crate::arguments::Simulate;
 use crate::failure::{Failure, refused};

@@ -1,4 +1,4 @@
-//! `carrystep status`: what a board does, and where its axes are.
+//! `carrystep status`: the state of a board and the positions of its axes.
 
 use crate::arguments::Status;
 use crate::connection::{self, Connection};
@@ -11,10 +11,12 @@ use carrystep_link::frame;
 use carrystep_link::registers::DISCARDED;
 use std::time::{Duration, Instant};
 
-/// A command that drives a board looks at its socket every few milliseconds; a busy computer may hold it up.
+/// How long the driving command may take to answer. It polls its socket every few milliseconds, but
+/// a busy computer may delay it.
 const ANSWER: Duration = Duration::from_secs(2);
 
-/// Tells what a board does; while another command drives it, that command is asked.
+/// Reports the state of a board. If another command drives the board, the state comes from that
+/// command.
 pub fn status(arguments: &Status) -> Result<(), Failure> {
     let begin = Instant::now();
     loop {
@@ -23,14 +25,16 @@ pub fn status(arguments: &Status) -> Result<(), Failure> {
         }
         match connection::to_peer(&arguments.peer, arguments.peer.baud, "status") {
             Ok(connection) => return tell(&look(connection)?, arguments.json),
-            // A command that has just begun will listen, or one that has just ended will give the port back.
+            // A command that has just begun will listen; one that has just ended will release the
+            // port.
             Err(refused) if refused.busy && begin.elapsed() < ANSWER => std::thread::sleep(Duration::from_millis(5)),
             Err(refused) => return Err(refused.failure),
         }
     }
 }
 
-/// What the command says that drives the board at this port; nothing where none does, or knows the board yet.
+/// The state as the driving command reports it; `None` if no command drives the board or it is not
+/// yet connected.
 fn asked(port: &str) -> Result<Option<Found>, Failure> {
     let Some(mut caller) = control::call(port) else { return Ok(None) };
     match caller.ask(Request::Status, ANSWER) {
@@ -43,15 +47,16 @@ fn asked(port: &str) -> Result<Option<Found>, Failure> {
     }
 }
 
-/// Prints it.
+/// Prints the state.
 pub fn tell(found: &Found, json: bool) -> Result<(), Failure> {
     if json { output::print_json(found) } else { output::print(&found.to_string()) }
 }
 
-/// Asks the board for everything, and gives the port back.
+/// Reads the whole state from the board and releases the port.
 pub fn look(connection: Connection) -> Result<Found, Failure> {
     let memory = Memory::recall(&connection);
-    // The port is closed before the control gives up its claim: what is bound first is dropped last.
+    // `control` is bound before `board` so that it is dropped later: the port is closed before the
+    // claim on it ends.
     let Connection { control: _control, mut board, axes, steps_per_unit, port } = connection;
     let failed = |error| connection::broken(&error, &axes);
     let status = board.look().map_err(failed)?;
@@ -59,7 +64,8 @@ pub fn look(connection: Connection) -> Result<Found, Failure> {
     for axis in (0..).take(axes.len()) {
         discarded.push(board.register(frame::of_axis(DISCARDED, axis)).map_err(failed)?);
     }
-    // Motors may have lost steps: the next clear forgets where they are, and nobody should trust it before that.
+    // After a freeze, motors may have lost steps. The next clear discards the machine coordinates,
+    // so they are not shown before it either.
     let frozen = found::cause(&status.answer).is_some_and(memory::always_freezes);
     let known = Known { port, facts: *board.facts(), axes, steps_per_unit };
     let mut found = Found::new(&status, &known, Some(&discarded));

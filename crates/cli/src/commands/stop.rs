@@ -1,4 +1,4 @@
-//! `carrystep stop`: stops what moves, through the command that drives it where there is one.
+//! `carrystep stop`: stops all axes of a board, through the command that drives it if there is one.
 
 use crate::arguments::Stop;
 use crate::commands::status::{look, tell};
@@ -11,15 +11,16 @@ use carrystep_link::HostError;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// So long the command that drives may take until it has read the request. It looks every few milliseconds; a busy
-/// computer may hold it up.
+/// How long the driving command may take to read the request. It polls its socket every few
+/// milliseconds, but a busy computer may delay it.
 const TAKEN: Duration = Duration::from_secs(2);
-/// So long it may take to ramp down and to end: as the driver waits, and more.
+/// How long it may take to ramp down and to end: longer than the driver's own time-out.
 const ENDED: Duration = Duration::from_secs(15);
-/// So long a port may stay busy without a command that can be asked: `status`, or one that is about to listen.
+/// How long a port may stay busy without a command that listens: `status` may hold it, or a command
+/// that is about to listen.
 const BUSY: Duration = Duration::from_secs(2);
 
-/// Stops what moves; resumes and takes the power away where that is wished.
+/// Stops all axes; then clears the stop and switches the drivers off, if the arguments say so.
 pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     let (mut connection, stopped) = reach(arguments)?;
     let mut memory = Memory::recall(&connection);
@@ -37,14 +38,15 @@ pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     if arguments.off {
         board.disable().map_err(failed)?;
     }
-    // What cannot be written does not match the board, and counts for nothing.
+    // If the file cannot be written, the old one no longer matches the board and is ignored.
     let _ = memory.keep(board);
     let mut found = look(connection)?;
     found.stopped = stopped;
     tell(&found, arguments.json)
 }
 
-/// Makes whoever drives the board stop and end, and takes the port; says whom it has stopped.
+/// Makes the driving command stop and end, and connects to the port. Also returns the command that
+/// was stopped.
 fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
     let port = &arguments.peer.port.name;
     let mut stopped: Option<Holder> = None;
@@ -56,11 +58,11 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
             stopped = Some(caller.holder);
             begin = Instant::now();
         }
-        // At the baud rate at which the other command has spoken, where there was one.
+        // The baud rate is that of the stopped command, if there was one.
         let baud = stopped.as_ref().map_or(arguments.peer.baud, |holder| holder.baud);
         match connection::to_peer(&arguments.peer, baud, "stop") {
             Ok(connection) => return Ok((connection, stopped)),
-            // A command that was stopped is about to give the port back; one that has just begun is about to listen.
+            // A stopped command is about to release the port; a new one is about to listen.
             Err(refused) if refused.busy && begin.elapsed() < BUSY => {
                 if interrupt::watch().load(Ordering::Relaxed) {
                     return Err(Failure::Run("interrupted".to_owned()));
@@ -83,7 +85,7 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
     }
 }
 
-/// Whether that command has taken the stop and ended; false where it had ended before.
+/// Returns true if the command has accepted the stop and ended, and false if it had ended before.
 fn ask(port: &str, caller: &mut Caller) -> Result<bool, Failure> {
     match caller.ask(Request::Stop, TAKEN) {
         Reply::Line(_) if caller.ends(ENDED) => Ok(true),

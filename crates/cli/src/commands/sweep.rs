@@ -1,4 +1,5 @@
-//! `carrystep sweep`: many machines and moves over all cores, or the reports of many shards as one.
+//! `carrystep sweep`: runs many machines and moves on all processor cores, or merges the reports of
+//! shards.
 
 use crate::arguments::{Core, Sweep};
 use crate::failure::Failure;
@@ -13,7 +14,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Runs a shard, or merges reports.
+/// Runs a shard, or merges reports, and prints the report.
 pub fn run(arguments: &Sweep) -> Result<(), Failure> {
     let name = arguments.file.as_ref().map_or("sweep".to_owned(), |file| format!("sweep {}", file.display()));
     let junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
@@ -24,7 +25,7 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
             let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr_with_hz(10));
             let report = carrystep_sweep::run(&sweep, arguments.shard, judge, || bar.inc(1));
             bar.finish_and_clear();
-            // The cases that were left have not been judged.
+            // After an interrupt, the remaining cases have not been judged.
             interrupt::check()?;
             report
         }
@@ -45,7 +46,7 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
     }
 }
 
-/// The whole, and each case that failed and is spelled out.
+/// Writes one test case for the whole sweep and one for each failed case that the report lists.
 fn cases(mut junit: JunitFile, report: &Report) -> Result<(), Failure> {
     let Report { passed, cases_passed, cases_refused, cases_failed, .. } = report;
     let counts = format!("{cases_passed} passed, {cases_refused} refused, {cases_failed} failed");
@@ -63,7 +64,7 @@ fn read(path: &Path) -> Result<Report, Failure> {
     serde_json::from_slice(&text).map_err(|error| wrong(format!("no report of a sweep: {error}")))
 }
 
-/// Plans, simulates and checks a case.
+/// Plans, simulates and checks one case.
 fn judge(case: &Case) -> Verdict {
     let Ok(file) = &case.file else { return Verdict::Failed("no move file".to_owned()) };
     let plan = match plan::<f64>(file) {
@@ -81,7 +82,7 @@ fn judge(case: &Case) -> Verdict {
     }
 }
 
-/// Each as a part of what is allowed, 1 at the limit; the worst axis counts.
+/// The worst figure of all axes, each as a fraction of its limit: 1 is at the limit.
 fn figures(done: &job::Done) -> BTreeMap<&'static str, f64> {
     let needed = |required: f64, found: Option<f64>| found.map(|found| required / found);
     let early = |axis: &AxisReport| axis.error_min_ns.map(|error| -error / axis.error_bound_ns);

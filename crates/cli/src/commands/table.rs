@@ -1,4 +1,4 @@
-//! `carrystep table`: a timer compare table as a C header, and its player.
+//! `carrystep table`: makes a timer compare table as a C header, and writes the player for it.
 
 use crate::arguments::{Table as Arguments, TableKind};
 use crate::failure::Failure;
@@ -17,7 +17,7 @@ pub struct Tabled<'a> {
     files: Vec<PathBuf>,
 }
 
-/// Makes a table, and writes it where it is wanted.
+/// Makes a table and prints it or writes it to the folder.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let kind = &arguments.kind;
     let output = &kind.common().output;
@@ -41,7 +41,7 @@ fn json(table: &Table, files: Vec<PathBuf>) -> Result<(), Failure> {
     output::print_json(&Tabled { passed: true, table, files })
 }
 
-/// The files that play this table.
+/// The source files that play this table.
 fn player(kind: &TableKind) -> impl Iterator<Item = (&'static str, &'static str)> {
     let inverse = matches!(kind, TableKind::Sine { inverse: Some(_), .. });
     let bare = kind.common().output.bare;
@@ -49,7 +49,7 @@ fn player(kind: &TableKind) -> impl Iterator<Item = (&'static str, &'static str)
     PLAYER.into_iter().filter(move |(name, _)| needed(name))
 }
 
-/// All files begun, then all written, then all there.
+/// Begins all files, then writes them, then lets them appear.
 fn write(folder: &Path, texts: &[(String, &str)]) -> Result<Vec<PathBuf>, Failure> {
     let claim = |(name, _): &(String, &str)| OutputFile::claim(&folder.join(name));
     let claims = texts.iter().map(claim).collect::<Result<Vec<_>, _>>()?;

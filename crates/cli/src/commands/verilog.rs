@@ -1,4 +1,5 @@
-//! `carrystep verilog`: the gateware of a machine as Verilog; with a board, all that its toolchain needs.
+//! `carrystep verilog`: writes the gateware of a machine as Verilog; with a board, all files that
+//! its toolchain needs.
 
 use crate::arguments::{Core, Verilog};
 use crate::commands::{boards, demo};
@@ -21,9 +22,9 @@ pub struct Written {
     top: &'static str,
     /// The tick that is built in, ns.
     tick_ns: u64,
-    /// How it was chosen, where the machine file gives none and the clock is not the default.
+    /// How the tick was chosen, if the machine file gives none and the clock is not the default.
     tick_note: Option<String>,
-    /// What stops the axes, as counted; the parallel core has no guard.
+    /// The guard's times as the gateware counts them; the parallel core has no guard.
     #[serde(skip_serializing_if = "Option::is_none")]
     guard: Option<GuardFigures>,
     files: Vec<PathBuf>,
@@ -46,7 +47,7 @@ pub fn run(arguments: &Verilog) -> Result<(), Failure> {
     output::print(&listed(&written.files, written.tick_note.as_deref()))
 }
 
-/// The files, and what was chosen for them.
+/// The list of written files, and the note on the chosen tick.
 fn listed(files: &[PathBuf], note: Option<&str>) -> String {
     let note = note.map_or_else(String::new, |note| note.replace("; ", "\n") + "\n");
     files.iter().map(|file| format!("wrote {}\n", file.display())).chain([note]).collect()
@@ -67,7 +68,7 @@ pub struct WrittenForBoard<'a> {
     files: Vec<PathBuf>,
 }
 
-/// Everything in a board's folder.
+/// Writes all files of a board's folder.
 fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
     let board = boards::find(board)?;
     let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
@@ -91,7 +92,7 @@ fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
     output::print(&listed(&files, tick_note.as_deref()))
 }
 
-/// The machine that `hdl-out/core` is made from.
+/// The machine from which `hdl-out/core` is made.
 fn shipped(core: Core) -> Result<(Machine, String), Failure> {
     match core {
         Core::Parallel => Ok((demo::machine()?, "sim/six-axis.toml".to_owned())),

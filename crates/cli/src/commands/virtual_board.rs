@@ -1,4 +1,4 @@
-//! `carrystep virtual-board`: the gateware of a machine behind a pseudo-terminal.
+//! `carrystep virtual-board`: runs the gateware of a machine behind a pseudo-terminal.
 
 use crate::arguments::{BoardLevel, VirtualBoard};
 use crate::connection;
@@ -20,16 +20,16 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
 
-/// How far a fast board goes without its host: this part of its watchdog's time,
+/// A fast board runs ahead of its host by at most the watchdog's time divided by this.
 const PART_OF_WATCHDOG: u64 = 4;
-/// or where it has none this part of a second.
+/// Without a watchdog, it runs ahead by at most a second divided by this.
 const PART_OF_SECOND: u64 = 40;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
 pub struct Served {
     passed: bool,
-    /// The board's own time.
+    /// Time of the board, in seconds.
     seconds: f64,
     clocks: u64,
     fault: Option<String>,
@@ -41,11 +41,11 @@ pub struct Served {
 struct AxisServed {
     axis: String,
     position: i32,
-    /// Where the level can tell.
+    /// Discarded steps, if the level can report them.
     discarded: Option<u32>,
 }
 
-/// Serves until Ctrl-C, or `end` on standard input.
+/// Runs until Ctrl-C, or `end` on standard input.
 pub fn run(arguments: &VirtualBoard) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
     let (uart, _) = connection::wanted(&machine, &arguments.machine)?;
@@ -64,7 +64,7 @@ fn serve(board: impl Gateware, machine: &Machine, arguments: &VirtualBoard) -> R
     let terminal = Terminal::new().map_err(|error| Failure::Run(format!("no pseudo-terminal: {error}")))?;
     let told = format!("{}: {} baud, build {}\n", terminal.name(), uart.baud(), id);
     if arguments.json {
-        // Nobody is left to tell if this fails.
+        // If this write fails, there is no channel left to report it.
         let _ = std::io::stderr().write_all(told.as_bytes());
     } else {
         output::print(&told)?;
@@ -80,7 +80,7 @@ fn serve(board: impl Gateware, machine: &Machine, arguments: &VirtualBoard) -> R
     tell(&served(&manned.desk.board, machine, files), arguments.json)
 }
 
-/// Clocks.
+/// How far a fast board may run ahead of its host, in clocks.
 fn ahead(build: &EngineBuild) -> u64 {
     let (guard, time) = (&build.guard, &build.timebase);
     match u64::from(guard.watchdog) * u64::from(guard.round) * u64::from(time.clocks_per_tick()) {
@@ -89,7 +89,8 @@ fn ahead(build: &EngineBuild) -> u64 {
     }
 }
 
-/// Serves, and writes what the pins do. A capture begins with the time of the first start; before it no pin changes.
+/// Runs the board and records its pins. The capture begins at the first start, because no pin
+/// changes before it.
 fn capture(
     manned: &mut Manned<impl Gateware>,
     machine: &Machine,
@@ -108,7 +109,7 @@ fn capture(
     while goes_on && manned.step(&mut replay)? {
         replay.reach(manned.desk.board.cycle());
     }
-    // The last of its outputs is told where the next cycle begins.
+    // The replay reports the last outputs when the next cycle begins.
     replay.reach(manned.desk.board.cycle() + 1);
     Ok(feed.end(manned.desk.board.cycle())?)
 }

@@ -1,29 +1,32 @@
-//! The other end of the socket: a command that wants something of the one that drives the board.
+//! The client end of the socket: a command that sends a request to the command that drives the
+//! board.
 
 use super::{Holder, Request, claim, folder};
 use std::io::{self, BufRead as _, BufReader, Write as _};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
-/// A command that drives a board, called.
+/// A connection to the command that drives a board.
 pub struct Caller {
     stream: BufReader<UnixStream>,
-    /// Who that is.
+    /// That command.
     pub holder: Holder,
 }
 
-/// What became of a request.
+/// The result of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Reply {
-    /// This was answered.
+    /// The answer, one line.
     Line(String),
-    /// The command has ended, and with it its hold on the port.
+    /// The command has ended and released the port.
     Ended,
-    /// Nothing was answered in that time. The request stays: should the command wake up, it reads it.
+    /// No answer came within the time. The request remains in the socket: if the command resumes,
+    /// it reads it.
     Silent,
 }
 
-/// Calls the command that drives the board at this port; nothing where none of this user does.
+/// Connects to the command that drives the board at this port; `None` if no command of this user
+/// does.
 pub fn call(port: &str) -> Option<Caller> {
     let holder = claim::holder(port).filter(|holder| holder.listens)?;
     let name = claim::device(port)?;
@@ -33,7 +36,7 @@ pub fn call(port: &str) -> Option<Caller> {
 }
 
 impl Caller {
-    /// Asks for something, and waits so long for the answer.
+    /// Sends a request and waits up to `wait` for the answer.
     pub fn ask(&mut self, request: Request, wait: Duration) -> Reply {
         match writeln!(self.stream.get_mut(), "{}", request.word()) {
             Ok(()) => self.line(wait),
@@ -41,7 +44,7 @@ impl Caller {
         }
     }
 
-    /// Waits so long for the end of the command; whether it has come.
+    /// Waits up to `wait` for the command to end; returns true if it has ended.
     pub fn ends(&mut self, wait: Duration) -> bool {
         let begin = Instant::now();
         loop {
@@ -55,7 +58,7 @@ impl Caller {
     }
 
     fn line(&mut self, wait: Duration) -> Reply {
-        // A time-out of zero would be none.
+        // A time-out of zero would mean no time-out.
         let wait = wait.max(Duration::from_millis(1));
         let mut line = String::new();
         if self.stream.get_ref().set_read_timeout(Some(wait)).is_err() {

@@ -1,4 +1,5 @@
-//! Who holds a port: a lock file named after the device's number, so that every name of the device leads to it.
+//! The claim on a port: a lock file named after the device's number, so that every path of the
+//! device leads to the same file.
 
 use super::door::Door;
 use super::{Holder, folder};
@@ -8,17 +9,18 @@ use std::io::{self, Read as _, Seek as _, Write as _};
 use std::os::unix::fs::{FileTypeExt as _, MetadataExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 
-/// A port that this command holds, until it is dropped or the process ends.
+/// A port that this command holds until the claim is dropped or the process ends.
 pub struct Claim {
-    /// The lock file, locked; nothing where the port is no device, which the serial port refuses by its own words.
+    /// The locked file; `None` if the port is not a device, in which case opening the port fails
+    /// with its own message.
     lock: Option<(File, PathBuf)>,
     holder: Holder,
 }
 
-/// Claims the port for a command of this process. Nothing: another command of this user holds it.
+/// Claims the port for a command of this process. Returns `None` if another command of this user
+/// holds it.
 ///
-/// # Errors
-/// The system gives no folder or no file for the lock.
+/// # Errors The system refuses the folder or the lock file.
 pub fn claim(port: &str, baud: u32, command: &'static str, listens: bool) -> io::Result<Option<Claim>> {
     claim_in(
         folder::folder,
@@ -38,7 +40,8 @@ fn claim_in(folder: impl Fn() -> io::Result<PathBuf>, port: &str, holder: Holder
             Err(TryLockError::Error(error)) => return Err(error),
             Ok(()) => {}
         }
-        // The holder before may have removed the file between our opening and our locking it.
+        // The previous holder may have removed the file after it was opened and before it was
+        // locked.
         if path.metadata().is_ok_and(|there| file.metadata().is_ok_and(|own| own.ino() == there.ino())) {
             let mut claim = Claim { lock: Some((file, path)), holder };
             claim.tell();
@@ -48,23 +51,24 @@ fn claim_in(folder: impl Fn() -> io::Result<PathBuf>, port: &str, holder: Holder
 }
 
 impl Claim {
-    /// Who this is.
+    /// The holder that the lock file names.
     pub const fn holder(&self) -> &Holder {
         &self.holder
     }
 
-    /// The socket beside the lock. What a holder that was killed has left is replaced.
+    /// Opens the socket beside the lock file. A socket that a killed holder has left is replaced.
     pub(super) fn listen(&self) -> io::Result<Option<Door>> {
         self.lock.as_ref().map(|(_, path)| Door::open(path.with_extension("socket"))).transpose()
     }
 
-    /// The board has said how long its watchdog waits.
+    /// Adds the watchdog's time of the connected board to the lock file.
     pub(super) fn connected(&mut self, facts: &Facts) {
         self.holder.watchdog = Some((facts.watchdog_ticks, facts.tick_ns));
         self.tell();
     }
 
-    /// Writes into the lock file who holds it. It is a courtesy to others, so a full disk stops nothing.
+    /// Writes the holder into the lock file. The content only serves messages, so a failed write is
+    /// ignored.
     fn tell(&mut self) {
         if let Some((file, _)) = &mut self.lock
             && let Ok(text) = serde_json::to_string(&self.holder)
@@ -77,13 +81,13 @@ impl Claim {
 impl Drop for Claim {
     fn drop(&mut self) {
         if let Some((_, path)) = &self.lock {
-            // It is still locked, so nobody else uses it.
+            // The file is still locked, so no other command uses it.
             let _ = std::fs::remove_file(path);
         }
     }
 }
 
-/// Who holds the port, where that is a command of this user.
+/// The holder of the port, if it is a command of this user.
 pub fn holder(port: &str) -> Option<Holder> {
     let name = device(port)?;
     folder::all().iter().find_map(|folder| held(&folder.join(&name).with_extension("lock")))
@@ -93,7 +97,7 @@ fn held(path: &Path) -> Option<Holder> {
     let mut file = File::open(path).ok()?;
     match file.try_lock_shared() {
         Err(TryLockError::WouldBlock) => {}
-        // Whoever wrote it is gone.
+        // The file is not locked, so its writer has ended.
         _ => return None,
     }
     let mut text = String::new();
@@ -101,7 +105,8 @@ fn held(path: &Path) -> Option<Holder> {
     serde_json::from_str(&text).ok()
 }
 
-/// A name for the device behind a port: its major and minor number; nothing where there is no such device.
+/// A name for the device of a port, made from its major and minor number; `None` if there is no
+/// such device.
 pub(super) fn device(port: &str) -> Option<String> {
     let there = std::fs::metadata(port).ok().filter(|there| there.file_type().is_char_device())?;
     let number = there.rdev();
@@ -113,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_name_of_a_device_leads_to_its_number() {
+    fn every_path_of_a_device_gives_the_same_number() {
         let folder = tempfile::tempdir().unwrap();
         let link = folder.path().join("port");
         std::os::unix::fs::symlink("/dev/null", &link).unwrap();
@@ -138,7 +143,7 @@ mod tests {
         assert_eq!(held(&path), Some(Holder { watchdog: Some((50_000, 2000)), ..who("run") }));
         drop(first);
         assert_eq!(held(&path), None);
-        // What a holder that was killed has left: a file that nobody has locked.
+        // A killed holder leaves a file that nobody has locked.
         std::fs::write(&path, serde_json::to_string(&who("run")).unwrap()).unwrap();
         assert_eq!(held(&path), None);
         let second = take("jog").expect("nobody has it");

@@ -1,18 +1,20 @@
-//! The socket of a command that drives a board: lines in, lines out, never waiting.
+//! The socket of a command that drives a board: it reads requests and writes answers, one line
+//! each, and never blocks.
 
 use super::Request;
 use std::io::{self, Read as _, Write as _};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
 
-/// Most callers that are kept from one look to the next; the oldest go first, so that idle ones keep out nobody.
+/// The greatest number of callers kept between two polls. The oldest are dropped first, so that
+/// idle callers block nobody.
 const CALLERS: usize = 16;
-/// Most callers that are taken in one look: what the system keeps in its queue.
+/// The greatest number of callers accepted in one poll, which is what the system queues.
 const QUEUE: usize = 128;
-/// Most bytes of a request.
+/// The greatest length of a request in bytes.
 const LONGEST: usize = 64;
 
-/// The socket, and who has called.
+/// The socket and its callers.
 pub struct Door {
     listener: UnixListener,
     path: PathBuf,
@@ -25,8 +27,8 @@ struct Caller {
 }
 
 impl Door {
-    /// Listens at this path. Only the holder of the port's lock calls this, so a socket that is there already is a
-    /// dead process' own.
+    /// Listens at this path. Only the holder of the port's lock may call this, so an existing
+    /// socket belongs to a dead process.
     pub fn open(path: PathBuf) -> io::Result<Self> {
         match std::fs::remove_file(&path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
@@ -37,7 +39,8 @@ impl Door {
         Ok(Self { listener, path, callers: Vec::new() })
     }
 
-    /// Answers what has been asked since the last look; whether a stop was among it. Takes microseconds.
+    /// Answers the requests since the last poll. Returns true if one of them was a stop. It takes
+    /// microseconds.
     pub fn poll(&mut self, answer: &mut dyn FnMut(Request) -> String) -> bool {
         for _ in 0..QUEUE {
             let Ok((stream, _)) = self.listener.accept() else { break };
@@ -50,7 +53,7 @@ impl Door {
             let (requests, stays) = caller.take();
             for request in requests {
                 stop |= request == Request::Stop;
-                // A caller that does not take its answer loses it.
+                // A caller that does not read its answer loses it.
                 let _ = caller.stream.write_all(format!("{}\n", answer(request)).as_bytes());
             }
             stays
@@ -62,7 +65,7 @@ impl Door {
 }
 
 impl Caller {
-    /// What this caller asks for, and whether it may ask for more.
+    /// The complete requests of this caller, and whether its connection stays open.
     fn take(&mut self) -> (Vec<Request>, bool) {
         let mut bytes = [0; LONGEST];
         let stays = match self.stream.read(&mut bytes) {
@@ -93,9 +96,9 @@ impl Drop for Door {
 mod tests {
     use super::*;
 
-    /// Programs that ask once and never hang up must not keep out the one that wants a stop.
+    /// Programs that connect and never hang up must not prevent another one from stopping the axes.
     #[test]
-    fn idle_callers_do_not_keep_out_a_stop() {
+    fn idle_callers_do_not_block_a_stop() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("door");
         let mut door = Door::open(path.clone()).unwrap();

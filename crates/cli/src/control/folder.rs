@@ -1,12 +1,14 @@
-//! Where lock files and sockets are: a folder that only this user can look into.
+//! The folder of lock files and sockets, which only this user can access.
 
 use std::fs::DirBuilder;
 use std::io::{Error, ErrorKind, Result};
 use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _};
 use std::path::{Path, PathBuf};
 
-/// The first of the user's folders that can be used. It must be the same in every terminal of the user, so the
-/// environment is asked last.
+/// The first usable folder of the user. It must be the same in every terminal of the user, so the
+/// environment variable comes last.
+///
+/// # Errors No folder can be created or used; the error is that of the last one.
 pub fn folder() -> Result<PathBuf> {
     let mut refused = Error::from(ErrorKind::NotFound);
     for path in all() {
@@ -18,7 +20,7 @@ pub fn folder() -> Result<PathBuf> {
     Err(refused)
 }
 
-/// Where another command of this user may have its files.
+/// All folders in which another command of this user may have its files.
 pub fn all() -> Vec<PathBuf> {
     let user = rustix::process::geteuid().as_raw();
     let mut folders =
@@ -27,7 +29,7 @@ pub fn all() -> Vec<PathBuf> {
     folders
 }
 
-/// Creates the folder, or makes sure that nobody else owns it or can look into it.
+/// Creates the folder, or checks that it belongs to this user and that nobody else can access it.
 fn private(path: &Path) -> Result<()> {
     match DirBuilder::new().mode(0o700).create(path) {
         Err(error) if error.kind() != ErrorKind::AlreadyExists => return Err(error),
@@ -47,7 +49,7 @@ mod tests {
     use std::os::unix::fs::{PermissionsExt as _, symlink};
 
     #[test]
-    fn a_folder_that_others_can_reach_is_refused() {
+    fn folder_accessible_to_others_is_refused() {
         let top = tempfile::tempdir().unwrap();
         let [own, open, file, link] = ["own", "open", "file", "link"].map(|name| top.path().join(name));
         private(&own).unwrap();

@@ -1,5 +1,5 @@
-//! Where there are no local sockets: the serial port's own lock keeps a second command away, and `stop` cannot reach
-//! the first one.
+//! The control on systems without local sockets. The serial port's own lock prevents a second
+//! command; `stop` cannot reach the first one.
 
 use super::{Holder, Request};
 use carrystep_link::Facts;
@@ -11,17 +11,16 @@ pub struct Claim {
     holder: Holder,
 }
 
-/// Claims nothing: whether the port is free shows when it is opened.
+/// Always succeeds: opening the port shows whether it is free.
 ///
-/// # Errors
-/// None.
+/// # Errors None.
 pub fn claim(_: &str, baud: u32, command: &'static str, _: bool) -> io::Result<Option<Claim>> {
     let holder = Holder { pid: std::process::id(), command: command.to_owned(), baud, listens: false, watchdog: None };
     Ok(Some(Claim { holder }))
 }
 
 impl Claim {
-    /// Who this is.
+    /// This command.
     pub const fn holder(&self) -> &Holder {
         &self.holder
     }
@@ -35,12 +34,12 @@ impl Claim {
     }
 }
 
-/// Nobody knows who holds a port.
+/// Always `None`: the holder of a port is unknown.
 pub fn holder(_: &str) -> Option<Holder> {
     None
 }
 
-/// There is none.
+/// A type without values: there is no socket.
 pub enum Door {}
 
 impl Door {
@@ -50,23 +49,23 @@ impl Door {
     }
 }
 
-/// There is none.
+/// A placeholder: there are no callers.
 pub struct Caller {
-    /// Who was called.
+    /// The command that was called.
     pub holder: Holder,
 }
 
-/// What became of a request.
+/// The result of a request.
 pub enum Reply {
-    /// This was answered.
+    /// The answer.
     Line(String),
     /// The command has ended.
     Ended,
-    /// Nothing was answered.
+    /// No answer came.
     Silent,
 }
 
-/// Nobody can be called.
+/// Always `None`: no command can be reached.
 pub fn call(_: &str) -> Option<Caller> {
     None
 }

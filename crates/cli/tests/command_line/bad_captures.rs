@@ -1,8 +1,9 @@
-//! Captures that cannot be read, lack a signal, or come from other gateware than the machine's.
+//! `carrystep check` refuses captures that cannot be read, that lack a signal, or that come from
+//! gateware other than the machine's.
 
 use crate::command::{Folder, GOOD};
 
-/// A folder with `move.toml` and the capture `own.vcd` of it.
+/// A folder with `move.toml`, its capture `own.vcd`, and the bytes of that capture.
 fn captured() -> (Folder, Vec<u8>) {
     let folder = Folder::with_move(GOOD);
     assert_eq!(folder.run("simulate move.toml --vcd own.vcd").status, 0);
@@ -10,12 +11,12 @@ fn captured() -> (Folder, Vec<u8>) {
     (folder, bytes)
 }
 
-/// What a logic analyser writes, its last line without an end.
+/// A capture as a logic analyser writes it; its last line has no newline.
 const FOREIGN: &str = "$timescale 1 us $end\n$scope module la $end\n$var wire 1 ! D0 $end\n$var wire 1 \" D1 $end\n\
     $upscope $end\n$enddefinitions $end\n#0 0! 0\"\n#9 1!\n#11 0!\n#20";
 
 #[test]
-fn captures_that_are_none() {
+fn files_that_are_no_captures_are_refused() {
     let (folder, _) = captured();
     let check = |says: &str| folder.run("check c.vcd move.toml").refuses(says);
     check("c.vcd: No such file");
@@ -35,10 +36,10 @@ fn captures_that_are_none() {
 }
 
 #[test]
-fn captures_that_are_cut_off() {
+fn truncated_captures_are_refused() {
     let (folder, bytes) = captured();
     let header = String::from_utf8_lossy(&bytes).find("$enddefinitions").unwrap();
-    let end = bytes.len() - 1; // the last line may lack its end
+    let end = bytes.len() - 1; // The last line need not have a newline.
     for cut in [1, header / 2, header, header + 14, header + 20, end / 2, end * 3 / 4, end - 30, end - 2, end - 1] {
         folder.write("c.vcd", &bytes[..cut]);
         folder.run("check c.vcd move.toml").refuses("c.vcd: the capture is cut off at line ");
@@ -48,7 +49,7 @@ fn captures_that_are_cut_off() {
 }
 
 #[test]
-fn captures_without_the_signals_list_what_they_have() {
+fn captures_without_the_signals_are_refused_with_a_list_of_theirs() {
     let (folder, _) = captured();
     folder.write("c.vcd", FOREIGN);
     let check = |map: &str, says: &str| folder.run(&format!("check c.vcd move.toml{map}")).refuses(says);
@@ -100,11 +101,11 @@ fn a_check_ends_with_its_verdict() {
 }
 
 #[test]
-fn a_foreign_capture_need_not_end_its_last_line() {
+fn foreign_capture_without_a_final_newline_is_read() {
     let (folder, _) = captured();
     folder.write("c.vcd", FOREIGN);
     let ran = folder.run("check c.vcd move.toml --map x.step=la.D0 --map x.dir=la.D1");
-    assert_eq!(ran.status, 1, "{}", ran.stderr); // it is read, but it is not this move
+    assert_eq!(ran.status, 1, "{}", ran.stderr); // The capture is read, but it is not of this move.
     assert!(ran.stdout.contains("FAILED"), "{}", ran.stdout);
 }
 

@@ -1,8 +1,9 @@
-//! What cannot be: exit status 2, what cannot be, which limit, and what would do. Nothing is written.
+//! Impossible curves and tables: exit status 2, and a message with the limit that forbids the
+//! request and a value that works. Nothing is written.
 
 use crate::curves::carrystep;
 
-/// Arguments, and what is said of them.
+/// Arguments, and the expected message.
 const REFUSED: &[(&str, &str)] = &[
     ("profile sine", "sine needs a speed to go to"),
     ("profile sine --speed 100", "sine needs an acceleration or a time"),
@@ -117,7 +118,7 @@ const REFUSED: &[(&str, &str)] = &[
 ];
 
 #[test]
-fn what_cannot_be_is_told() {
+fn impossible_curves_and_tables_are_refused_with_the_reason() {
     for (arguments, said) in REFUSED {
         let output = carrystep(arguments);
         let told = String::from_utf8_lossy(&output.stderr);
@@ -127,9 +128,9 @@ fn what_cannot_be_is_told() {
     }
 }
 
-/// What clap itself refuses: status 2 too.
+/// Arguments that clap itself refuses also give status 2.
 #[test]
-fn what_is_no_command_is_refused() {
+fn invalid_arguments_are_refused_with_status_2() {
     let wrong = [
         "profile",
         "profile foo --speed 1 --accel 1",
@@ -149,17 +150,17 @@ fn what_is_no_command_is_refused() {
 }
 
 #[test]
-fn files_are_whole_or_not_there() {
+fn files_appear_only_when_they_are_complete() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).display().to_string();
-    // The second file cannot be: the first does not appear either.
+    // The second file cannot be created, so the first one does not appear either.
     std::fs::create_dir(folder.path().join("taken")).unwrap();
     let (csv, plot) = (path("a.csv"), path("taken"));
     let output = carrystep(&format!("profile sine --speed 500 --accel 1000 --csv {csv} --plot {plot}"));
     assert_eq!(output.status.code(), Some(2));
     let long = carrystep(&format!("profile sine --steps 1e9 --accel 1000 --csv {csv}"));
     assert_eq!(long.status.code(), Some(2));
-    // A table whose header has a folder's name.
+    // The header of the table has the name of an existing folder.
     std::fs::create_dir_all(folder.path().join("out/ramp.h")).unwrap();
     let table = "table sine --ramp-steps 100 --clock-hz 1000000 --top-speed 4000 --out";
     assert_eq!(carrystep(&format!("{table} {}", path("out"))).status.code(), Some(2));

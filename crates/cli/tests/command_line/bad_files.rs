@@ -1,17 +1,17 @@
-//! Files that are missing, no text, or not the kind of file that is asked for.
+//! Files that are missing, are not text, or are not of the expected kind.
 
 use crate::command::{Folder, GOOD, edit};
 use std::process::Command;
 
 const MOVE: &str = "[[move]]\nprofile = \"ranade\"\nto = { x = 2 }\n";
 
-/// The machine of [`GOOD`] alone.
+/// The machine of [`GOOD`] without the moves.
 fn machine() -> &'static str {
     &GOOD[..GOOD.find("[[move]]").unwrap()]
 }
 
 #[test]
-fn move_files_that_are_no_text() {
+fn move_files_that_are_no_text_are_refused() {
     let folder = Folder::new();
     let every = |name: &str, says: &str| {
         for command in ["plan", "simulate"] {
@@ -32,7 +32,7 @@ fn move_files_that_are_no_text() {
 }
 
 #[test]
-fn machines_in_files_of_their_own() {
+fn errors_in_a_machine_file_are_reported_with_its_own_path() {
     let folder = Folder::new();
     let refused = |head: &str, column: usize, says: &str| {
         folder.write("move.toml", format!("{head}{MOVE}"));
@@ -43,7 +43,7 @@ fn machines_in_files_of_their_own() {
     refused("machine_file = 3\n", 16, "expected path string");
     refused(&format!("machine_file = \"m.toml\"\n{}", machine()), 16, "both machine_file and [machine] are given");
 
-    // relative to the move file, and its own errors in its own name
+    // The path is relative to the move file, and errors in the machine file name that file.
     let (bad, place) = edit(machine(), "speed_limit = 1000", "speed_limit = ^-1");
     folder.write("shop/machines/m.toml", bad);
     folder.write("shop/move.toml", format!("machine_file = \"machines/m.toml\"\n{MOVE}"));

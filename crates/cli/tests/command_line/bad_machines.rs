@@ -1,11 +1,11 @@
-//! Every way in which a machine can be wrong is refused at the value that is wrong.
+//! Every way in which a machine can be wrong is refused, and the error points at the wrong value.
 
 use crate::command::{Folder, GOOD, all_refused, edit};
 
 const AXIS: &str = "steps_per_unit = 1\nspeed_limit = 9\naccel_limit = 9\ndriver = \"a4988\"\n";
 
 #[test]
-fn keys_that_nobody_knows_and_keys_that_lack() {
+fn unknown_and_missing_keys_are_refused() {
     all_refused(&[
         (
             "[machine]\n",
@@ -30,7 +30,7 @@ fn keys_that_nobody_knows_and_keys_that_lack() {
 }
 
 #[test]
-fn values_of_the_wrong_type() {
+fn values_of_the_wrong_type_are_refused() {
     all_refused(&[
         ("speed_limit = 1000", "speed_limit = ^\"fast\"", "string \"fast\", expected a number"),
         ("speed_limit = 1000", "speed_limit = ^[1]", "sequence, expected a number"),
@@ -50,7 +50,7 @@ fn values_of_the_wrong_type() {
 }
 
 #[test]
-fn numbers_that_are_none_or_of_the_wrong_sign() {
+fn numbers_that_are_not_finite_or_of_the_wrong_sign_are_refused() {
     let long = "3".repeat(70);
     let finite = "not a usable number";
     let rows = [
@@ -90,7 +90,7 @@ fn numbers_that_are_none_or_of_the_wrong_sign() {
 }
 
 #[test]
-fn clocks_that_do_not_divide() {
+fn clocks_ticks_and_phases_that_do_not_divide_are_refused() {
     all_refused(&[
         ("phases = 16", "phases = ^3", "3 phases: a tick has 1, 4 or 16 phases"),
         ("clock_hz = 48_000_000", "clock_hz = ^0", "a clock of 0 Hz"),
@@ -109,7 +109,7 @@ fn clocks_that_do_not_divide() {
 }
 
 #[test]
-fn speeds_that_the_gateware_or_the_driver_cannot_take() {
+fn speeds_too_high_for_gateware_or_driver_are_refused() {
     all_refused(&[
         (
             "speed_limit = 1000",
@@ -130,7 +130,7 @@ fn speeds_that_the_gateware_or_the_driver_cannot_take() {
 }
 
 #[test]
-fn drivers_and_pin_timings() {
+fn unknown_drivers_and_bad_pin_timings_are_refused() {
     let known = "known: a4988, dm542, drv8825, tb6600, tmc2130, tmc2208, tmc2209, tmc5160; or give step_ns";
     all_refused(&[
         ("\"a4988\"", "^\"a4989\"", "no driver is called 'a4989'"),
@@ -146,7 +146,7 @@ fn drivers_and_pin_timings() {
 }
 
 #[test]
-fn axes_that_cannot_be_told_apart_or_are_too_many() {
+fn badly_named_duplicate_and_surplus_axes_are_refused() {
     for name in ["", "1x", "x y", "x-1", "x.step", "\u{e9}", &"x".repeat(33)] {
         let says = format!("{name:?} cannot name an axis");
         all_refused(&[("\"x\"", &format!("^\"{name}\""), &says)]);

@@ -1,9 +1,9 @@
-//! Moves that cannot be read, and moves that cannot be done: the refusal names the limit and what would do.
+//! Malformed moves and impossible moves: the refusal names the limit and a value that works.
 
 use crate::command::{Folder, GOOD, all_refused};
 
 #[test]
-fn moves_that_cannot_be_read() {
+fn malformed_moves_are_refused() {
     all_refused(&[
         (
             "profile = \"ranade\"",
@@ -37,9 +37,9 @@ fn moves_that_cannot_be_read() {
     ]);
 }
 
-/// What cannot be, by which limit, and the least time that would do; which then does.
+/// The refusal states the limit and the least time that works, and that time must work.
 #[test]
-fn curves_in_a_time_that_is_too_short() {
+fn curves_in_too_short_a_time_are_refused_with_a_time_that_works() {
     let jerk = GOOD.replace("driver =", "jerk_limit = 40_000\ndriver =");
     for (profile, limit) in [("sine", "accel_limit"), ("logistic", "accel_limit"), ("scurve", "accel_limit")] {
         let timed = |time: &str| jerk.replace("\"ranade\"", &format!("\"{profile}\"\ntime = {time}"));
@@ -51,7 +51,7 @@ fn curves_in_a_time_that_is_too_short() {
 }
 
 #[test]
-fn distances_beyond_the_position_register() {
+fn distances_beyond_the_position_register_are_refused() {
     all_refused(&[
         (
             "x = 2 ",
@@ -65,13 +65,13 @@ fn distances_beyond_the_position_register() {
             "x = ^1e29 ",
             "the sum of all moves must stay within +-429496729 units (2147483647 steps) of the start",
         ),
-        // each move fits, their sum does not
+        // Each move fits, but their sum does not.
         ("x = -1.3", "x = ^429496728", "would stand at 429496730 units"),
     ]);
 }
 
 #[test]
-fn a_file_without_a_machine_or_moves() {
+fn file_without_a_machine_or_moves_is_refused() {
     let moves = &GOOD[GOOD.find("[[move]]").unwrap()..];
     let machine = &GOOD[..GOOD.find("[[move]]").unwrap()];
     Folder::with_move(moves).run("plan move.toml").refuses_at("move.toml", (1, 1), "no machine");
@@ -116,7 +116,7 @@ fn phase_zero_needs_whole_ticks() {
 }
 
 #[test]
-fn moves_that_take_longer_than_any_capture() {
+fn moves_that_take_longer_than_any_capture_are_refused() {
     let machine = &GOOD[..GOOD.find("[[move]]").unwrap()];
     let move_of_days = "[[move]]\nprofile = \"ranade\"\ntime = 1e6\nto = { x = 20 }\n";
     let folder = Folder::with_move(format!("{machine}{}", move_of_days.repeat(5)));

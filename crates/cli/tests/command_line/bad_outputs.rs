@@ -1,4 +1,5 @@
-//! Outputs that cannot be written: said before the run where it can be known, and nothing half written.
+//! Outputs that cannot be written: the error comes before the run if possible, and no incomplete
+//! file remains.
 
 use crate::command::{Folder, GOOD, Ran};
 use std::fs::File;
@@ -7,13 +8,13 @@ use std::process::{Command, Stdio};
 const OPTIONS: [&str; 4] = ["--vcd", "--fst", "--csv", "--plot"];
 
 #[test]
-fn paths_that_no_file_can_have() {
+fn output_paths_that_no_file_can_have_are_refused() {
     let folder = Folder::with_move(GOOD);
     folder.write("out/kept", "");
     let before = folder.files();
     for option in OPTIONS {
         let refused = |path: &str, says: &str| {
-            // the other output must not appear either
+            // The other output must not appear either.
             let other = if option == "--csv" { "--vcd" } else { "--csv" };
             folder.run(&format!("simulate move.toml {other} out/other {option} {path}")).refuses(says);
             assert_eq!(folder.files(), before, "{option} {path}");
@@ -34,7 +35,8 @@ fn paths_that_no_file_can_have() {
     assert_eq!(std::fs::read_to_string(folder.path("move.toml")).unwrap(), GOOD);
 }
 
-/// A link to a device on which no byte has room: were the link replaced, the device would still be there.
+/// A link to a device without space. If the command replaced the link instead of writing to the
+/// device, the write would succeed.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_nothing() {
@@ -53,10 +55,10 @@ fn a_full_disk_leaves_nothing() {
     assert!(std::fs::symlink_metadata(folder.path("full")).unwrap().is_symlink());
 }
 
-/// `carrystep` with its standard output on a device on which no byte has room.
+/// Runs `carrystep` with its standard output on a device without space.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_standard_output_is_told() {
+fn full_standard_output_is_reported() {
     let folder = Folder::with_move(GOOD);
     let full = |arguments: &str| -> Ran {
         let out = File::options().write(true).open("/dev/full").unwrap();
@@ -71,9 +73,9 @@ fn a_full_standard_output_is_told() {
     }
 }
 
-/// A reader that has seen enough, as `head` does, is no failure.
+/// A reader that closes the pipe early, as `head` does, is not a failure.
 #[test]
-fn a_reader_that_goes_away_is_no_failure() {
+fn reader_that_closes_the_pipe_is_no_failure() {
     let folder = Folder::with_move(GOOD);
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     let command = command.args(["plan", "move.toml", "--json"]).current_dir(folder.path(""));

@@ -1,5 +1,6 @@
-//! `run`, `jog`, `home`, `status` and `stop` with whatever may be on the port: nothing, something else, another build, a
-//! machine that stands. Each is named before a single write.
+//! `run`, `jog`, `home`, `status` and `stop` with any peer on the port: nothing, another device,
+//! another build, or a stopped machine. The message names each of them before a single write is
+//! sent.
 
 use crate::command::{Folder, GOOD, Ran};
 use crate::device::{Device, Done};
@@ -10,11 +11,12 @@ use std::sync::mpsc::{Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How the axis x homes; it is no part of the build.
+/// The homing of axis x, which is not part of the build.
 const HOME: &str =
     "travel = [0, 300]\nhome = { toward = \"min\", seek_speed = 20, slow_speed = 2, pull_off = 2, position = 0 }\n";
 
-/// [`GOOD`] with a slower engine's tick, and its machine in a file of its own.
+/// The move of [`GOOD`], whose machine is in a file of its own with a tick that the engine can
+/// keep.
 const MOVE: &str = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"ranade\"\nto = { x = 2 }\n";
 
 fn machine() -> String {
@@ -27,7 +29,7 @@ fn build_id() -> [u32; 2] {
     machine.line().unwrap().build_id(&machine.engine()).halves()
 }
 
-/// What is behind a port.
+/// The peer behind a port.
 pub enum Peer {
     Device(Box<Device>),
     Chatter,
@@ -35,7 +37,7 @@ pub enum Peer {
 }
 
 impl Peer {
-    /// A gateware of that machine.
+    /// A board with the gateware of that machine.
     pub fn board() -> Device {
         let mut device = Device::new(1, 77);
         [device.facts[2], device.facts[3]] = build_id();
@@ -43,7 +45,7 @@ impl Peer {
     }
 }
 
-/// A port, and who is behind it.
+/// A port, and the peer behind it.
 pub struct Port {
     pub name: String,
     end: Sender<()>,
@@ -61,7 +63,7 @@ impl Port {
             while ended.try_recv().is_err() {
                 let come = match ours.read(&mut bytes) {
                     Ok(come) => come,
-                    // Nobody has the other end open.
+                    // The other end is not open.
                     Err(error) if error.kind() != ErrorKind::TimedOut => {
                         std::thread::sleep(Duration::from_millis(1));
                         0
@@ -76,7 +78,7 @@ impl Port {
                     Peer::Chatter => b"ok T:21\r\n".to_vec(),
                     Peer::Nobody => Vec::new(),
                 };
-                // What a client leaves unread when it goes is lost.
+                // Answers that a client leaves unread when it ends are lost.
                 let _ = ours.write_all(&answers);
             }
             peer
@@ -97,14 +99,14 @@ pub fn folder() -> Folder {
     folder
 }
 
-/// Every command that may move something, on this port.
+/// Every command that may move an axis, run on this port.
 fn movers(folder: &Folder, port: &str) -> [Ran; 3] {
     ["run move.toml", "home x --machine machine.toml", "jog x 1.5 --machine machine.toml"]
         .map(|command| folder.run(&format!("{command} --port {port}")))
 }
 
 #[test]
-fn who_is_not_the_board_is_named() {
+fn wrong_peer_on_the_port_is_named() {
     let folder = folder();
     for (peer, says) in [
         (Peer::Nobody, "nothing has answered for"),
@@ -134,7 +136,7 @@ fn a_port_that_is_absent_busy_or_no_port_is_named() {
     let port = Port::new(Peer::Nobody);
     let other = TTYPort::open(&serialport::new(&port.name, 921_600)).unwrap();
     for ran in movers(&folder, &port.name) {
-        // By its process, where the system tells.
+        // The message names the process if the system reports it.
         assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
         let begin = format!("error: serial port {} ", port.name);
         assert!(ran.stderr.starts_with(&begin) && ran.stderr.contains("in use by"), "{}", ran.stderr);
@@ -145,7 +147,7 @@ fn a_port_that_is_absent_busy_or_no_port_is_named() {
 }
 
 #[test]
-fn what_no_board_could_do_is_refused_before_the_port_is_opened() {
+fn impossible_moves_are_refused_before_the_port_is_opened() {
     let folder = folder();
     let refused = |text: &str, says: &str| {
         folder.write("bad.toml", text);
@@ -153,7 +155,7 @@ fn what_no_board_could_do_is_refused_before_the_port_is_opened() {
     };
     refused(&MOVE.replace("x = 2", "z = 2"), "the machine has no axis \"z\"");
     refused(&MOVE.replace("to =", "time = 0.001\nto ="), "over speed_limit 1000 units/s (5000 steps/s); at least");
-    // A curve that is followed closely takes many segments.
+    // A curve that is fitted closely needs many segments.
     folder.write("slow.toml", format!("[machine.link]\nbaud = 1200\n{}", machine()));
     let wavy = MOVE.replace("machine.toml", "slow.toml").replace("ranade", "sine").replace("to =", "fit_ns = 1\nto =");
     refused(&wavy, "1200 baud are too slow for this move: axis 0 would run dry");
@@ -172,7 +174,7 @@ fn what_no_board_could_do_is_refused_before_the_port_is_opened() {
 }
 
 #[test]
-fn a_machine_that_stands_is_left_alone_until_it_is_told_to_resume() {
+fn stopped_machine_does_not_move_until_the_stop_is_cleared() {
     let folder = folder();
     let mut device = Peer::board();
     device.stop(6);

@@ -1,11 +1,12 @@
-//! The cache of compiled simulations: what is executed from there, nobody else may have put there.
+//! The cache of compiled simulations: no other user may be able to put anything there that the
+//! command executes.
 
 use crate::command::{Folder, GOOD, Ran};
 use std::fs;
 use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, chown, symlink};
 use std::process::Command;
 
-/// Stands in for Verilator: its simulations only say that they have run.
+/// Replaces Verilator. Its simulations only record that they have run.
 const VERILATOR: &str = "#!/bin/sh\ncase \"$*\" in *--version*) exit 0;; esac\nmkdir obj_dir\n\
     printf '#!/bin/sh\\necho ran >> \"$RAN\"\\n' > obj_dir/bench\nchmod 777 obj_dir/bench\n";
 
@@ -67,7 +68,7 @@ fn a_cache_that_others_can_write_is_refused() {
     assert_eq!(ran(&folder), 1);
 }
 
-/// Root can give a folder away; anybody else finds one that is not theirs.
+/// Root can give a folder away; any other user needs a folder that belongs to someone else.
 #[test]
 fn a_cache_of_another_user_is_refused() {
     const NOBODY: u32 = 65_534;

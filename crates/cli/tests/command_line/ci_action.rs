@@ -1,4 +1,5 @@
-//! The action for other repositories, run step by step as a runner does, in a folder that is not this checkout.
+//! The action for other repositories, executed step by step as a runner does, in a folder outside
+//! this checkout.
 
 use crate::command::{Folder, GOOD, Ran};
 use std::collections::BTreeMap;
@@ -9,7 +10,8 @@ const ACTION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../.github/actions
 /// A step: its command, and its environment.
 type Step = (String, Vec<(String, String)>);
 
-/// The defaults of the inputs, and the steps. The file is YAML of one form: a key and a value a line.
+/// The defaults of the inputs, and the steps. The file is YAML in a simple form with one key and
+/// value per line.
 fn action() -> (BTreeMap<String, String>, Vec<Step>) {
     let text = std::fs::read_to_string(format!("{ACTION}/action.yml")).unwrap();
     let (head, steps) = text.split_once("  steps:\n").unwrap();
@@ -33,7 +35,7 @@ fn action() -> (BTreeMap<String, String>, Vec<Step>) {
     (defaults, steps.split("    - name: ").skip(1).map(step).collect())
 }
 
-/// Runs the action's steps with these inputs; the first that fails ends it.
+/// Runs the action's steps with these inputs; the first failing step ends the action.
 fn run(folder: &Folder, given: &[(&str, &str)]) -> Ran {
     let (mut inputs, steps) = action();
     for (name, value) in given.iter().copied().chain([("carrystep", env!("CARGO_BIN_EXE_carrystep"))]) {
@@ -83,7 +85,7 @@ const INPUTS: [(&str, &str); 3] = [
 ];
 
 #[test]
-fn a_repository_that_is_well_passes() {
+fn correct_repository_passes() {
     let folder = repository();
     let before = folder.files();
     let ran = run(&folder, &INPUTS);
@@ -94,7 +96,7 @@ fn a_repository_that_is_well_passes() {
 }
 
 #[test]
-fn whatever_is_wrong_fails_by_its_name() {
+fn every_wrong_file_fails_and_is_named() {
     let good = repository();
     let text = |name: &str| std::fs::read_to_string(good.path(name)).unwrap();
     let moves = text("moves/there/and back.toml");
@@ -122,7 +124,7 @@ fn whatever_is_wrong_fails_by_its_name() {
 }
 
 #[test]
-fn nothing_to_check_is_not_well() {
+fn action_with_nothing_to_check_fails() {
     let folder = repository();
     let ran = run(&folder, &[]);
     assert_eq!(ran.status, 1);

@@ -1,17 +1,17 @@
-//! Any common clock works without a tick, and it is said which tick was chosen; a board is not built at a clock that it
-//! was measured not to reach.
+//! Any common clock works without a tick in the machine file, and the command states the chosen
+//! tick. A board is not built at a clock that it was measured not to reach.
 
 use crate::command::{Folder, GOOD};
 use serde_json::Value;
 use std::process::Command;
 
-/// The good moves on a machine of this clock, without a tick.
+/// The moves of [`GOOD`] on a machine with this clock and without a tick.
 fn at(mhz: u64) -> String {
     GOOD.replace("clock_hz = 48_000_000\ntick_ns = 1000\n", &format!("clock_hz = {mhz}_000_000\n"))
 }
 
 #[test]
-fn common_clocks_plan_simulate_and_export_with_the_shortest_tick_and_say_so() {
+fn common_clocks_use_and_report_the_shortest_tick() {
     for (mhz, tick_ns, proposed) in
         [(25, 1280, false), (27, 16_000, true), (50, 640, false), (100, 320, false), (125, 256, false)]
     {
@@ -38,7 +38,7 @@ fn common_clocks_plan_simulate_and_export_with_the_shortest_tick_and_say_so() {
 }
 
 #[test]
-fn at_the_default_clock_the_tick_stays_as_it_was_and_nothing_is_said() {
+fn default_clock_keeps_its_tick_without_a_note() {
     let folder = Folder::with_move(at(48));
     let ran = folder.run("plan move.toml");
     assert!(ran.stdout.contains(" ticks of 1000 ns, ") && !ran.stdout.contains("shortest"), "{}", ran.stdout);
@@ -52,14 +52,14 @@ fn a_tick_that_does_not_fit_is_refused_with_the_nearest_that_do() {
     Folder::with_move(text).run("plan move.toml").refuses_at("move.toml", (4, 10), says);
 }
 
-/// A build without any tool on the path: what is refused is refused before one is looked for.
+/// Runs a build without any tool on the path. A refusal must come before a tool is searched.
 fn build(folder: &Folder, arguments: &str) -> crate::command::Ran {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     folder.output(command.env("PATH", "").arg("build").args(arguments.split(' ')))
 }
 
 #[test]
-fn a_clock_that_a_board_does_not_reach_is_refused_at_once_and_the_board_s_own_is_named() {
+fn clock_that_a_board_does_not_reach_is_refused_with_the_proposed_clock() {
     let folder = Folder::new();
     let machine = at(48).split("[[move]]").next().unwrap().replacen(
         "[[machine",
@@ -71,7 +71,8 @@ fn a_clock_that_a_board_does_not_reach_is_refused_at_once_and_the_board_s_own_is
     ran.refuses("machine.toml: icebreaker: nextpnr reaches 38.9 MHz with the shipped gateware, far less than the machine's 48 MHz");
     ran.refuses("37.5 MHz (ticks of 2560 ns in 16 phases)");
     assert_eq!(folder.files(), ["machine.toml"]);
-    // It can be tried all the same; yosys is missed then. So it is with the board's own clock and with none.
+    // With the option the build is tried and then fails because yosys is missing. The same happens
+    // at the board's own clock and without a machine.
     folder.write("slow.toml", machine.replace("48_000_000", "37_500_000"));
     for arguments in [
         "--board icebreaker --machine machine.toml --out out --try-clock",

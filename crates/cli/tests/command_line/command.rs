@@ -1,11 +1,11 @@
-//! The command in a folder of its own.
+//! Runs the command in a temporary folder of its own.
 
 use crate::documents;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
 use tempfile::TempDir;
 
-/// Two short moves of one axis. No line of it is twice there, so that a test can replace one.
+/// Two short moves of one axis. Every line is unique, so that a test can replace one.
 pub const GOOD: &str = r#"[machine]
 clock_hz = 48_000_000
 tick_ns = 1000
@@ -30,10 +30,10 @@ time = 0.05
 to = { x = -1.3 }
 "#;
 
-/// A folder with files, in which the command runs, and one for what it remembers of boards.
+/// A folder with files in which the command runs, and a folder for its memory of boards.
 pub struct Folder(TempDir, TempDir);
 
-/// How a run ended.
+/// The end of a run.
 pub struct Ran {
     pub status: i32,
     pub stdout: String,
@@ -41,12 +41,12 @@ pub struct Ran {
 }
 
 impl Folder {
-    /// An empty one.
+    /// An empty folder.
     pub fn new() -> Self {
         Self(tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap())
     }
 
-    /// One with the move file `move.toml`.
+    /// A folder with the move file `move.toml`.
     pub fn with_move(text: impl AsRef<[u8]>) -> Self {
         let folder = Self::new();
         folder.write("move.toml", text);
@@ -57,7 +57,7 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// Where the command remembers boards: CARRYSTEP_STATE.
+    /// The folder of the command's memory of boards: CARRYSTEP_STATE.
     pub fn state(&self) -> &Path {
         self.1.path()
     }
@@ -68,7 +68,7 @@ impl Folder {
         std::fs::write(path, bytes).unwrap();
     }
 
-    /// Everything in it, folders included, sorted.
+    /// The names of everything in the folder, including folders, sorted.
     pub fn files(&self) -> Vec<String> {
         fn walk(folder: &Path, top: &Path, found: &mut Vec<String>) {
             for entry in std::fs::read_dir(folder).unwrap() {
@@ -85,7 +85,8 @@ impl Folder {
         found
     }
 
-    /// The length of the longest file in here that a process has open: an output that it has begun has no name yet.
+    /// The length of the longest file in the folder that a process has open. An output that the
+    /// process has begun has no name yet.
     #[cfg(target_os = "linux")]
     pub fn begun_by(&self, child: &Child) -> Option<u64> {
         let files = std::fs::read_dir(format!("/proc/{}/fd", child.id())).ok()?.flatten();
@@ -98,8 +99,8 @@ impl Folder {
         self.output(Command::new(env!("CARGO_BIN_EXE_carrystep")).args(arguments.split(' ')))
     }
 
-    /// Runs `carrystep` as it is set up. With `--json` it prints one document that its schema allows, whatever
-    /// its exit status.
+    /// Runs `carrystep` as the command is configured. With `--json` the output must be one document
+    /// that fits its schema, whatever the exit status is.
     pub fn output(&self, command: &mut Command) -> Ran {
         let output = command.current_dir(self.0.path()).env("CARRYSTEP_STATE", self.state()).output().unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the command writes UTF-8");
@@ -118,7 +119,8 @@ impl Folder {
 }
 
 impl Ran {
-    /// Bad input: status 2, nothing on standard output but a document of it, and these words.
+    /// Asserts that the input was refused: status 2, nothing but a document on standard output, and
+    /// this text in the message.
     #[track_caller]
     pub fn refuses(&self, says: &str) {
         assert_eq!(self.status, 2, "{}{}", self.stdout, self.stderr);
@@ -126,7 +128,7 @@ impl Ran {
         assert!(self.stderr.contains(says), "wanted: {says}\nfound:\n{}", self.stderr);
     }
 
-    /// The same, at this place of a file.
+    /// Asserts the same, at this place of a file.
     #[track_caller]
     pub fn refuses_at(&self, file: &str, (line, column): (usize, usize), says: &str) {
         self.refuses(says);
@@ -135,8 +137,8 @@ impl Ran {
     }
 }
 
-/// A text with one part replaced by another in which `^` marks the place of the error; the text without
-/// the mark, line and column of the mark.
+/// Replaces a part of a text by another, in which `^` marks the place of the error. Returns the
+/// text without the mark, and line and column of the mark.
 #[track_caller]
 pub fn edit(text: &str, old: &str, new: &str) -> (String, (usize, usize)) {
     assert_eq!(text.matches(old).count(), 1, "{old}");
@@ -147,8 +149,8 @@ pub fn edit(text: &str, old: &str, new: &str) -> (String, (usize, usize)) {
     (format!("{before}{after}"), (line, column))
 }
 
-/// Each row: a part of [`GOOD`], what stands there instead with `^` where the error must point, and what
-/// must be said. The refused run was to write four files, and leaves nothing.
+/// Each row is a part of [`GOOD`], its replacement with `^` at the place of the error, and the
+/// expected message. The refused run was to write four files and must leave none.
 #[track_caller]
 pub fn all_refused(rows: &[(&str, &str, &str)]) {
     for (old, new, says) in rows {

@@ -1,4 +1,4 @@
-//! The commands that need no move file: how to run them, and golden numbers to compare with.
+//! Helpers for the commands that need no move file, and golden numbers to compare with.
 
 use serde_json::Value;
 use std::path::Path;
@@ -10,7 +10,7 @@ pub fn carrystep(arguments: &str) -> Output {
     command.env("COLUMNS", "200").args(arguments.split_whitespace()).output().unwrap()
 }
 
-/// What it prints where all is well.
+/// The output of a successful run.
 #[track_caller]
 pub fn stdout(arguments: &str) -> String {
     let output = carrystep(arguments);
@@ -24,18 +24,18 @@ pub fn json(arguments: &str) -> Value {
     serde_json::from_str(&stdout(&format!("{arguments} --json"))).unwrap()
 }
 
-/// Names of the fields of an object.
+/// The names of the fields of an object.
 pub fn names(value: &Value) -> Vec<&str> {
     value.as_object().unwrap().keys().map(String::as_str).collect()
 }
 
-/// Golden numbers of a source.
+/// The golden numbers of a source.
 pub fn golden(name: &str) -> Value {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/golden").join(name);
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// To twelve digits.
+/// Compares two numbers to twelve digits.
 #[track_caller]
 pub fn close(found: &Value, golden: &Value) {
     let number = |value: &Value| value.as_f64().unwrap_or_else(|| value.as_str().unwrap().parse().unwrap());

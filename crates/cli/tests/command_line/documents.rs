@@ -1,4 +1,5 @@
-//! `--json`: one document for each run, on failure too, that the schemas in `docs/schemas/` allow.
+//! `--json` prints one document per run, also on failure, and it fits the schema in
+//! `docs/schemas/`.
 
 use crate::command::{Folder, GOOD, Ran};
 use jsonschema::Validator;
@@ -9,10 +10,10 @@ use std::sync::{LazyLock, Mutex};
 
 const SCHEMAS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/schemas");
 
-/// The committed schemas that were compiled so far, by their names.
+/// The committed schemas that have been compiled so far, by their names.
 static VALIDATORS: LazyLock<Mutex<BTreeMap<String, Validator>>> = LazyLock::new(Mutex::default);
 
-/// A text that is one document, which its own schema allows.
+/// Parses a text that must be one document and checks it against its own schema.
 #[track_caller]
 pub fn check(text: &str) -> Value {
     let document: Value = serde_json::from_str(text).unwrap_or_else(|error| panic!("no document: {error}\n{text}"));
@@ -30,7 +31,7 @@ pub fn check(text: &str) -> Value {
 }
 
 #[test]
-fn the_committed_schemas_are_those_of_the_structs() {
+fn committed_schemas_equal_the_generated_ones() {
     let folder = Folder::new();
     assert_eq!(folder.run("schemas --out schemas").status, 0);
     let names = |folder: &std::path::Path| {
@@ -47,7 +48,7 @@ fn the_committed_schemas_are_those_of_the_structs() {
 }
 
 #[test]
-fn a_schema_refuses_what_is_no_document_of_it() {
+fn schema_rejects_a_wrong_document() {
     let folder = Folder::with_move(GOOD);
     let mut document = check(&folder.run("plan move.toml --json").stdout);
     for (field, wrong) in [("passed", json!("yes")), ("tick_ns", json!(-1)), ("moves", json!({}))] {
@@ -59,9 +60,9 @@ fn a_schema_refuses_what_is_no_document_of_it() {
     assert!(std::panic::catch_unwind(|| check(&document.to_string())).is_err());
 }
 
-/// Every report that no other test asks for as a document.
+/// Every report whose document no other test checks.
 #[test]
-fn reports_are_documents() {
+fn every_report_fits_its_schema() {
     let folder = Folder::with_move(GOOD);
     for (arguments, name) in [
         ("boards", "boards"),
@@ -81,7 +82,7 @@ fn reports_are_documents() {
     }
 }
 
-/// The error of a run that failed.
+/// The error in the document of a failed run.
 #[track_caller]
 fn error(ran: &Ran, status: i32) -> Value {
     assert_eq!(ran.status, status, "{}", ran.stderr);
@@ -93,7 +94,7 @@ fn error(ran: &Ran, status: i32) -> Value {
 }
 
 #[test]
-fn bad_input_is_a_document_with_its_place() {
+fn bad_input_is_reported_as_a_document_with_its_place() {
     let folder = Folder::with_move(GOOD.replace("a4988", "a4989"));
     let found = error(&folder.run("plan move.toml --json"), 2);
     assert_eq!((&found["kind"], &found["file"]), (&json!("input"), &json!("move.toml")));
@@ -113,7 +114,7 @@ fn bad_input_is_a_document_with_its_place() {
 }
 
 #[test]
-fn arguments_that_are_refused_are_a_document() {
+fn refused_arguments_are_reported_as_a_document() {
     let folder = Folder::new();
     for (arguments, says) in [
         ("plan --json", "required arguments were not provided"),
@@ -128,13 +129,13 @@ fn arguments_that_are_refused_are_a_document() {
     }
     let ran = folder.output(Command::new(env!("CARGO_BIN_EXE_carrystep")).args(["plan", "--help"]));
     assert!(ran.status == 0 && ran.stdout.contains("Usage:"), "{}", ran.stdout);
-    // Behind `--` it is the name of a file.
+    // After `--`, `--json` is the name of a file.
     let ran = Command::new(env!("CARGO_BIN_EXE_carrystep")).args(["plan", "--", "--json"]).output().unwrap();
     assert_eq!((ran.status.code(), ran.stdout.len()), (Some(2), 0));
 }
 
 #[test]
-fn a_missing_tool_is_a_document() {
+fn missing_tool_is_reported_as_a_document() {
     let folder = Folder::with_move(GOOD);
     let without_tools = |arguments: &str| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
@@ -145,7 +146,7 @@ fn a_missing_tool_is_a_document() {
         assert_eq!(found["kind"], "tool");
         assert!(found["message"].as_str().unwrap().contains("is not installed"), "{found}");
     }
-    // The doctor has reported already: there is no second document.
+    // The doctor has printed its report already, so there is no second document.
     let ran = without_tools("doctor --json");
     assert_eq!((ran.status, &check(&ran.stdout)["schema"]["name"]), (3, &json!("carrystep.doctor")));
 }

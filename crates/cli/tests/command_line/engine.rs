@@ -1,9 +1,9 @@
-//! The engine from the user's side: its Verilog, its refusals, and moves run on it.
+//! The engine as a user sees it: its Verilog, its refusals, and moves that run on it.
 
 use crate::command::{Folder, edit};
 use serde_json::Value;
 
-/// One axis whose tick has clocks for six. No line of it is twice there.
+/// One axis with a tick that is long enough for six. Every line is unique.
 const MACHINE: &str = r#"[machine]
 clock_hz = 80_000_000
 tick_ns = 1000
@@ -39,7 +39,7 @@ time = 0.05
 to = { x = -1.3 }
 "#;
 
-/// Three steps, so that Rust-HDL is soon done.
+/// A move of three steps, which Rust-HDL simulates quickly.
 const SHORT: &str = r#"
 [[move]]
 profile = "constant"
@@ -106,7 +106,7 @@ fn the_document_has_the_guard_as_counted() {
 }
 
 #[test]
-fn what_cannot_be_built_is_refused_and_nothing_is_there() {
+fn impossible_builds_are_refused_and_leave_no_file() {
     let rows = [
         ("phases = 16", "phases = ^5", "5 phases: a tick has 1, 4 or 16 phases"),
         ("clock_hz = 80_000_000", "clock_hz = ^84_000_000", ""),
@@ -127,7 +127,7 @@ fn what_cannot_be_built_is_refused_and_nothing_is_there() {
         let says = if says.is_empty() { "84 clocks per tick do not divide into 16 equal phases" } else { says };
         let ran = folder.run(WRITE);
         ran.refuses(says);
-        // Where clock, tick and phases do not go together, all of them are wrong.
+        // If clock, tick and phases do not fit together, the error points at all of them.
         let place = if says.contains("do not divide") { (4, 10) } else { place };
         ran.refuses_at("m.toml", place, says);
         assert_eq!(folder.files(), ["m.toml"]);
@@ -190,7 +190,7 @@ fn moves_on_the_engine_have_the_pulses_of_the_parallel_core() {
         let (same, same_waves) = run(&folder, &format!("--core engine --level {level}"));
         assert_eq!((&same["check"], &same["clocks"], &same_waves), (&engine["check"], &engine["clocks"], &waves));
         assert_eq!((&engine["faults"], &engine["positions"]), (&parallel["faults"], &parallel["positions"]));
-        // The engine starts later; from there on all is the same.
+        // The engine starts later; after that everything is equal.
         assert!(engine["check"]["origin_ps"].as_u64() > parallel["check"]["origin_ps"].as_u64());
         assert_eq!(engine["check"]["axes"], parallel["check"]["axes"]);
         let checked = folder.run("check a.vcd move.toml");
@@ -199,7 +199,7 @@ fn moves_on_the_engine_have_the_pulses_of_the_parallel_core() {
 }
 
 #[test]
-fn tools_may_be_missing() {
+fn missing_verilator_is_reported_with_its_installation() {
     let folder = Folder::with_move(format!("{MACHINE}{MOVES}"));
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args("simulate move.toml --core engine --level verilator --vcd a.vcd".split(' ')).env("PATH", "");

@@ -1,5 +1,5 @@
-//! `carrystep home` on virtual boards: in each wiring, from every start, twice; what it remembers, and what is refused
-//! beside a limit.
+//! `carrystep home` on virtual boards: in each wiring, from every start, twice; what it remembers;
+//! and what is refused beside a limit.
 
 use crate::command::{Folder, Ran, edit};
 use crate::virtual_boards::{Board, passed};
@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Three axes; x and y home together behind z, which homes toward its high end.
+/// Three axes. z homes first, toward its high end; then x and y home together.
 const MACHINE: &str = r#"[machine]
 tick_ns = 2000
 
@@ -47,7 +47,8 @@ travel = [-10, 0]
 home = { toward = "max", seek_speed = 20, slow_speed = 2, move_off = 2, pull_off = 0.5, position = 0 }
 "#;
 
-/// One board at a time: a host that gets no answer for half a second gives its board up, and boards take all they can get.
+/// Only one board runs at a time. A host that gets no answer for half a second gives up its board,
+/// and boards use all available processor time.
 static ONE: Mutex<()> = Mutex::new(());
 
 fn alone() -> MutexGuard<'static, ()> {
@@ -60,12 +61,12 @@ fn folder(limits: &str) -> Folder {
     folder
 }
 
-/// The machine for a board that runs by the clock on the wall, whose host may be held up; y searches far.
+/// The machine for a board that runs in real time and whose host may be delayed; y searches far.
 fn patient(max_travel: &str) -> String {
     MACHINE.replace("watchdog_ms = 100", "watchdog_ms = 4000").replace("max_travel = 30, ", max_travel)
 }
 
-/// A command on the board of the machine.
+/// Runs a command on the board of the machine.
 fn on(folder: &Folder, board: &Board, command: &str) -> Ran {
     folder.run(&format!("{command} --machine machine.toml --port {}", board.port))
 }
@@ -80,7 +81,7 @@ fn axis<'a>(told: &'a Value, name: &str) -> &'a Value {
     told["axes"].as_array().unwrap().iter().find(|axis| axis["axis"] == name).unwrap()
 }
 
-/// The machine coordinates of all axes, as `status` says them.
+/// The machine coordinates of all axes, as `status` reports them.
 fn coordinates(folder: &Folder, board: &Board) -> Vec<Option<f64>> {
     let ran = on(folder, board, "status --json");
     passed(&ran);
@@ -89,9 +90,9 @@ fn coordinates(folder: &Folder, board: &Board) -> Vec<Option<f64>> {
 }
 
 #[test]
-fn it_homes_twice_to_the_same_place_in_each_wiring_wherever_it_starts() {
+fn homing_finds_the_same_zero_in_each_wiring_from_every_start() {
     let _alone = alone();
-    // x starts off its switch, y and z on theirs.
+    // x starts off its switch, y and z start on theirs.
     for limits in ["pair", "each", "one"] {
         let folder = folder(limits);
         let board = Board::new(&folder, "--fast --min x=-300 --max x=900 --min y=40 --max z=-30");
@@ -99,7 +100,7 @@ fn it_homes_twice_to_the_same_place_in_each_wiring_wherever_it_starts() {
         for (name, switch, rests, place) in [("x", -300, 50, 1.0), ("y", 40, 100, -0.5), ("z", -30, -50, -0.5)] {
             let found = axis(&first, name);
             let edge = found["edge"].as_i64().unwrap();
-            // Accepted within two steps of the slow speed.
+            // The limit is accepted within two steps at the slow speed.
             assert!((edge - switch).abs() <= 2, "{limits}: {found}");
             assert_eq!(found["position"].as_i64(), Some(edge + rests), "{limits}: {found}");
             assert_eq!(found["machine"].as_f64(), Some(place), "{limits}: {found}");
@@ -112,7 +113,7 @@ fn it_homes_twice_to_the_same_place_in_each_wiring_wherever_it_starts() {
         }
         passed(&on(&folder, &board, "jog x 2.5"));
         assert_eq!(coordinates(&folder, &board)[0], Some(3.5), "{limits}");
-        // Only one, by its name.
+        // A single axis is homed by its name.
         let told = home(&folder, &board, "x ");
         assert_eq!(told["axes"].as_array().unwrap().len(), 1);
         assert_eq!(coordinates(&folder, &board), [Some(1.0), Some(-0.5), Some(-0.5)], "{limits}");
@@ -120,30 +121,30 @@ fn it_homes_twice_to_the_same_place_in_each_wiring_wherever_it_starts() {
 }
 
 #[test]
-fn it_ends_as_soon_as_the_axes_rest() {
+fn homing_ends_as_soon_as_the_axes_rest() {
     let _alone = alone();
     let folder = folder("pair");
-    // By the clock on the wall: the search may take 1000 steps at 2500 steps/s, and the switch is near.
+    // In real time: the search may take 1000 steps at 2500 steps/s, and the switch is near.
     folder.write("machine.toml", patient("max_travel = 3000, "));
     let board = Board::new(&folder, "--min y=-100");
     let told = home(&folder, &board, "y ");
     let seconds = told["run_s"].as_f64().unwrap();
-    // What was planned is 75 s of search.
+    // The planned search takes 75 s.
     assert!(seconds < 30.0, "{seconds}");
 }
 
 #[test]
-fn what_is_remembered_is_dropped_when_the_board_is_another_or_was_moved() {
+fn machine_zero_is_forgotten_if_the_board_was_changed_or_moved() {
     let _alone = alone();
     let folder = folder("each");
     let switches = "--fast --min x=-100 --min y=-100 --max z=100";
     let board = Board::new(&folder, switches);
     home(&folder, &board, "");
     assert!(coordinates(&folder, &board).iter().all(Option::is_some));
-    // A clear and a stop of our own change nothing.
+    // A clear and a stop by this command change nothing.
     passed(&on(&folder, &board, "stop --clear"));
     assert!(coordinates(&folder, &board).iter().all(Option::is_some));
-    // Another host, which knows nothing of the file.
+    // Another host, which does not know the file.
     let mut other = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     let jog = ["jog", "x", "1", "--machine", "machine.toml", "--port", &board.port];
     let elsewhere = folder.path("elsewhere");
@@ -152,10 +153,10 @@ fn what_is_remembered_is_dropped_when_the_board_is_another_or_was_moved() {
     assert_eq!(coordinates(&folder, &board), [None, None, None]);
     home(&folder, &board, "y ");
     assert!(coordinates(&folder, &board)[1].is_some());
-    // Without power nothing holds the axes.
+    // Axes without power do not keep their positions.
     passed(&on(&folder, &board, "stop --off"));
     assert_eq!(coordinates(&folder, &board), [None, None, None]);
-    // Another machine file with other steps; the gateware is the same.
+    // Another machine file with another size of a step; the gateware is the same.
     home(&folder, &board, "y ");
     let half = [
         ("\"pair\"", "\"each\""),
@@ -165,7 +166,7 @@ fn what_is_remembered_is_dropped_when_the_board_is_another_or_was_moved() {
     folder.write("machine.toml", half.iter().fold(MACHINE.to_owned(), |text, (old, new)| text.replace(old, new)));
     assert_eq!(coordinates(&folder, &board), [None, None, None]);
     drop(board);
-    // A file that is half written, or of another kind.
+    // A file that is incomplete, or of another kind.
     let kept = std::fs::read_dir(folder.state()).unwrap().map(|entry| entry.unwrap().path());
     for path in kept {
         std::fs::write(path, "{\"schema\": 1, \"port\"").unwrap();
@@ -178,13 +179,14 @@ fn what_is_remembered_is_dropped_when_the_board_is_another_or_was_moved() {
 fn a_board_that_was_restarted_is_not_homed() {
     let _alone = alone();
     let folder = folder("pair");
-    // Homed at register 0, as a board stands that was just restarted: 50 steps back to the switch, and off again.
+    // The axis is homed at register 0, where a restarted board also stands: 50 steps back to the
+    // switch, and off again.
     folder.write("machine.toml", MACHINE.replace("pull_off = 1,", "pull_off = 1.02,"));
     let board = Board::new(&folder, "--fast --min x=-50");
     let told = home(&folder, &board, "x ");
     let port = board.port.clone();
     drop(board);
-    // The system gives the next one the same name, as soon as it may.
+    // The system gives the next pseudo-terminal the same name as soon as it is free.
     let begin = std::time::Instant::now();
     let board = loop {
         let board = Board::new(&folder, "--fast --min x=-50");
@@ -210,10 +212,10 @@ fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
         for _ in 0..2 {
             jog("-1").refuses("axis y has met its limit going back");
         }
-        // Away, but not as far as the switch needs to open.
+        // The axis moves away, but not as far as the switch needs to open.
         passed(&jog("1"));
         jog("-0.1").refuses("jog it forward by 1");
-        // A file of moves is no way round it.
+        // A move file is refused as well.
         folder.write(
             "move.toml",
             "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trapezoid\"\nto = { y = -1 }\n",
@@ -222,27 +224,30 @@ fn a_jog_further_into_a_limit_is_refused_and_one_away_is_not() {
         passed(&on(&folder, &board, "jog x 1"));
         passed(&jog("3"));
         passed(&jog("-1"));
-        // And all the same, where that is wished; the far side of the switch is nothing's end here.
+        // After it has moved far enough away, the axis meets the limit again. Only --into-limit
+        // then moves it toward the limit. On this board the axis can move beyond its switch.
         assert_eq!(jog("-5").status, 1);
         clear();
         jog("-0.1").refuses("--into-limit");
         let ran = jog("-0.1 --into-limit");
-        // Two switches: a limit that is closed still stops what goes toward it. One: it is not seen.
+        // With two switches, a closed limit still stops an axis that moves toward it. With one
+        // switch it is not seen.
         assert_eq!(ran.status, if limits == "pair" { 1 } else { 0 }, "{}{}", ran.stdout, ran.stderr);
     }
 }
 
 #[test]
-fn homing_that_finds_nothing_says_what_and_how_far() {
+fn homing_without_a_switch_reports_axis_and_distance() {
     let _alone = alone();
     let folder = folder("each");
     let board = Board::new(&folder, "--fast --max z=100");
     let ran = on(&folder, &board, "home");
     assert_eq!((ran.status, ran.stdout.as_str()), (1, ""));
-    // 20 units of travel, and twice move_off, which is a ramp from full speed, the debounce and a hundredth of the travel.
+    // The distance is 20 units of travel and twice move_off, which is a ramp from full speed, the
+    // debounce time and a hundredth of the travel.
     assert!(ran.stderr.starts_with("error: no limit was met: moved x by 2"), "{}", ran.stderr);
     assert!(ran.stderr.contains(", y by 30 units (1500 steps), which is max_travel"), "{}", ran.stderr);
-    // Nothing else is wrong with the machine, and z is homed no less.
+    // Nothing else is wrong with the machine, and z can still be homed.
     passed(&on(&folder, &board, "jog x 1"));
 }
 
@@ -251,7 +256,7 @@ fn homing_that_finds_nothing_says_what_and_how_far() {
 fn homing_that_is_interrupted_comes_to_rest_and_can_begin_again() {
     let _alone = alone();
     let folder = folder("pair");
-    // By the clock on the wall, and far away.
+    // The board runs in real time, and the switch is far away.
     folder.write("machine.toml", patient("max_travel = 30000, "));
     let mut board = Board::new(&folder, "");
     let begin = || {
@@ -260,7 +265,8 @@ fn homing_that_is_interrupted_comes_to_rest_and_can_begin_again() {
         command.env("CARRYSTEP_STATE", folder.state()).current_dir(folder.path(""));
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
-        // It answers for the board as soon as it drives. A status that was quicker holds the port, and refuses it.
+        // The home command answers for the board as soon as it drives. A `status` that comes
+        // earlier holds the port and makes the home command fail.
         while !on(&folder, &board, "status --json").stdout.contains("\"idle\": false") {
             if child.try_wait().unwrap().is_some() {
                 child = command.spawn().unwrap();
@@ -290,7 +296,7 @@ fn homing_that_is_interrupted_comes_to_rest_and_can_begin_again() {
 }
 
 #[test]
-fn what_cannot_home_is_refused_before_anything_moves() {
+fn axes_that_cannot_home_are_refused_before_any_motion() {
     let _alone = alone();
     let folder = folder("pair");
     let board = Board::new(&folder, "--fast");

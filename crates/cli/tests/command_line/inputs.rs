@@ -1,4 +1,4 @@
-//! Inputs that are no files, too long, or nearly right.
+//! Inputs that are no files, are too long, or contain a misspelled name.
 
 use crate::command::{Folder, GOOD, Ran, edit};
 use std::fs::File;
@@ -24,7 +24,7 @@ fn ends(folder: &Folder, arguments: &str) -> Ran {
     Ran { status: output.status.code().unwrap(), stdout: text(output.stdout), stderr: text(output.stderr) }
 }
 
-/// Every place of a command line where a file is read; `FILE` is the file.
+/// Every command line that reads a file; `FILE` stands for the file.
 const READERS: [&str; 13] = [
     "plan FILE",
     "simulate FILE",
@@ -68,9 +68,9 @@ fn devices_pipes_sockets_and_folders_are_refused() {
 }
 
 #[test]
-fn a_text_that_is_too_long_is_refused_and_the_limit_is_said() {
+fn too_long_input_is_refused_with_the_limit() {
     let folder = Folder::with_move(GOOD);
-    // A hole: it takes no room on the disk.
+    // The file is sparse and takes no space on the disk.
     File::create(folder.path("big.toml")).unwrap().set_len(1 << 40).unwrap();
     for reader in READERS.iter().filter(|reader| !reader.starts_with("check FILE")) {
         let ran = ends(&folder, &reader.replace("FILE", "big.toml"));
@@ -78,7 +78,7 @@ fn a_text_that_is_too_long_is_refused_and_the_limit_is_said() {
     }
 }
 
-/// The longest text that is read: as many comments as moves take room, and then a mistake.
+/// The longest text that is read: as many moves as fit.
 #[test]
 fn a_long_text_is_read_in_time() {
     let folder = Folder::new();
@@ -119,7 +119,7 @@ fn an_excerpt_of_a_long_line_is_short() {
 }
 
 #[test]
-fn a_number_says_what_is_wrong_with_it() {
+fn bad_numbers_are_refused_with_the_reason() {
     for (number, says) in [
         ("1e308", "speed_limit = 1e308: not a usable number: it is too great"),
         ("1e30", "speed_limit = 1e30: not a usable number: it is too great"),
@@ -137,7 +137,7 @@ fn a_number_says_what_is_wrong_with_it() {
 }
 
 #[test]
-fn a_near_miss_is_answered_with_the_name_that_was_meant() {
+fn misspelled_names_are_answered_with_a_suggestion() {
     for (old, new, says) in [
         ("clock_hz = 48_000_000", "^clok_hz = 48_000_000", "did you mean `clock_hz`?"),
         ("speed_limit = 1000", "^sped_limit = 1000", "did you mean `speed_limit`?"),

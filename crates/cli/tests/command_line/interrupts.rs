@@ -1,11 +1,11 @@
-//! Runs that are broken off: by Ctrl-C, or by a disk that fills long before their end. They say so, are no success,
-//! and leave nothing behind.
+//! Runs that end early, by Ctrl-C or because the disk is full. They report it, fail, and leave no
+//! file.
 
 use crate::command::{Folder, GOOD, Ran};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-/// Far more than anybody would wait for, at any level: a run that is not broken off does not end.
+/// A run that takes too long at any level, so it ends only if it is interrupted.
 fn endless() -> String {
     GOOD.replace(
         "profile = \"ranade\"\nto = { x = 2 }",
@@ -13,7 +13,7 @@ fn endless() -> String {
     )
 }
 
-/// Begins a run, and waits until it has begun the file that it writes into.
+/// Begins a run, and waits until it has begun its output file.
 fn begin(folder: &Folder, arguments: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(arguments.split(' ')).current_dir(folder.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -31,10 +31,11 @@ fn end(child: Child) -> Ran {
     Ran { status, stdout: text(output.stdout), stderr: text(output.stderr) }
 }
 
-/// SIGKILL cannot be handled: that nothing stays behind is the system's doing, because the file has no name yet.
+/// SIGKILL cannot be handled. Nothing remains because the file has no name yet and the system
+/// removes it.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_killed_run_leaves_nothing() {
+fn killed_run_leaves_no_file() {
     let folder = Folder::with_move(endless());
     folder.write("old.vcd", "as it was");
     for output in
@@ -51,7 +52,7 @@ fn a_killed_run_leaves_nothing() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn an_interrupted_run_says_so_and_leaves_nothing() {
+fn interrupted_run_reports_it_and_leaves_no_file() {
     let folder = Folder::with_move(endless());
     for signal in ["-INT", "-TERM"] {
         for arguments in [

@@ -1,4 +1,4 @@
-//! `--json` is one document whose names do not change: scripts depend on them.
+//! `--json` prints one document whose field names do not change, because scripts depend on them.
 
 use crate::boards::{Peer, Port, folder};
 use crate::command::{Folder, GOOD};
@@ -61,7 +61,7 @@ const ICE40: &str = "boards[].pll boards[].parts[].logic_cells boards[].usb boar
 
 const TIES: &str = "boards[].ties[].port boards[].ties[].pin boards[].ties[].level boards[].ties[].why";
 
-/// Of boards whose ports share pins with the configuration, or wait for a gate.
+/// Only for boards whose ports share pins with the configuration, or wait for a gate.
 const SHARED: &str =
     "boards[].gate boards[].shared[].port boards[].shared[].pin boards[].shared[].function boards[].shared[].modes
     boards[].shared[].why boards[].gate.port boards[].gate.pin boards[].gate.wait_ns boards[].gate.holds
@@ -74,7 +74,7 @@ const SPARTANS: &str =
     boards[].clocks[].made_by.mmcm.out_divide boards[].measured.luts boards[].measured.flip_flops
     boards[].measured.carries";
 
-/// Every name in a document, `a.b` for b in a and `a[]` for what the list a holds.
+/// Every name in a document: `a.b` for the field b of a, and `a[]` for the elements of the list a.
 fn names(value: &Value, path: &str, found: &mut Vec<String>) {
     match value {
         Value::Object(fields) => {
@@ -89,7 +89,7 @@ fn names(value: &Value, path: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Runs the command; its document has exactly these names.
+/// Runs the command and checks that its document has exactly these names.
 #[track_caller]
 fn document(folder: &Folder, arguments: &str, status: i32, expected: &[&str]) -> Value {
     let ran = folder.run(&format!("{arguments} --json"));
@@ -131,7 +131,7 @@ fn every_report_keeps_its_names() {
 }
 
 #[test]
-fn boards_keep_their_names() {
+fn boards_document_keeps_its_field_names() {
     let folder = Folder::new();
     document(&folder, "boards", 0, &[BOARDS, ICE40, TIES, SHARED, SPARTANS]);
     let one = document(&folder, "boards icebreaker", 0, &[BOARDS, ICE40]);
@@ -140,9 +140,9 @@ fn boards_keep_their_names() {
 }
 
 #[test]
-fn what_is_told_of_a_board_keeps_its_names() {
+fn status_and_drive_documents_keep_their_field_names() {
     let folder = folder();
-    // It counts a step a tick, so a drive along it ends somewhere else.
+    // The device counts one step per tick, so a move along it ends elsewhere.
     let port = Port::new(Peer::Device(Box::new(Peer::board())));
     document(&folder, &format!("status --port {}", port.name), 0, &[STATUS]);
     document(&folder, &format!("stop --port {}", port.name), 0, &[STATUS]);

@@ -1,10 +1,11 @@
-//! `--junit`: the XML that CI systems show; and `carrystep completions`.
+//! `--junit` writes the XML that CI systems display; and `carrystep completions`.
 
 use crate::command::{Folder, GOOD};
 use roxmltree::Document;
 use std::process::Command;
 
-/// Name and failure message of each test case; the counts of the file are those of its cases.
+/// Name and failure message of each test case. The counts in the file must equal those of its
+/// cases.
 #[track_caller]
 fn cases(folder: &Folder, name: &str) -> Vec<(String, Option<String>)> {
     let text = std::fs::read_to_string(folder.path(name)).unwrap();
@@ -23,7 +24,7 @@ fn cases(folder: &Folder, name: &str) -> Vec<(String, Option<String>)> {
 }
 
 #[test]
-fn a_check_is_a_case_for_each_axis() {
+fn check_writes_one_test_case_per_axis() {
     let folder = Folder::with_move(GOOD);
     assert_eq!(folder.run("simulate move.toml --vcd a.vcd").status, 0);
     assert_eq!(folder.run("check a.vcd move.toml --junit out/check.xml").status, 0);
@@ -37,7 +38,7 @@ fn a_check_is_a_case_for_each_axis() {
 }
 
 #[test]
-fn a_sweep_is_a_case_for_all_and_one_for_each_that_failed() {
+fn sweep_writes_one_test_case_for_all_and_one_per_failure() {
     let folder = Folder::new();
     let text = GOOD.replace("\"a4988\"", "\"{{ driver }}\"");
     let sweep =

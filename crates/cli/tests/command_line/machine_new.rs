@@ -1,4 +1,5 @@
-//! `carrystep machine new`: what it writes is read, planned, simulated; what it lacks it names or asks for.
+//! `carrystep machine new`: the file that it writes can be read, planned and simulated; missing
+//! values are named or asked for.
 
 use crate::command::{Folder, Ran};
 use std::process::Command;
@@ -9,7 +10,7 @@ fn new(folder: &Folder, options: &str) -> Ran {
 
 const BELT: &str = "unit=mm,lead=40,steps_per_rev=200,microsteps=16,speed_limit=200,accel_limit=3000,driver=tmc2209";
 
-/// A move of every axis of the file plans, and its pulses hold on both cores.
+/// A move of every axis of the file can be planned, and its pulses pass the check on both cores.
 fn moves(folder: &Folder, axes: &[&str]) {
     let to: Vec<String> = axes.iter().map(|axis| format!("{axis} = 1.5")).collect();
     let back: Vec<String> = axes.iter().map(|axis| format!("{axis} = -0.7")).collect();
@@ -26,7 +27,7 @@ fn moves(folder: &Folder, axes: &[&str]) {
 }
 
 #[test]
-fn what_is_written_plans_and_passes_for_many_sets_of_options() {
+fn written_machine_files_plan_and_pass_for_many_options() {
     let rows: [(String, &[&str], &[&str]); 5] = [
         (format!("--board icebreaker --limits each --axis x,{BELT}"), &["x"], &["clock_hz = 37500000", "tick_ns = 2560"]),
         (
@@ -63,7 +64,7 @@ fn what_is_written_plans_and_passes_for_many_sets_of_options() {
 }
 
 #[test]
-fn a_file_that_is_there_is_not_replaced_unless_forced() {
+fn existing_file_is_replaced_only_with_force() {
     let folder = Folder::new();
     folder.write("m.toml", "mine");
     let options = format!("--clock-hz 50000000 --limits none --axis x,{BELT}");
@@ -74,7 +75,7 @@ fn a_file_that_is_there_is_not_replaced_unless_forced() {
 }
 
 #[test]
-fn without_a_terminal_all_that_is_missing_is_named_and_nothing_is_written() {
+fn missing_options_without_a_terminal_are_named_and_nothing_is_written() {
     let folder = Folder::new();
     let ran = new(&folder, "--axis x,lead=40,speed_limit=3");
     for says in [
@@ -95,7 +96,8 @@ fn without_a_terminal_all_that_is_missing_is_named_and_nothing_is_written() {
         (format!("x,{}", BELT.replace("tmc2209", "tmc9999")), "no driver is called 'tmc9999'"),
         (format!("x,{}", BELT.replace("200,micro", "fast,micro")), "steps_per_rev = fast: a number is expected"),
         (format!("x,{BELT},7"), "\"7\" is not KEY=VALUE"),
-        // What only our own reader knows is refused by it, at the line that would have been written.
+        // Errors that only the reader of machine files detects point at the line that would have
+        // been written.
         (format!("9x,{BELT}"), "\"9x\" cannot name an axis"),
         (format!("x,{BELT},start_speed=1e5"), "start_speed is over speed_limit"),
         (format!("x,{BELT},steps_per_unit=3"), "both steps_per_unit and lead are given"),
@@ -109,7 +111,7 @@ fn without_a_terminal_all_that_is_missing_is_named_and_nothing_is_written() {
 }
 
 #[test]
-fn one_document_says_what_was_written() {
+fn json_document_states_what_was_written() {
     let folder = Folder::new();
     let ran = new(&folder, &format!("--board icebreaker --limits each --axis x,{BELT} --json"));
     let json: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
@@ -121,7 +123,7 @@ fn one_document_says_what_was_written() {
 
 #[cfg(unix)]
 #[test]
-fn on_a_terminal_it_asks_and_asks_again_where_an_answer_cannot_be() {
+fn questions_on_a_terminal_are_repeated_after_invalid_answers() {
     let folder = Folder::new();
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(["machine", "new", "m.toml"]).current_dir(folder.path(""));

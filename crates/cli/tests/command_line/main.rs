@@ -1,6 +1,6 @@
-//! The command from outside: what it says, its exit status, and what it leaves behind.
+//! Tests of the command from outside: its output, its exit status, and the files that it leaves.
 
-#![allow(clippy::unwrap_used)] // a test may panic
+#![allow(clippy::unwrap_used)] // Tests may panic.
 
 mod bad_captures;
 mod bad_curves;

@@ -1,4 +1,4 @@
-//! Outputs and what already has their name: inputs, links, devices, pipes, results of an earlier run.
+//! Outputs whose names exist already: inputs, links, devices, pipes, and results of an earlier run.
 
 use crate::command::{Folder, GOOD};
 use std::fs;
@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 const OPTIONS: [&str; 4] = ["--vcd", "--fst", "--csv", "--plot"];
 
-/// The machine and the moves of [`GOOD`] in two files, each also reachable by other names.
+/// The machine and the moves of [`GOOD`] in two files, each of which also has other names.
 fn folder() -> Folder {
     let folder = Folder::new();
     let (machine, moves) = GOOD.split_at(GOOD.find("[[move]]").unwrap());
@@ -53,7 +53,7 @@ fn an_output_that_is_an_input_is_refused() {
     refused("virtual-board --machine shop/machine.toml --vcd hard.toml", "cannot write hard.toml: it is the input");
 }
 
-/// The names of these outputs are the command's own.
+/// The command chooses the names of these outputs itself.
 #[test]
 fn verilog_does_not_replace_its_machine_file() {
     let folder = folder();
@@ -116,7 +116,7 @@ fn results_of_an_earlier_run_are_replaced_whole() {
     let (files, first) = (folder.files(), fs::read(folder.path("out/a.csv")).unwrap());
     let inode = |name: &str| fs::metadata(folder.path(name)).unwrap().ino();
     let before = inode("out/a.csv");
-    // Who still reads the earlier file reads it to its end.
+    // A reader of the earlier file can read it to its end.
     let mut reader = fs::File::open(folder.path("out/a.csv")).unwrap();
     fs::hard_link(folder.path("out/a.csv"), folder.path("kept")).unwrap();
     assert_eq!(folder.run(&run.replace("shop/move.toml", "linked/move.toml")).status, 0);
@@ -129,7 +129,8 @@ fn results_of_an_earlier_run_are_replaced_whole() {
     assert_eq!(folder.files(), files);
 }
 
-/// A result is an ordinary file: the user's mask decides who may read it, and scripts can be run.
+/// A result is an ordinary file: the user's mask determines who may read it, and scripts are
+/// executable.
 #[test]
 fn results_have_the_permissions_of_any_new_file() {
     let folder = folder();
@@ -142,7 +143,7 @@ fn results_have_the_permissions_of_any_new_file() {
 }
 
 #[test]
-fn devices_and_pipes_are_written_as_they_are() {
+fn devices_and_pipes_are_written_and_not_replaced() {
     let folder = folder();
     assert_eq!(folder.run("simulate shop/move.toml --vcd /dev/null --csv /dev/null").status, 0);
     assert!(fs::metadata("/dev/null").unwrap().rdev() != 0);
@@ -157,9 +158,9 @@ fn devices_and_pipes_are_written_as_they_are() {
     folder.run("simulate shop/move.toml --csv shop/").refuses("cannot write shop/: is a directory");
 }
 
-/// `carrystep ... --csv /dev/stdout > all`: the file and the report, one behind the other.
+/// `carrystep ... --csv /dev/stdout > all`: the file contains the CSV and then the report.
 #[test]
-fn standard_output_in_a_file_holds_all() {
+fn redirected_standard_output_holds_csv_and_report() {
     let folder = folder();
     let run = |csv: &str| {
         let all = fs::File::create(folder.path("all")).unwrap();

@@ -1,10 +1,10 @@
-//! `carrystep simulate --plot`: what the picture says.
+//! The contents of the picture that `carrystep simulate --plot` draws.
 
 use crate::command::Folder;
 
-/// What a passed run shows of jitter and ripple is within what the plot says is allowed, a fit included.
+/// Jitter and ripple of a passed run stay within the bounds that the plot states, fits included.
 #[test]
-fn a_plot_shows_what_is_allowed() {
+fn plotted_errors_stay_within_the_plotted_bounds() {
     let folder = Folder::new();
     for profile in ["sine", "logistic", "trapezoid"] {
         folder.write(

@@ -1,4 +1,4 @@
-//! The sources' examples in the sources' terms.
+//! `carrystep profile` reproduces the examples of the sources in the sources' units.
 
 use crate::curves::{close, golden, json, names, stdout};
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 const SORN: &str = "--step-angle 1.8 --microsteps 2 --travel-per-rev 5 --speed-mm-min 1000 --accel-mm-s2 80";
 
 #[test]
-fn the_example_of_the_logistic_source() {
+fn profile_reproduces_the_example_of_the_logistic_source() {
     let case = &golden("logistic.json")["cases"][0];
     let all = json(&format!("profile logistic trapezoid {SORN} --ti 0.4"));
     let [logistic, trapezoid] = [0, 1].map(|i| &all["profiles"][i]);
@@ -36,7 +36,7 @@ fn the_example_of_the_logistic_source() {
 }
 
 #[test]
-fn the_example_of_the_sinusoidal_source() {
+fn profile_reproduces_the_example_of_the_sinusoidal_source() {
     let source = golden("sinusoid.json");
     let sine = json("profile sine --speed 10000 --time 0.2");
     let (figures, steps) = (&sine["profiles"][0]["figures"], &sine["profiles"][0]["steps"]);
@@ -52,7 +52,7 @@ fn the_example_of_the_sinusoidal_source() {
 }
 
 #[test]
-fn the_example_of_the_trapezoid_source() {
+fn profile_reproduces_the_example_of_the_trapezoid_source() {
     let source = golden("trapezoid_austin.json");
     let all = json("profile trapezoid --deg 360 --time 1 --accel-deg-s2 1800 --timer-hz 1e6");
     let (figures, steps) = (&all["profiles"][0]["figures"], &all["profiles"][0]["steps"]);
@@ -65,7 +65,7 @@ fn the_example_of_the_trapezoid_source() {
 }
 
 #[test]
-fn a_speed_is_one_speed_in_any_unit() {
+fn equal_speeds_in_different_units_give_equal_ramps() {
     let motor = "--step-angle 1.8 --microsteps 2 --travel-per-rev 5 --accel 6400";
     let ramp = |speed: &str| json(&format!("profile sine {motor} {speed}"))["profiles"][0]["figures"].clone();
     let steps = ramp("--speed 1280");
@@ -74,9 +74,9 @@ fn a_speed_is_one_speed_in_any_unit() {
     }
 }
 
-/// From one ramp straight into the other acceleration jumps twice as far.
+/// A triangle goes directly from one ramp into the other, so its acceleration jumps twice as far.
 #[test]
-fn a_triangle_has_a_corner_and_a_trapezoid_two() {
+fn acceleration_of_a_triangle_jumps_twice_as_far_as_that_of_a_trapezoid() {
     let jump = |asked: &str| {
         let all = json(&format!("profile trapezoid ranade --steps 100 --accel 1000 {asked}"));
         [0, 1].map(|i| all["profiles"][i]["figures"]["acceleration_jump_steps_per_s2"].as_f64().unwrap())
@@ -86,9 +86,9 @@ fn a_triangle_has_a_corner_and_a_trapezoid_two() {
     assert!(trapezoid.iter().all(|jump| (jump / 1000.0 - 1.0).abs() < 1e-12), "{trapezoid:?}");
 }
 
-/// Where jerk is nothing but impulses it has no greatest value; where there are none, nothing is jumped.
+/// Jerk that consists of impulses has no greatest value. A curve without impulses has no jumps.
 #[test]
-fn impulses_are_no_number_and_nothing_is_zero() {
+fn jerk_of_impulses_is_null_and_missing_jumps_are_zero() {
     let all = json("profile trapezoid ranade scurve sine --steps 20000 --accel 500000 --jerk 5e6");
     let figures = |kind: usize| all["profiles"][kind]["figures"].clone();
     for kind in [0, 1] {
@@ -102,7 +102,7 @@ fn impulses_are_no_number_and_nothing_is_zero() {
     }
 }
 
-/// From rest at constant acceleration: 2 x = a t^2, and x = n - 1/2 in the middle of step n.
+/// From rest at constant acceleration, 2 x = a t^2, and x = n - 1/2 in the middle of step n.
 #[test]
 fn half_phase_lists_the_middles_of_the_steps() {
     let all = json("profile trapezoid --speed 1000 --accel 5000 --phase half");
@@ -143,9 +143,9 @@ fn json_has_stable_names() {
     assert_eq!(steps[40]["delay_s"], Value::Null);
 }
 
-/// The same numbers as in the JSON, to the rounding of its reader.
+/// The CSV contains the same numbers as the JSON, up to the rounding of its reader.
 #[test]
-fn csv_is_the_json_in_lines() {
+fn csv_has_the_same_numbers_as_the_json() {
     let asked = "profile trapezoid sine --steps 30 --accel 3000";
     let csv = stdout(&format!("{asked} --csv -"));
     let json = json(asked);

@@ -1,5 +1,5 @@
-//! How long it takes from `carrystep stop` in a second terminal to its frame on the wire: a spy sits between the command that
-//! drives and the board.
+//! Measures the time from `carrystep stop` in a second terminal to its frame on the wire. A spy
+//! sits between the driving command and the board.
 
 use crate::stops::{drives, moving, stop};
 use crate::virtual_boards::{Board, document, folder, passed};
@@ -11,7 +11,8 @@ use std::sync::mpsc::{self, Receiver};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// A host's bytes on their way to a board, and when a write of CONTROL with its stop bit was among them.
+/// Forwards a host's bytes to a board, and reports when a write of CONTROL with the stop bit was
+/// among them.
 struct Spy {
     port: String,
     stops: Receiver<Instant>,
@@ -23,7 +24,7 @@ impl Spy {
     fn new(board: &Board) -> Self {
         let (mut host, other) = TTYPort::pair().unwrap();
         let port = other.name().unwrap();
-        // The name stays after this end is closed: the host opens it anew.
+        // The name remains valid after this end is closed; the host opens it again.
         drop(other);
         host.set_timeout(Duration::from_millis(1)).unwrap();
         let mut line = serialport::new(&board.port, 3_000_000).timeout(Duration::from_millis(1)).open().unwrap();
@@ -68,8 +69,9 @@ impl Drop for Spy {
     }
 }
 
-/// How many exchanges a stop takes at most is asserted without a clock, in crates/link/tests/host.rs. Here is the whole
-/// way from a second command to the wire; of several tries the best counts, for this computer may be busy.
+/// A test in crates/link/tests/host.rs asserts without a clock how many exchanges a stop takes at
+/// most. This test covers the whole path from a second command to the wire. The best of several
+/// tries counts, because the computer may be busy.
 #[test]
 fn a_stop_from_a_second_terminal_is_on_the_wire_within_100_ms() {
     let folder = folder();
@@ -79,7 +81,7 @@ fn a_stop_from_a_second_terminal_is_on_the_wire_within_100_ms() {
     for _ in 0..5 {
         let mut child = drives(&folder, "run long.toml", &spy.port);
         moving(&folder, &mut child, &spy.port);
-        // A stop whose answer was late was sent again.
+        // A stop whose answer was late was sent again; these repetitions are removed.
         while spy.stops.try_recv().is_ok() {}
         let asked = Instant::now();
         passed(&stop(&folder, &spy.port, ""));

@@ -1,5 +1,5 @@
-//! `carrystep stop` and `status` from a second terminal while another command drives the board, hosts that hang or are
-//! killed, ports that are held, and lines that die.
+//! `carrystep stop` and `status` from a second terminal while another command drives the board;
+//! hosts that hang or are killed; ports that are held; and lines that are lost.
 
 use crate::command::{Folder, Ran};
 use crate::virtual_boards::{Board, MACHINE, document, folder, passed};
@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A command that drives the board at this port.
+/// Starts a command that drives the board at this port.
 pub fn drives(folder: &Folder, arguments: &str, port: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(arguments.split(' ')).args(["--port", port, "--json"]).current_dir(folder.path(""));
@@ -20,12 +20,12 @@ fn status(folder: &Folder, port: &str) -> Value {
     serde_json::from_str(&ran.stdout).unwrap()
 }
 
-/// Waits until that command has the port and something moves; what `status` says then.
+/// Waits until that command holds the port and an axis moves; returns the output of `status` then.
 pub fn moving(folder: &Folder, child: &mut Child, port: &str) -> Value {
     loop {
         assert_eq!(child.try_wait().unwrap(), None, "it has ended");
         let ran = folder.run(&format!("status --port {port} --machine machine.toml --json"));
-        // Before the command listens the port is only busy.
+        // Before the command listens, the port is only reported as busy.
         let told: Value = serde_json::from_str(&ran.stdout).unwrap_or_default();
         if told["held_by"]["pid"] == child.id() && told["axes"][0]["position"] != 0 {
             return told;
@@ -79,7 +79,7 @@ fn stop_reaches_a_run_that_waits_for_the_drivers_power() {
     let board = Board::new(&folder, "");
     let child = drives(&folder, "run long.toml", &board.port);
     while folder.run(&format!("status --port {} --machine machine.toml", board.port)).stdout.contains("at rest") {
-        // It has connected where it is the one that answers.
+        // If it is the one that answers, it has connected.
         if status(&folder, &board.port)["held_by"]["pid"] == child.id() {
             break;
         }
@@ -107,7 +107,7 @@ fn status_asks_the_command_that_drives() {
 }
 
 #[test]
-fn a_run_that_was_killed_is_in_nobodys_way() {
+fn killed_run_does_not_block_the_next_command() {
     let folder = folder();
     let board = Board::new(&folder, "");
     for _ in 0..2 {
@@ -115,7 +115,7 @@ fn a_run_that_was_killed_is_in_nobodys_way() {
         moving(&folder, &mut child, &board.port);
         child.kill().unwrap();
         child.wait().unwrap();
-        // Its socket and its lock are still there, and nobody is behind them.
+        // Its socket and its lock still exist, but no process uses them.
         let ran = stop(&folder, &board.port, " --clear");
         passed(&ran);
         assert!(!ran.stdout.contains("was stopped"), "{}", ran.stdout);
@@ -124,7 +124,7 @@ fn a_run_that_was_killed_is_in_nobodys_way() {
 }
 
 #[test]
-fn a_run_that_hangs_is_named_with_what_stops_the_axes() {
+fn hanging_run_is_named_with_what_stops_the_axes() {
     let folder = folder();
     let board = Board::new(&folder, "");
     let mut child = drives(&folder, "run long.toml", &board.port);
@@ -143,11 +143,11 @@ fn a_run_that_hangs_is_named_with_what_stops_the_axes() {
     if cfg!(target_os = "linux") {
         assert!(ran.stderr.contains(&format!("`kill -CONT {pid}` wakes it: then it stops the axes")), "{}", ran.stderr);
     }
-    // The request has stayed.
+    // The request has remained in the socket.
     signal(&child, "-CONT");
     let output = child.wait_with_output().unwrap();
     let told: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
-    // Where this computer is so slow that the watchdog was first, that is told instead.
+    // If the computer is so slow that the watchdog comes first, the watchdog is reported instead.
     assert!(told["stopped_by"] == "stop" || told["cause"] == "watchdog", "{}", String::from_utf8_lossy(&output.stderr));
 }
 
@@ -172,7 +172,7 @@ fn a_port_that_is_held_is_refused_by_every_name() {
 }
 
 #[test]
-fn a_line_that_dies_in_mid_run_is_told_as_that() {
+fn line_that_is_lost_during_a_run_is_reported() {
     let folder = folder();
     let board = Board::new(&folder, "");
     let mut child = drives(&folder, "run long.toml", &board.port);
@@ -190,14 +190,14 @@ fn a_line_that_dies_in_mid_run_is_told_as_that() {
 }
 
 #[test]
-fn a_clear_with_the_e_stop_pressed_says_so_at_once() {
+fn clear_with_the_e_stop_pressed_fails_at_once() {
     let folder = folder();
     let mut board = Board::new(&folder, "--fast");
     board.press("estop 1");
     while status(&folder, &board.port)["cause"] != "e-stop" {}
     let begun = Instant::now();
     let ran = stop(&folder, &board.port, " --clear");
-    // It was five seconds before.
+    // Without the check for the e-stop it would take five seconds.
     assert!(begun.elapsed() < Duration::from_millis(2500), "{:?}", begun.elapsed());
     assert_eq!(ran.status, 1);
     assert!(
@@ -211,7 +211,7 @@ fn a_clear_with_the_e_stop_pressed_says_so_at_once() {
 }
 
 #[test]
-fn status_says_why_the_machine_stands_and_what_to_do() {
+fn status_reports_the_cause_of_a_stop_and_the_remedy() {
     let folder = folder();
     let mut board = Board::new(&folder, "--fast --max y=100");
     let port = board.port.clone();
@@ -239,7 +239,7 @@ fn status_says_why_the_machine_stands_and_what_to_do() {
 #[test]
 fn a_jog_of_less_than_half_a_step_is_refused() {
     let folder = folder();
-    // No board is asked.
+    // The command does not contact a board.
     let jog = |way: &str| folder.run(&format!("jog {way} --machine machine.toml --port none"));
     jog("x 0.08").refuses(
         "jog x 0.08 is 0.400 step, which rounds to no step at all: nothing would move. One step of x is 0.2 of",

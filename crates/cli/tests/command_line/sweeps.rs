@@ -1,9 +1,10 @@
-//! `carrystep sweep`: shards add up to the whole, and one bad case stops no other.
+//! `carrystep sweep`: shards merge to the whole, and a failing case does not stop the others.
 
 use crate::command::{Folder, GOOD};
 use serde_json::Value;
 
-/// The good move in 24 variants, one part of which `driver` names.
+/// The moves of [`GOOD`] with varied driver, phases and distance. `drivers` is the list of drivers;
+/// two of them give 24 cases.
 fn sweep(drivers: &str) -> Folder {
     let folder = Folder::new();
     let blanks =
@@ -38,7 +39,7 @@ fn shards_merge_to_the_whole_in_any_order() {
     assert!(report["worst"]["step high"]["value"].as_f64().is_some_and(|part| part <= 1.0), "{report}");
 }
 
-/// A reader of JSON that scales by powers of ten loses the last digit of some.
+/// A JSON reader that scales by powers of ten would change the last digit of some numbers.
 #[test]
 fn merged_figures_keep_their_last_digit() {
     let folder = sweep("[\"a4988\", \"tmc2209\"]");
@@ -58,13 +59,13 @@ fn merged_figures_keep_their_last_digit() {
 }
 
 #[test]
-fn nothing_tried_is_not_passed() {
+fn sweep_in_which_no_case_ran_does_not_pass() {
     let folder = sweep("[\"a4988\"]");
     folder.run("sweep sweep.toml --sample 0").refuses("--sample 0 tries nothing: give at least 1");
     let mut shards = Vec::new();
     for shard in 1..=13 {
         let ran = folder.run(&format!("sweep sweep.toml --json --shard {shard}/13"));
-        // Twelve cases: the last shard is empty.
+        // There are twelve cases, so the last shard is empty.
         let (status, passed) = if shard == 13 { (4, Value::Null) } else { (0, true.into()) };
         assert_eq!((ran.status, &json(&ran.stdout)["passed"]), (status, &passed), "{}", ran.stdout);
         folder.write(&format!("{shard}.json"), ran.stdout);
@@ -74,7 +75,7 @@ fn nothing_tried_is_not_passed() {
     assert!(text.status == 4 && text.stdout.ends_with("NOTHING TRIED: no case ran\n"), "{}", text.stdout);
     let merged = folder.run(&format!("sweep --json --merge {}", shards.join(" ")));
     assert_eq!((merged.status, merged.stdout), (0, folder.run("sweep sweep.toml --json").stdout));
-    // Moves that are all impossible show nothing either.
+    // A sweep in which every move is impossible has the same result as an empty one.
     let impossible =
         std::fs::read_to_string(folder.path("sweep.toml")).unwrap().replacen("[[move]]", "[[move]]\ntime = 1e-6", 1);
     folder.write("impossible.toml", impossible.replace("to = [0, 1, 2, 30]", "to = [1, 2, 30]"));
@@ -83,7 +84,7 @@ fn nothing_tried_is_not_passed() {
 }
 
 #[test]
-fn a_failing_case_stops_no_other() {
+fn failing_case_does_not_stop_the_others() {
     let folder = sweep("[\"a4988\", \"none\"]");
     let ran = folder.run("sweep sweep.toml --json");
     let report = json(&ran.stdout);
@@ -93,7 +94,7 @@ fn a_failing_case_stops_no_other() {
 }
 
 #[test]
-fn what_is_no_sweep_is_refused() {
+fn malformed_sweeps_are_refused() {
     let folder = sweep("[]");
     folder.run("sweep sweep.toml").refuses("driver: an empty list");
     folder.run("sweep none.toml").refuses("cannot read none.toml");

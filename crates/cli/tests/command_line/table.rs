@@ -1,4 +1,4 @@
-//! The tables of the sources through the command.
+//! `carrystep table` reproduces the tables of the sources.
 
 use crate::curves::{golden, json, names, stdout};
 use serde_json::{Value, json};
@@ -9,7 +9,7 @@ const SOURCE: &str = "table logistic --entries 1000 --clock-hz 16000000 --presca
                       --rpm 500 --microsteps 8";
 
 #[test]
-fn the_look_up_method() {
+fn logistic_table_equals_the_look_up_method_of_the_source() {
     let golden = &golden("timer_table.json")["table_Fle_6"];
     let table = json(&format!("{SOURCE} --mode free-running"));
     let compare: Vec<u64> = table["compare"].as_array().unwrap().iter().map(|v| v.as_u64().unwrap()).collect();
@@ -18,16 +18,16 @@ fn the_look_up_method() {
         assert_eq!(golden[format!("OCR_{i}")], compare[i]);
     }
     assert_eq!(golden["sum_OCR_0..999"], compare.iter().sum::<u64>());
-    // In CTC mode a period is one count longer than the value.
+    // In CTC mode a period is one count longer than the compare value.
     let ctc = json(SOURCE);
     let one_less: Vec<u64> = compare.iter().map(|value| value - 1).collect();
     assert_eq!(ctc["compare"], json!(one_less));
     assert_eq!(json(&format!("{SOURCE} --fle 6 --centre 500"))["compare"], ctc["compare"]);
 }
 
-/// The integers of the application note: 1 MHz, 200 steps a turn, 1000 steps/s^2.
+/// The integers of the application note: 1 MHz, 200 steps per turn, 1000 steps/s^2.
 #[test]
-fn the_recurrence_in_integers() {
+fn avr446_table_equals_the_integers_of_the_application_note() {
     let source = &golden("trapezoid_austin.json")["avr446_integer"];
     let asked =
         "table avr446 --arithmetic integer --ramp-steps 500 --clock-hz 1000000 --top-speed 1000 --mode free-running";
@@ -48,7 +48,7 @@ fn json_has_stable_names() {
     assert_eq!(json(sine)["inverse"].as_array().unwrap().len(), 257);
 }
 
-/// Header and player together, in strict C99.
+/// Compiles header and player together in strict C99.
 fn compiles(folder: &Path, name: &str, flags: &[&str]) {
     let main = format!("#include \"{name}.h\"\nint main(void) {{ return (int)({name}_compare[0] == 0); }}\n");
     std::fs::write(folder.join("main.c"), main).unwrap();
@@ -69,7 +69,7 @@ fn files(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_folder_has_all_that_is_needed() {
+fn written_table_and_player_compile() {
     let folder = tempfile::tempdir().unwrap();
     let out = |name: &str| folder.path().join(name);
     let write = |arguments: &str, name: &str| stdout(&format!("{arguments} --out {}", out(name).display()));

@@ -1,4 +1,5 @@
-//! What a person sees on a terminal: colours, progress, errors that begin with a word, tables of 80 columns.
+//! What a user sees on a terminal: colours, progress, errors that begin with a word, tables of 80
+//! columns.
 
 use crate::command::{Folder, GOOD};
 use serialport::{SerialPort as _, TTYPort};
@@ -7,10 +8,10 @@ use std::io::{Read as _, Write as _};
 use std::process::{Child, Command, ExitStatus};
 use std::time::{Duration, Instant};
 
-/// Far longer than anything takes that is waited for here.
+/// A time-out that is far longer than anything that these tests wait for.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// A terminal with a command on it: all three of its streams.
+/// A pseudo-terminal on which a command runs with all three of its streams.
 pub struct Screen {
     ours: TTYPort,
     child: Child,
@@ -30,7 +31,7 @@ impl Screen {
         Self { ours, child, seen: String::new(), looked_at: 0 }
     }
 
-    /// Reads what is there; false where nothing came.
+    /// Reads the available output; returns false if there is none.
     fn look(&mut self) -> bool {
         let mut bytes = [0; 4096];
         let come = self.ours.read(&mut bytes).unwrap_or(0);
@@ -38,7 +39,7 @@ impl Screen {
         come > 0
     }
 
-    /// Reads on until this is shown, behind what was waited for before.
+    /// Reads until this text appears after the text that was waited for before.
     #[track_caller]
     pub fn waits_for(&mut self, text: &str) {
         let begun = Instant::now();
@@ -58,7 +59,7 @@ impl Screen {
         self.ours.write_all(text.as_bytes()).unwrap();
     }
 
-    /// Waits for the command's end, and reads what it shows until then.
+    /// Waits for the command to end, and reads its remaining output.
     pub fn ends(&mut self) -> ExitStatus {
         let begun = Instant::now();
         loop {
@@ -74,7 +75,7 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // It may be over by now.
+        // The command may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -111,7 +112,7 @@ fn verdicts_have_colours_on_a_terminal_that_wants_them() {
 }
 
 #[test]
-fn an_error_begins_with_the_word_and_not_with_a_cross() {
+fn error_message_begins_with_the_word_error() {
     let folder = Folder::with_move(GOOD.replace("phases = 16", "phases = 3"));
     let ran = folder.run("plan move.toml");
     assert!(ran.stderr.starts_with("error: 3 phases: a tick has 1, 4 or 16 phases\n"), "{}", ran.stderr);
@@ -121,9 +122,10 @@ fn an_error_begins_with_the_word_and_not_with_a_cross() {
     assert!(!screen.seen.contains('\u{d7}'), "{}", screen.seen);
 }
 
-/// A step in a quarter of an hour, clock by clock: no edge comes, and still it is said how far it is.
+/// The move makes one step per quarter of an hour of machine time, and the level simulates every
+/// clock, so no edge comes during the test. The progress must be displayed nevertheless.
 #[test]
-fn progress_is_shown_at_the_speed_of_the_level_even_where_no_edge_comes() {
+fn progress_is_shown_even_if_no_edge_comes() {
     let crawl = GOOD.replace("start_speed = 200", "start_speed = 1").replacen(
         "profile = \"ranade\"\nto = { x = 2 }",
         "profile = \"constant\"\ntime = 1_000_000\nto = { x = 200 }",
@@ -134,7 +136,7 @@ fn progress_is_shown_at_the_speed_of_the_level_even_where_no_edge_comes() {
         let mut screen = Screen::start(&mut command(&folder, arguments));
         screen.waits_for(if arguments.contains("model") { "model " } else { "rust-hdl " });
         screen.waits_for("  0 % ");
-        // 48 million million clocks: days at any speed that this level has.
+        // The run has 48 million million clocks, which take days at any speed of this level.
         screen.waits_for(" h ");
         screen.waits_for("left at ");
         screen.waits_for(" k clocks/s");

@@ -1,11 +1,13 @@
-//! The commands that drive a board, on a virtual one: moves from file to capture, stops of every kind.
+//! The commands that drive a board, run on a virtual board: moves from the file to the capture, and
+//! all kinds of stops.
 
 use crate::command::{Folder, Ran, edit};
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
-/// Two axes; a host may be held up for long, for the machine that runs these tests may be busy.
+/// A machine with two axes. Its watchdog is long, because the computer that runs these tests may be
+/// busy.
 pub const MACHINE: &str = r#"[machine]
 tick_ns = 2000
 
@@ -43,10 +45,10 @@ profile = "sine"
 to = { x = -12.2 }
 "#;
 
-/// Takes longer than anyone waits.
+/// A move that takes longer than any test waits.
 const LONG: &str = "machine_file = \"machine.toml\"\n[[move]]\nprofile = \"trapezoid\"\nto = { x = 1_000_000 }\n";
 
-/// `carrystep virtual-board`, until it is ended.
+/// A running `carrystep virtual-board`.
 pub struct Board {
     pub child: Child,
     said: BufReader<ChildStdout>,
@@ -70,7 +72,7 @@ impl Board {
         writeln!(self.child.stdin.as_mut().unwrap(), "{line}").unwrap();
     }
 
-    /// Ends it, and gives what it said.
+    /// Ends the board and returns its output.
     pub fn end(mut self) -> String {
         self.press("end");
         let mut said = String::new();
@@ -82,7 +84,7 @@ impl Board {
 
 impl Drop for Board {
     fn drop(&mut self) {
-        // It has ended, where the test has come so far.
+        // If the test has come so far, the board has ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -100,13 +102,13 @@ pub fn passed(ran: &Ran) {
     assert_eq!(ran.status, 0, "{}{}", ran.stdout, ran.stderr);
 }
 
-/// A run that is under way: the capture of the board, which it writes, has begun.
+/// Starts a run and waits until the board's capture of it has begun.
 fn begin(folder: &Folder, board: &Board, file: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_carrystep"));
     command.args(["run", file, "--port", &board.port, "--json"]).current_dir(folder.path(""));
     command.env("CARRYSTEP_STATE", folder.state());
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    // Nobody else can ask the board while that one has the port.
+    // No other command can ask the board while the run holds the port.
     while folder.begun_by(&board.child).is_none_or(|written| written == 0) {
         assert_eq!(child.try_wait().unwrap(), None, "it has ended");
         std::thread::sleep(Duration::from_millis(10));
@@ -123,7 +125,7 @@ pub fn document(child: Child) -> serde_json::Value {
 #[test]
 fn moves_reach_the_pins_of_a_board_as_they_were_planned() {
     let folder = folder();
-    // All of the first move fits into the queues: by the clock on the wall, a host may be late at any time.
+    // The whole first move fits into the queues: in real time, a host may be late at any time.
     let (first, _) = MOVES.split_once("\n[[move]]\nprofile = \"sine\"").unwrap();
     folder.write("first.toml", first);
     folder.write("short.toml", first.replace("x = 20, y = -3", "x = 2, y = -0.2"));
@@ -140,14 +142,14 @@ fn moves_reach_the_pins_of_a_board_as_they_were_planned() {
         let said = board.end();
         assert!(said.contains(&format!("\n{ends}\nwrote a.vcd\n")), "{said}");
         passed(&folder.run(&format!("check a.vcd {file}")));
-        // The check is of these moves, and sees where they are others.
+        // The check compares with these moves and detects other moves.
         folder.write("other.toml", MOVES.replace("x = 20", "x = 20.2"));
         assert_eq!(folder.run("check a.vcd other.toml").status, 1);
     }
 }
 
 #[test]
-fn a_jog_is_a_move_and_comes_after_moves() {
+fn jogs_start_from_the_present_position_and_follow_moves() {
     let folder = folder();
     let board = Board::new(&folder, "--fast");
     let jog = |arguments: &str| folder.run(&format!("jog {arguments} --machine machine.toml --port {}", board.port));
@@ -174,7 +176,7 @@ fn an_interrupted_run_comes_to_rest_and_the_next_one_runs() {
 
 #[cfg(unix)]
 #[test]
-fn a_host_that_is_killed_leaves_a_machine_that_stands_and_says_why() {
+fn killed_host_leaves_a_stopped_machine_that_reports_the_watchdog() {
     let folder = folder();
     folder.write("machine.toml", MACHINE.replace("watchdog_ms = 4000", "watchdog_ms = 400"));
     let board = Board::new(&folder, "--fast --vcd a.vcd");
@@ -183,7 +185,7 @@ fn a_host_that_is_killed_leaves_a_machine_that_stands_and_says_why() {
     assert!(folder.run(&status).stdout.contains("`carrystep run`"));
     child.kill().unwrap();
     child.wait().unwrap();
-    // A fast board waits for its host, and goes on by itself after a second without one.
+    // A fast board waits for its host, and continues by itself after a second without one.
     let mut alone = Duration::from_secs(2);
     let told = loop {
         std::thread::sleep(alone);
@@ -205,7 +207,7 @@ fn a_host_that_is_killed_leaves_a_machine_that_stands_and_says_why() {
 }
 
 #[test]
-fn a_board_that_is_gone_is_named() {
+fn lost_board_is_reported() {
     let folder = folder();
     let mut board = Board::new(&folder, "--fast --vcd a.vcd");
     let child = begin(&folder, &board, "long.toml");
@@ -219,7 +221,7 @@ fn a_board_that_is_gone_is_named() {
 }
 
 #[test]
-fn a_limit_that_was_met_is_told_with_its_axis() {
+fn limit_stop_is_reported_with_its_axis() {
     let folder = folder();
     let board = Board::new(&folder, "--fast --max y=100");
     let on = format!("--machine machine.toml --port {}", board.port);
@@ -232,7 +234,7 @@ fn a_limit_that_was_met_is_told_with_its_axis() {
 }
 
 #[test]
-fn an_emergency_stop_is_told_and_stays_until_it_is_released_and_cleared() {
+fn e_stop_is_reported_and_latched_until_released_and_cleared() {
     let folder = folder();
     let mut board = Board::new(&folder, "--fast --vcd a.vcd");
     let child = begin(&folder, &board, "long.toml");
@@ -251,7 +253,7 @@ fn an_emergency_stop_is_told_and_stays_until_it_is_released_and_cleared() {
 }
 
 #[test]
-fn a_board_that_cannot_be_is_refused() {
+fn impossible_virtual_boards_are_refused() {
     let folder = folder();
     let board = |machine: &str, options: &str| {
         folder.write("bad.toml", machine);

@@ -1,20 +1,23 @@
-//! What the engine's guard watches, and how a stop goes on: docs/clock-by-clock.md, "Stops".
+//! The engine's guard: it watches e-stop, host and ENABLE, and defines how each cause stops the
+//! axes (docs/clock-by-clock.md, "The guard's inputs" and "Stops").
 
 use carrystep_core::engine::{Cause, EngineInputs, Guard};
 
-/// E-stop, watchdog and ENABLE.
+/// State of e-stop input, watchdog and ENABLE.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Watch {
-    /// The e-stop's two flip-flops.
+    /// Synchronizer of the e-stop input: two flip-flops, `first` and `now`.
     first: bool,
     now: bool,
+    /// True if the e-stop has been active in every clock since the last strobe.
     held: bool,
-    /// Ticks since the round began.
+    /// Ticks since the beginning of the round.
     pub(super) tick_of_round: u32,
-    /// Rounds without the host.
+    /// Rounds since the last kick of the host, saturating at the watchdog's time-out.
     silence: u32,
+    /// Level of the ENABLE output: the drivers are to be powered.
     pub(super) enabled: bool,
-    /// Rounds with ENABLE.
+    /// Rounds since ENABLE was asserted, saturating at the warm-up time.
     warm: u32,
 }
 
@@ -23,17 +26,17 @@ impl Watch {
         Self { first: false, now: false, held: false, tick_of_round: 0, silence: 0, enabled: false, warm: 0 }
     }
 
-    /// The e-stop was active for a whole tick, at a strobe.
+    /// At a strobe: true if the e-stop was active during the whole tick.
     pub(super) const fn pressed(&self) -> bool {
         self.held && self.now
     }
 
-    /// The host was silent for too long.
+    /// True if the host has not kicked the watchdog for the time-out.
     pub(super) const fn misses_the_host(&self, guard: &Guard) -> bool {
         guard.watchdog > 0 && self.silence == guard.watchdog
     }
 
-    /// The drivers have been powered for long enough.
+    /// True if the drivers have been powered for the warm-up time.
     pub(super) const fn is_warm(&self, guard: &Guard) -> bool {
         self.enabled && self.warm == guard.enable
     }
@@ -58,9 +61,9 @@ impl Watch {
     }
 }
 
-/// What lets `fast` pass many clocks at once.
+/// Access for the fast model, which passes many clocks at once.
 impl Watch {
-    /// With these inputs, and this `idle`, nothing changes but what is counted in rounds.
+    /// True if these inputs and this `idle` change nothing but the counters of rounds.
     pub(super) fn is_steady(&self, guard: &Guard, inputs: &EngineInputs, idle: bool, stop: &Stop) -> bool {
         let estop = inputs.estop != guard.estop_low;
         let seen = [self.first, self.now, self.held].iter().all(|&seen| seen == estop);
@@ -70,27 +73,28 @@ impl Watch {
             && (self.enabled || self.warm == 0)
     }
 
-    /// Strobes before the one at which the host is missed.
+    /// Strobes before the strobe at which the watchdog expires.
     pub(super) fn strobes_to_silence(&self, guard: &Guard) -> u64 {
         if guard.watchdog == 0 { u64::MAX } else { self.strobes_to(guard, guard.watchdog - self.silence) }
     }
 
-    /// Strobes before the first at which the drivers are warm.
+    /// Strobes before the first strobe at which the warm-up time is over.
     pub(super) fn strobes_to_warmth(&self, guard: &Guard) -> u64 {
         self.strobes_to(guard, guard.enable - self.warm)
     }
 
-    /// Strobes before the first that finds a counter at its top, which is so many rounds away.
+    /// Strobes before the first strobe that finds a counter saturated which is `rounds` rounds
+    /// below its maximum.
     fn strobes_to(&self, guard: &Guard, rounds: u32) -> u64 {
         u64::from(rounds) * u64::from(guard.round) - if rounds == 0 { 0 } else { u64::from(self.tick_of_round) }
     }
 
-    /// Strobes before the first in this tick of a round.
+    /// Strobes before the first strobe in this tick of a round.
     pub(super) const fn strobes_to_look(&self, guard: &Guard, tick_of_round: u32) -> u64 {
         ((tick_of_round + guard.round - self.tick_of_round) % guard.round) as u64
     }
 
-    /// So many strobes go by.
+    /// Advances the counters by this many strobes.
     pub(super) fn pass(&mut self, guard: &Guard, kick: bool, strobes: u64) {
         let ticks = u64::from(self.tick_of_round) + strobes;
         let (rounds, round) = (ticks / u64::from(guard.round), u64::from(guard.round));
@@ -101,27 +105,32 @@ impl Watch {
     }
 }
 
-/// A stop under way.
+/// The state of a stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Stop {
-    /// The first cause, and the axes that it came from.
+    /// The first cause and its axes (one bit each), latched until the host clears the stop.
     pub(super) fault: Option<(Cause, u8)>,
+    /// New edges are suppressed at once.
     pub(super) frozen: bool,
+    /// All axes are slowed down at their stop acceleration.
     pub(super) ramp: bool,
+    /// No axis moves any more.
     pub(super) halted: bool,
+    /// `halted` has been true for a whole tick.
     pub(super) settled: bool,
+    /// The next strobe clears the stop.
     pub(super) clearing: bool,
 }
 
 impl Stop {
-    /// A cause is called; the first one stays.
+    /// Calls a stop. The first cause is latched; every freezing cause freezes the axes.
     pub(super) fn call(&mut self, cause: Cause, culprits: u8, guard: &Guard) {
         self.fault = self.fault.or(Some((cause, culprits)));
         self.frozen |= freezes(cause, guard);
     }
 }
 
-/// How a cause stops the axes.
+/// True if the cause freezes the axes at once; false if they slow down in a ramp.
 pub(super) const fn freezes(cause: Cause, guard: &Guard) -> bool {
     match cause {
         Cause::EStop | Cause::Overrun | Cause::Protocol | Cause::Overspeed => true,

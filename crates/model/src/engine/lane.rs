@@ -1,4 +1,5 @@
-//! One axis of the engine: what a tick makes of it.
+//! One axis of the engine: the calculation of one tick, and the debounced limit inputs. It must
+//! stay equal to "A tick of an axis" and "The guard's inputs" in docs/clock-by-clock.md.
 
 use crate::parallel::axis::Step;
 use crate::parallel::six_axis::Stage;
@@ -7,10 +8,10 @@ use crate::parts::shaper;
 use carrystep_core::engine::{Cause, Guard, Limits, QUEUE, SEGMENT_WORDS};
 use std::collections::VecDeque;
 
-/// A segment as the queue holds it.
+/// A segment in the format of the queue: `v`, `a`, `j` in 2^-64 step per tick, tick^2, tick^3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Segment {
-    /// Ticks after the next one.
+    /// Remaining ticks after the next one (`ticks` - 1 when it is loaded).
     pub(super) left: u32,
     pub(super) v: i64,
     pub(super) a: i64,
@@ -19,7 +20,7 @@ pub(super) struct Segment {
 }
 
 impl Segment {
-    /// The segment of these words.
+    /// Assembles the segment from its seven words, low half first.
     pub(super) fn of_words(words: [u32; SEGMENT_WORDS as usize], last: bool) -> Self {
         let [left, v, v_high, a, a_high, j, j_high] = words;
         let long = |low: u32, high: u32| (u64::from(high) << 32 | u64::from(low)).cast_signed();
@@ -27,46 +28,48 @@ impl Segment {
     }
 }
 
-/// A limit switch: what is believed, and how many looks speak against it.
+/// A limit input: the debounced state, and the number of consecutive samples that differ from it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Limit {
     pub(super) active: bool,
     pub(super) against: u32,
 }
 
-/// A look at a limit in a tick.
+/// One sample of a limit input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Look {
-    /// Of `limit_max`; otherwise of `limit_min`.
+    /// True for `limit_max`, false for `limit_min`.
     pub(super) max: bool,
-    /// What the pin says.
+    /// The sampled level; true is active.
     pub(super) pin: bool,
 }
 
-/// How far the homing of an axis has come.
+/// The state of homing of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Homing {
-    /// It waits for its limit.
+    /// The axis waits for its limit to become active.
     pub(super) waits: bool,
-    /// It meets it in this tick.
+    /// The limit became active in this tick.
     pub(super) meets: bool,
-    /// It has met it, and slows down alone.
+    /// After that, the axis slows down in a ramp of its own.
     pub(super) slows: bool,
 }
 
+/// One axis: its accumulator, its queue, its limits, the stages behind the accumulator and the step
+/// shaper.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Lane {
     pub(super) p: u64,
     pub(super) running: Option<Segment>,
-    /// The running segment's V + A did not fit.
+    /// The sum V + A of the running segment did not fit 64 bits.
     pub(super) unfit: bool,
-    /// In a ramp: backward.
+    /// In a ramp whose direction is known: true is backward.
     pub(super) ramp: Option<bool>,
-    /// Stop acceleration.
+    /// Acceleration of ramps, in 2^-64 step per tick^2.
     pub(super) stop: i64,
     pub(super) homing: Homing,
     pub(super) queue: VecDeque<Segment>,
-    /// Committed in this tick.
+    /// The segment that was committed in this tick; the strobe moves it into the queue.
     pub(super) fresh: Option<Segment>,
     pub(super) words: [u32; SEGMENT_WORDS as usize],
     pub(super) limits: [Limit; 2],
@@ -75,7 +78,7 @@ pub(super) struct Lane {
     pub(super) shaper: shaper::State,
 }
 
-/// What holds for all axes in a tick.
+/// The conditions of a tick that are the same for all axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tick<'a> {
     pub(super) guard: &'a Guard,
@@ -103,12 +106,12 @@ impl Lane {
         }
     }
 
-    /// Segments that there is room for.
+    /// Number of segments for which the queue has room.
     pub(super) fn room(&self) -> u8 {
         (QUEUE - self.queue.len()) as u8
     }
 
-    /// The axis after a tick, and the cause of a stop that it finds.
+    /// Returns the axis after one tick, and the cause of a stop if the tick finds one.
     pub(super) fn tick(&self, tick: Tick<'_>, look: Option<Look>) -> (Self, Option<Cause>) {
         let mut next = self.clone();
         next.emitted = self.computed;
@@ -137,7 +140,7 @@ impl Lane {
         (next, found)
     }
 
-    /// Whether this tick takes the axis into its limit.
+    /// True if the limit of the axis stops it in this tick.
     pub(super) fn hits(&self, tick: Tick<'_>, look: Look) -> bool {
         let fits = |segment: &Segment| !tick.halted && !self.unfit && segment.v != i64::MIN;
         let sign = self.running.filter(fits).map_or(0, |segment| segment.v.signum() as i8);
@@ -145,7 +148,7 @@ impl Lane {
         limit.hit(look, tick, sign)
     }
 
-    /// The sums of a tick; `next` rests until something says otherwise.
+    /// Executes the additions of one tick. `next` must be at rest when the function is called.
     fn add(&self, next: &mut Self, segment: Segment, tick: Tick<'_>) -> Option<Cause> {
         let Segment { left, v, a, j, last } = segment;
         let step = crosses(self.p, v).then(|| Step { backward: v < 0, phase: bisect(self.p, v, tick.phase_bits) });
@@ -185,7 +188,7 @@ impl Lane {
 }
 
 impl Limit {
-    /// Looks in a tick whose V has this sign; whether the axis is stopped.
+    /// Takes one sample in a tick whose V has this sign; returns true if the limit stops the axis.
     fn hit(&mut self, look: Look, tick: Tick<'_>, sign: i8) -> bool {
         let became = self.look(look.pin, tick.guard.debounce);
         match tick.guard.limits {
@@ -195,7 +198,7 @@ impl Limit {
         }
     }
 
-    /// Looks once; whether it has become active.
+    /// Takes one sample; returns true if the debounced state becomes active with it.
     fn look(&mut self, pin: bool, debounce: u32) -> bool {
         if pin == self.active {
             self.against = 0;

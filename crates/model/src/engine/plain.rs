@@ -1,8 +1,9 @@
-//! What lets `fast` pass many clocks of the engine at once: how long nothing happens but plain additions, and
-//! what goes on by itself meanwhile.
+//! Access for the fast model: computes how many clocks of the engine can be skipped because every
+//! axis only repeats its additions, and advances the counters that run during that time.
 //!
-//! Whatever is not told here (a word that is taken, a load, a stop that is called, a limit that changes, an
-//! axis that comes to rest) is left to [`Engine::clock`].
+//! All other events (an accepted word, a load, the call of a stop, a change of a debounced limit,
+//! an axis that comes to rest) are executed by [`Engine::clock`]. Every condition here must be
+//! conservative: a skipped clock must have no other effect.
 
 use super::lane::{Lane, Limit};
 use super::{Engine, LOOK_BEAT, bits};
@@ -11,7 +12,7 @@ use crate::fast::{Cubic, Moving};
 use carrystep_core::engine::{EngineInputs, Limits, PUT_BEAT, QUEUE, TURN};
 
 impl Engine {
-    /// Clocks of a tick.
+    /// Number of clocks in a tick.
     pub(crate) fn clocks_per_tick(&self) -> u32 {
         self.build.timebase.clocks_per_tick()
     }
@@ -21,12 +22,13 @@ impl Engine {
         &self.build
     }
 
-    /// The clock in the tick.
+    /// Number of the clock in the tick, from 0.
     pub(crate) fn clock_of_tick(&self) -> u32 {
         self.clock
     }
 
-    /// For so many cycles, `most` at the most, these inputs change nothing, and strobes do nothing but add.
+    /// The number of cycles, at most `most`, in which these inputs change nothing and every strobe
+    /// only adds.
     pub(crate) fn plain_clocks(&self, inputs: &EngineInputs, most: u64) -> u64 {
         if !self.is_steady(inputs) {
             return 0;
@@ -35,7 +37,7 @@ impl Engine {
         let to_strobe = per_tick - 1 - u64::from(self.clock);
         let mut strobes = self.plain_strobes(inputs);
         if self.lanes.iter().any(|lane| lane.homing.waits) {
-            // An axis meets its limit before the strobe.
+            // The engine finds the limit in the axis' turn, which is before the strobe.
             let Some(before) = strobes.checked_sub(1) else { return 0 };
             strobes = before;
         }
@@ -43,7 +45,7 @@ impl Engine {
         most.min(to_event).min(self.clocks_to_put(inputs))
     }
 
-    /// Nothing happens before the next strobe but on the pins.
+    /// True if nothing happens before the next strobe except on the pins.
     fn is_steady(&self, inputs: &EngineInputs) -> bool {
         let (guard, stop, fault) = (&self.build.guard, &self.stop, self.stop.fault.is_some());
         let busy = self.pins_busy();
@@ -54,13 +56,13 @@ impl Engine {
             && inputs.home.is_none()
             && !self.lanes.iter().any(|lane| lane.homing.meets || lane.homing.slows)
             && !(fault && self.armed.is_some())
-            // `idle` would come with the last pulse's end.
+            // `idle` would become true at the end of the last pulse.
             && !(self.rest == 2 && busy)
             && self.watch.is_steady(guard, inputs, idle, stop)
             && self.lanes.iter().all(|lane| !lane.shaper.overrun && (!stop.frozen || lane.is_still(true)))
     }
 
-    /// Clocks before the one in which the offered word is taken.
+    /// Clocks before the clock in which the offered word is accepted.
     fn clocks_to_put(&self, inputs: &EngineInputs) -> u64 {
         let Some(put) = inputs.put.filter(|_| self.stop.fault.is_none()) else { return u64::MAX };
         if self.lanes[usize::from(put.axis)].queue.len() >= QUEUE {
@@ -70,7 +72,7 @@ impl Engine {
         ((beat + per_tick - self.clock) % per_tick).into()
     }
 
-    /// Strobes before the first that does more than to add.
+    /// Strobes before the first strobe that does more than add.
     fn plain_strobes(&self, inputs: &EngineInputs) -> u64 {
         let (guard, stop, fault) = (&self.build.guard, &self.stop, self.stop.fault.is_some());
         let running = bits(&self.lanes, |lane| lane.running.is_some());
@@ -94,7 +96,7 @@ impl Engine {
         self.lanes.iter().map(|lane| lane.plain_strobes(stop.ramp)).fold(strobes, u64::min)
     }
 
-    /// Strobes before a look at a limit that does more than to count.
+    /// Strobes before the first sample of a limit that does more than count.
     fn strobes_to_look(&self, inputs: &EngineInputs) -> u64 {
         let guard = &self.build.guard;
         let stopped = self.stop.fault.is_some() && !guard.limit_freezes;
@@ -107,7 +109,7 @@ impl Engine {
             for end in self.looks() {
                 let limit = lane.limits[end as usize];
                 let first = self.watch.strobes_to_look(guard, end);
-                // A limit that is active would stop what moves toward it.
+                // An active limit stops an axis that moves toward it.
                 let counts = !stopped || lane.homing.waits;
                 let hits = guard.limits == Limits::Pair && limit.active && lane.running.is_some() && counts;
                 let looks = if hits { 0 } else { limit.plain_looks(self.pin(inputs, axis, end), guard.debounce) };
@@ -117,12 +119,12 @@ impl Engine {
         strobes
     }
 
-    /// The ticks of a round in which limits are looked at: the low ends, the high ends.
+    /// The ticks of a round in which limits are sampled: 0 for `limit_min`, 1 for `limit_max`.
     fn looks(&self) -> std::ops::Range<u32> {
         0..if self.build.guard.limits == Limits::Pair { 2 } else { 1 }
     }
 
-    /// Time goes by: all but what the axes do.
+    /// Advances everything but the axes by this many clocks.
     pub(crate) fn pass(&mut self, inputs: &EngineInputs, clocks: u64) {
         let per_tick = u64::from(self.clocks_per_tick());
         let (begin, round) = (u64::from(self.clock), u64::from(self.build.guard.round));
@@ -146,30 +148,30 @@ impl Engine {
         self.clock = (end % per_tick) as u32;
     }
 
-    /// No axis moves, no timer runs.
+    /// True if no axis moves and no timer runs.
     pub(crate) fn is_still(&self) -> bool {
         self.lanes.iter().all(|lane| lane.is_still(self.stop.frozen))
     }
 
-    /// The axes as windows see them.
+    /// The parts of the axes that a window changes.
     pub(crate) fn moving(&self) -> impl Iterator<Item = Moving> {
         self.lanes.iter().map(|lane| lane.moving(self.stop.ramp))
     }
 
-    /// What has become of them after so many strobes.
+    /// Writes back the axes as they are after a window with this many strobes.
     pub(crate) fn moved(&mut self, moved: &[Moving], strobes: u32) {
         let ramp = self.stop.ramp;
         self.lanes.iter_mut().zip(moved).for_each(|(lane, moved)| lane.moved(moved, ramp, strobes));
     }
 }
 
-/// The clock of a tick in which an axis looks at its limit.
+/// The clock of a tick in which an axis samples its limit.
 const fn look_clock(axis: usize) -> u32 {
     axis as u32 * TURN + LOOK_BEAT
 }
 
 impl Lane {
-    /// Strobes that only add.
+    /// Number of strobes that only add.
     fn plain_strobes(&self, ramp: bool) -> u64 {
         let stop = self.stop.unsigned_abs();
         match (self.running, self.ramp) {
@@ -177,13 +179,13 @@ impl Lane {
             (None, None) => u64::MAX,
             (Some(segment), _) if segment.v == i64::MIN => 0,
             (Some(segment), None) if !ramp => segment.left.into(),
-            // It rests in the tick in which V would change its sign.
+            // The axis comes to rest in the tick in which V would change its sign.
             (Some(segment), Some(back)) if ramp => (segment.v.unsigned_abs() - u64::from(back)) / stop,
             _ => 0,
         }
     }
 
-    /// No clock and no strobe changes anything.
+    /// True if no clock and no strobe changes the axis.
     fn is_still(&self, frozen: bool) -> bool {
         self.running.is_none()
             && [self.computed, self.emitted].iter().all(|stage| stage.is_empty())
@@ -211,14 +213,14 @@ impl Lane {
 }
 
 impl Limit {
-    /// Looks at a pin that stays until it is believed.
+    /// Samples of a constant level before the one that changes the debounced state.
     fn plain_looks(self, pin: bool, debounce: u32) -> u64 {
         if pin == self.active { u64::MAX } else { (debounce - 1 - self.against).into() }
     }
 
-    /// So many [`Limit::plain_looks`].
+    /// Takes `looks` samples of the same level, at most [`Limit::plain_looks`].
     fn pass(&mut self, pin: bool, looks: u64) {
-        // At most what `plain_looks` allows, which fits.
+        // The number is at most the result of `plain_looks`, which fits.
         let looks = u32::try_from(looks).unwrap_or(u32::MAX);
         match (looks, pin == self.active) {
             (0, _) => {}

@@ -1,33 +1,36 @@
-//! What the engine tells whoever carries its host's frames: registers, each at its time.
+//! The engine's registers that can be read without visiting every clock, for the host link and the
+//! virtual board.
 
 use super::lane::Lane;
 use super::{Engine, bits};
 use carrystep_core::engine::{Cause, TURN};
 
-/// The beat of a turn in which `get` is answered.
+/// The beat of a turn in which `get_data` is valid.
 const GET_BEAT: u32 = 11;
 
 impl Engine {
-    /// The stop that was called: the cause, and the axes that it came from.
+    /// The stop that was called: its first cause, and the axes that caused it (one bit each).
     pub fn fault(&self) -> Option<(Cause, u8)> {
         self.stop.fault
     }
 
-    /// Turns have begun: all but the first tick has them.
+    /// True if axes have turns in this tick, which they have in every tick but the first.
     pub fn has_turns(&self) -> bool {
         self.turns
     }
 
-    /// Whether `get_data` is an answer in this cycle.
+    /// True if `get_data` is valid in this cycle.
     pub fn answers(&self) -> bool {
         self.turn_at(GET_BEAT).is_some()
     }
 
-    /// How many answers there were in the `clocks` cycles before this one; turns must have begun before them.
+    /// The number of cycles with valid `get_data` among the `clocks` cycles before this one. All of
+    /// these cycles must be later than the first tick.
     pub fn answers_before(&self, clocks: u64) -> u64 {
         let per_tick = u64::from(self.build.timebase.clocks_per_tick());
         let axes = self.lanes.len() as u64;
-        // Answers in the clocks before this one, of a tick, and of all ticks before it.
+        // Valid cycles before cycle `clock`, counted from the beginning of a tick: those of its own
+        // tick and those of all ticks before it.
         let before = |clock: u64| {
             let turns = (clock % per_tick + u64::from(TURN - 1 - GET_BEAT)) / u64::from(TURN);
             clock / per_tick * axes + turns.min(axes)
@@ -36,9 +39,11 @@ impl Engine {
         before(now) - before(now - clocks)
     }
 
-    /// Ticks until some axis has only `kept` segments waiting beside the one that runs, of those axes whose queue does not
-    /// reach the end of its move; 0 where one has no more than that already. `None` where no axis needs its host: all rest,
-    /// or have the end of their moves, or stop. Where a start is armed, moves that wait count as begun.
+    /// The number of ticks until one of the axes has only `kept` segments waiting beside the
+    /// running one; 0 if it has no more than that already. Only axes count whose queue does not
+    /// reach the end of their move. The result is `None` if no axis needs the host: every axis is
+    /// at rest, or has the end of its move in its queue, or a stop has been called. While a start
+    /// is armed, waiting moves count as started.
     pub fn ticks_without_host(&self, kept: usize) -> Option<u64> {
         let armed = self.armed.is_some();
         let of_lane = |lane: &Lane| {
@@ -54,22 +59,24 @@ impl Engine {
         self.lanes.iter().filter_map(of_lane).min().filter(|_| self.stop.fault.is_none())
     }
 
-    /// Segments that wait for an axis, beside the one that runs.
+    /// Number of segments in the queue of an axis, beside the running one.
     pub fn waiting(&self, axis: usize) -> usize {
         self.lanes[axis].queue.len()
     }
 
-    /// The axes that are in the middle of a move: they run a segment that is not its last.
+    /// The axes that run a segment which is not the last of its move, one bit each.
     pub fn in_a_move(&self) -> u8 {
         bits(&self.lanes, |lane| lane.running.is_some_and(|segment| !segment.last))
     }
 
-    /// The axes that wait for their limit, a bit each.
+    /// The axes that wait for their limit, one bit each.
     pub fn homing(&self) -> u8 {
         bits(&self.lanes, |lane| lane.homing.waits)
     }
 
-    /// An item of an axis: 0 1 P, low and high, 2 position, 3 discarded steps; of an axis that there is not, 0.
+    /// The word that `get_item` selects for an axis: 0 and 1 are the low and the high half of P
+    /// (2^-64 step), 2 is the position (steps), 3 the number of discarded steps. The word of an
+    /// axis that does not exist is 0.
     pub fn item(&self, axis: u8, item: u8) -> u32 {
         let Some(lane) = self.lanes.get(usize::from(axis)) else { return 0 };
         match item {
@@ -88,7 +95,7 @@ mod tests {
     use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 
     #[test]
-    fn answers_are_counted_as_they_come() {
+    fn answers_before_counts_the_cycles_with_valid_get_data() {
         let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
         let mut engine = Engine::new(&EngineBuild::minimal(&build, 1));
@@ -96,7 +103,7 @@ mod tests {
         for _ in 0..500 {
             answers.push(u64::from(engine.answers()));
             engine.clock(&EngineInputs::default());
-            // From the second tick on.
+            // The loop begins with the second tick; the first has no turns.
             for clocks in 0..answers.len() as u64 - 96.min(answers.len() as u64) {
                 let counted: u64 = answers.iter().rev().take(clocks as usize).sum();
                 assert_eq!(engine.answers_before(clocks), counted, "{clocks} before {}", answers.len());

@@ -1,28 +1,32 @@
-//! The ticks of a stretch that step: found by jumping from one to the next, or by ticking.
+//! Finds the ticks of a stretch that step, by jumping from one to the next or by adding tick by
+//! tick. Guesses in floating point may be wrong; every result is verified in integers before it is
+//! used.
 
 use super::cubic::{Cubic, first};
 use crate::parts::phase::bisect_all;
 
-/// A stretch is ticked where a step is expected in every so many ticks or fewer: there an addition a
-/// tick costs less than a root an edge.
+/// If a step is expected in this many ticks or fewer, the stretch is added tick by tick: there an
+/// addition per tick costs less than a root per edge.
 const DENSE: u32 = 6;
 
-/// Steps that are searched together: their roots do not wait for each other.
+/// Number of steps whose roots are computed together. The roots do not depend on each other, so the
+/// processor can overlap them.
 pub(super) const BATCH: usize = 32;
 
-/// As many of them are worked out at once, so that a short batch costs less.
+/// Number of steps that one vector operation handles; a short batch is rounded up to a multiple of
+/// it.
 const LANES: usize = 8;
 
-/// Refinements of a guess where there is jerk.
+/// Number of Newton refinements of a guess if the jerk is not 0.
 const REFINEMENTS: usize = 3;
 
 /// One step in units of 2^-64 step.
 const STEP: f64 = 18_446_744_073_709_551_616.0;
 
-/// Of 3, modulo 2^64: what 3 divides is divided by multiplying.
+/// The inverse of 3 modulo 2^64. A multiple of 3 is divided by 3 by multiplying with it.
 const INVERSE_OF_3: i64 = 0xaaaa_aaaa_aaaa_aaab_u64.cast_signed();
 
-/// Ticks that step, with P and V before them.
+/// Ticks that step, with P and V before each of them.
 #[derive(Debug, Clone, Copy)]
 struct Batch {
     ticks: [u32; BATCH],
@@ -34,7 +38,7 @@ struct Batch {
 impl Batch {
     const EMPTY: Self = Self { ticks: [0; BATCH], p: [0; BATCH], v: [0; BATCH], phases: [0; BATCH] };
 
-    /// The phases of the first `count`, P and V being mirrored where they are `backward`.
+    /// Computes the phases of the first `count` ticks. If `backward`, P and V are mirrored.
     fn bisect(&mut self, count: usize, backward: bool, phase_bits: u32) {
         let (p, v) = (self.p.as_chunks::<LANES>().0, self.v.as_chunks::<LANES>().0);
         let phases = self.phases.as_chunks_mut::<LANES>().0;
@@ -47,9 +51,10 @@ impl Batch {
     }
 }
 
-/// Ticks over which V keeps its sign and which stay in range, seen in the direction of travel.
+/// Ticks over which V keeps its sign and V and A stay in range, as seen in the direction of travel.
 ///
-/// Backward is the mirror image in ones' complement: `p - x` borrows exactly where `!p + x` carries.
+/// A backward stretch is mirrored in ones' complement: `p - x` borrows exactly where `!p + x`
+/// carries.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stretch {
     p: u64,
@@ -59,14 +64,16 @@ pub(super) struct Stretch {
 }
 
 impl Stretch {
-    /// `cubic` keeps the sign of its V over these ticks, and stays in range.
+    /// The stretch of `ticks` ticks. The caller guarantees that V keeps its sign and the cubic
+    /// stays in range.
     pub const fn new(p: u64, cubic: Cubic, ticks: u32) -> Self {
         let backward = cubic.v < 0;
         let (p, cubic) = if backward { (!p, cubic.mirrored()) } else { (p, cubic) };
         Self { p, cubic, ticks, backward }
     }
 
-    /// Hands over the ticks that step, counted from 0, with the phase of each: in order, a batch at a time.
+    /// Calls `found` with the ticks that step (counted from 0) and the phase of each, in order of
+    /// time, up to [`BATCH`] at a time.
     pub fn each(self, phase_bits: u32, mut found: impl FnMut(&[u32], &[u32])) {
         let mut found = |batch: &mut Batch, count: usize| {
             batch.bisect(count, self.backward, phase_bits);
@@ -81,17 +88,17 @@ impl Stretch {
         }
     }
 
-    /// Steps that are over before tick `n`.
+    /// Number of steps before tick `n`.
     fn steps_before(&self, n: u32) -> u32 {
         (i128::from(self.p).wrapping_add(self.cubic.distance(n)) >> 64) as u32
     }
 
-    /// Tick by tick.
+    /// Visits every tick.
     fn tick(&self, found: &mut impl FnMut(&mut Batch, usize)) {
         let (mut p, Cubic { mut v, mut a, j }) = (self.p, self.cubic);
         let (mut batch, mut count) = (Batch::EMPTY, 0);
         for tick in 0..self.ticks {
-            // No branch: what does not step is overwritten by the next.
+            // Branch-free: the entry of a tick without a step is overwritten by the next tick.
             (batch.ticks[count], batch.p[count], batch.v[count]) = (tick, p, v);
             let (next, carry) = p.overflowing_add(v.cast_unsigned());
             count += usize::from(carry);
@@ -104,7 +111,8 @@ impl Stretch {
         found(&mut batch, count);
     }
 
-    /// From step to step, on a course of this degree; each batch begins where the one before has ended.
+    /// Jumps from step to step on a polynomial of this degree. Each batch begins where the previous
+    /// one ended.
     fn jump<const DEGREE: u32>(mut self, steps: u32, found: &mut impl FnMut(&mut Batch, usize)) {
         let (mut left, mut done) = (steps as usize, 0);
         let mut batch = Batch::EMPTY;
@@ -127,8 +135,8 @@ impl Stretch {
         }
     }
 
-    /// Whether these are the first `count` ticks that step: each of them steps, each comes after the one
-    /// before, and just `count - 1` steps are over before the last, so that there is no room for another.
+    /// True if these are the first `count` ticks that step: each of them steps, they are in
+    /// ascending order, and exactly `count - 1` steps precede the last one, so none is missing.
     fn is_right(&self, batch: &Batch, count: usize) -> bool {
         let steps = |i: usize| batch.p[i].overflowing_add(batch.v[i].cast_unsigned()).1;
         let last = batch.ticks[count - 1];
@@ -138,14 +146,14 @@ impl Stretch {
             && (1..count).fold(true, |all, i| all & (batch.ticks[i - 1] < batch.ticks[i]))
     }
 
-    /// P and V before the first `count` ticks of a batch, as if they stepped.
+    /// Fills in P and V before the first `count` ticks of a batch.
     fn fill<const DEGREE: u32>(&self, batch: &mut Batch, count: usize) {
         let Cubic { v, a, j } = self.cubic;
         let third = j.wrapping_mul(INVERSE_OF_3);
         let lanes = count.next_multiple_of(LANES);
         for ((&n, p), speed) in batch.ticks[..lanes].iter().zip(&mut batch.p).zip(&mut batch.v) {
             let n = i64::from(n);
-            // What P wraps by are the steps.
+            // P wraps once per step.
             let mut distance = v.wrapping_mul(n);
             *speed = v;
             if DEGREE > 1 {
@@ -162,7 +170,7 @@ impl Stretch {
         }
     }
 
-    /// The first `count` ticks that step: by halving, and without any guess.
+    /// Finds the first `count` ticks that step by bisection in integers, without a guess.
     #[cold]
     fn search(&self, count: usize) -> [u32; BATCH] {
         let mut ticks = [0; BATCH];
@@ -174,15 +182,15 @@ impl Stretch {
         ticks
     }
 
-    /// Where the first `count` steps are expected: the roots of n V + n (n - 1) / 2 A = d, refined by Newton's
-    /// method where there is jerk.
+    /// Guesses the ticks of the first `count` steps: the roots n of n V + n (n - 1) / 2 A = d,
+    /// refined by Newton's method if the jerk is not 0.
     fn guess<const DEGREE: u32>(&self, batch: &mut Batch, count: usize) {
         let Cubic { v, a, j } = self.cubic;
         let (v, a, j) = (v as f64 / STEP, a as f64 / STEP, j as f64 / STEP);
         let begin = self.p as f64 / STEP;
         let most = f64::from(self.ticks);
         let b = v - a / 2.0;
-        // In powers of n instead of binomials.
+        // The coefficients of powers of n instead of binomials.
         let (c1, c2, c3) = (b + j / 3.0, (a - j) / 2.0, j / 6.0);
         let period = 1.0 / v;
         for (chunk, ticks) in batch.ticks.as_chunks_mut::<LANES>().0.iter_mut().enumerate().take(count.div_ceil(LANES))
@@ -194,7 +202,7 @@ impl Stretch {
                 let square = b * b + 2.0 * a * d;
                 *n = match DEGREE {
                     1 => d * period,
-                    // Not `max`, which cares for what is no number.
+                    // `max` would be slower, because it also handles NaN.
                     _ => 2.0 * d / (b + if square > 0.0 { square } else { 0.0 }.sqrt()),
                 };
             }
@@ -218,7 +226,7 @@ impl Stretch {
 mod tests {
     use super::*;
 
-    /// Ten ticks a step, slowly less.
+    /// About ten ticks per step, with a slowly changing speed.
     fn stretch() -> Stretch {
         Stretch::new(1 << 63, Cubic { v: i64::MAX / 5, a: 1 << 40, j: -(1 << 20) }, 5000)
     }
@@ -230,16 +238,17 @@ mod tests {
     }
 
     #[test]
-    fn a_guess_is_as_good_as_a_search() {
+    fn guessed_ticks_equal_searched_ticks() {
         let stretch = stretch();
         let batch = guessed::<3>(stretch, BATCH);
         assert_eq!(batch.ticks, stretch.search(BATCH));
         assert!(stretch.is_right(&batch, BATCH));
     }
 
-    /// What has no jerk, or no acceleration either, is found by what knows it and by what does not.
+    /// Polynomials without jerk, or without acceleration, give the same ticks at their own degree
+    /// and at degree 3.
     #[test]
-    fn a_lower_degree_is_the_same() {
+    fn lower_degree_finds_the_same_ticks() {
         let straight = Stretch { cubic: Cubic { a: 0, j: 0, ..stretch().cubic }, ..stretch() };
         let square = Stretch { cubic: Cubic { j: 0, ..stretch().cubic }, ..stretch() };
         for count in [1, 7, 8, 9, BATCH] {
@@ -250,9 +259,10 @@ mod tests {
         }
     }
 
-    /// Whatever floating point makes of it: nothing but the first steps, all of them, in order, is believed.
+    /// `is_right` must reject every batch that is not exactly the first steps in order, because
+    /// rounding in floating point may produce any of them.
     #[test]
-    fn wrong_guesses_are_not_believed() {
+    fn wrong_guesses_are_rejected() {
         let stretch = stretch();
         let right = stretch.search(BATCH);
         let believed = |change: fn(&mut [u32; BATCH]), count| {

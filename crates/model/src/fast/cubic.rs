@@ -1,13 +1,14 @@
 //! P of one axis over a stretch of plain ticks, in closed form.
 //!
-//! These sums use wrapping arithmetic, because checks would cost as much as the sums. Nothing wraps: numbers of ticks
-//! are at most 2^16, binomials therefore under 2^48, and each of the products under 2^112. Where A and J are 0, stretches
-//! may have up to 2^31 ticks: the binomials, which may then wrap, are multiplied by 0.
+//! These sums use wrapping arithmetic, because overflow checks would cost as much as the sums. They
+//! cannot overflow: a stretch has at most 2^16 ticks, so every binomial is below 2^48 and every
+//! product below 2^112. A stretch with A = J = 0 may have up to 2^31 ticks: its binomials may wrap,
+//! but they are multiplied by 0.
 
-/// Most ticks in a stretch with an acceleration or a jerk.
+/// The greatest number of ticks in a stretch whose acceleration or jerk is not 0.
 pub(super) const MOST_TICKS: u32 = 1 << 16;
 
-/// V, A and J before the first tick of a stretch.
+/// V, A and J before the first tick of a stretch, in 2^-64 step per tick, tick^2 and tick^3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Cubic {
     pub v: i64,
@@ -15,24 +16,24 @@ pub(crate) struct Cubic {
     pub j: i64,
 }
 
-/// n (n - 1) / 2
+/// The binomial n over 2: n (n - 1) / 2.
 const fn pairs(n: u32) -> i64 {
     let n = n as i64;
     n.wrapping_mul(n.wrapping_sub(1)) / 2
 }
 
-/// n (n - 1) (n - 2) / 6
+/// The binomial n over 3: n (n - 1) (n - 2) / 6.
 const fn triples(n: u32) -> i64 {
     pairs(n).wrapping_mul((n as i64).wrapping_sub(2)) / 3
 }
 
-/// Exact: 64 by 64 bits are always 128.
+/// The exact product: 64 by 64 bits always fit 128.
 const fn wide(x: i64, y: i64) -> i128 {
     (x as i128).wrapping_mul(y as i128)
 }
 
 impl Cubic {
-    /// Nothing moves.
+    /// An axis at rest.
     pub const REST: Self = Self { v: 0, a: 0, j: 0 };
 
     /// V before tick `n`, counted from 0.
@@ -45,35 +46,36 @@ impl Cubic {
         (self.a as i128).wrapping_add(wide(n as i64, self.j))
     }
 
-    /// What the first `n` ticks add to P.
+    /// The sum that the first `n` ticks add to P, in 2^-64 step.
     pub const fn distance(self, n: u32) -> i128 {
         let linear = wide(n as i64, self.v);
         linear.wrapping_add(wide(pairs(n), self.a)).wrapping_add(wide(triples(n), self.j))
     }
 
-    /// [`Cubic::speed`], modulo 2^64.
+    /// The result of [`Cubic::speed`] modulo 2^64.
     pub const fn speed_wrapping(self, n: u32) -> i64 {
         let linear = self.a.wrapping_mul(n as i64).wrapping_add(self.v);
         linear.wrapping_add(self.j.wrapping_mul(pairs(n)))
     }
 
-    /// [`Cubic::distance`], modulo 2^64.
+    /// The result of [`Cubic::distance`] modulo 2^64.
     pub const fn distance_wrapping(self, n: u32) -> u64 {
         let linear = self.v.wrapping_mul(n as i64).wrapping_add(self.a.wrapping_mul(pairs(n)));
         linear.wrapping_add(self.j.wrapping_mul(triples(n))).cast_unsigned()
     }
 
-    /// The registers before tick `n` of a stretch that is [`Cubic::stays_in_range`].
+    /// The registers before tick `n`. The cubic must satisfy [`Cubic::stays_in_range`] for `n`
+    /// ticks.
     pub const fn after(self, n: u32) -> Self {
         Self { v: self.speed_wrapping(n), a: self.a.wrapping_add(self.j.wrapping_mul(n as i64)), j: self.j }
     }
 
-    /// The same course in the other direction; it is there where this one stays in range.
+    /// The same motion in the opposite direction. It is exact if this cubic stays in range.
     pub const fn mirrored(self) -> Self {
         Self { v: self.v.wrapping_neg(), a: self.a.wrapping_neg(), j: self.j.wrapping_neg() }
     }
 
-    /// The first tick, if it is among `ticks`, before which V has its extremum.
+    /// The tick before which V has its extremum, if it is one of the first `ticks` ticks.
     fn extremum(self, ticks: u32) -> Option<u32> {
         let (a, j) = (i128::from(self.a), i128::from(self.j));
         let turns = a.signum() * j.signum() < 0;
@@ -81,19 +83,19 @@ impl Cubic {
         u32::try_from(tick).ok().filter(|&tick| tick < ticks)
     }
 
-    /// Whether `ticks` ticks take neither V nor A out of (-2^63, 2^63).
+    /// True if `ticks` ticks keep both V and A in the open interval (-2^63, 2^63).
     pub fn stays_in_range(self, ticks: u32) -> bool {
         let inside = |x: i128| x.unsigned_abs() <= i64::MAX.unsigned_abs().into();
         let ends = [self.speed(ticks), self.acceleration(0), self.acceleration(ticks), self.j.into()];
         ends.into_iter().all(inside) && self.extremum(ticks).is_none_or(|tick| inside(self.speed(tick)))
     }
 
-    /// How many of the next `ticks` ticks (at least one) add a V of the sign of the first, on one side of
-    /// V's extremum.
+    /// How many of the next `ticks` ticks (at least 1) add a V with the sign of the first one. The
+    /// count ends at the latest at the extremum of V.
     pub fn same_sign(self, ticks: u32) -> u32 {
         let sign = self.v.signum();
         let differs = |n: u32| self.speed(n).signum() != i128::from(sign);
-        // Up to its extremum V only rises or only falls.
+        // V is monotonic up to its extremum.
         let ticks = self.extremum(ticks).map_or(ticks, |tick| tick.max(1));
         if !differs(ticks - 1) {
             return ticks;
@@ -102,7 +104,8 @@ impl Cubic {
     }
 }
 
-/// The least number from `low` up for which a condition holds that stays true once it is, at `high` at the latest.
+/// The least number from `low` to `high` for which `holds` is true. The condition must be
+/// monotonic; `high` is returned if it holds for no smaller number.
 pub(super) fn first(mut low: u32, mut high: u32, holds: impl Fn(u32) -> bool) -> u32 {
     while low < high {
         let middle = low.midpoint(high);
@@ -119,7 +122,7 @@ pub(super) fn first(mut low: u32, mut high: u32, holds: impl Fn(u32) -> bool) ->
 mod tests {
     use super::*;
 
-    /// V and A tick by tick, without wrapping.
+    /// V and A before each tick, computed tick by tick without wrapping.
     fn ticked(cubic: Cubic, ticks: u32) -> Vec<(i128, i128)> {
         let (mut v, mut a) = (i128::from(cubic.v), i128::from(cubic.a));
         let mut all = vec![(v, a)];
@@ -131,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn closed_forms_are_what_ticking_gives() {
+    fn closed_forms_equal_tick_by_tick_sums() {
         for (v, a, j) in [(-50, 31, -4), (7, -3, 1), (0, 5, -2), (0, 0, 1), (i64::MAX, -1, 0), (-9, 0, 3), (8, -4, 0)] {
             let cubic = Cubic { v, a, j };
             let ticked = ticked(cubic, 40);
@@ -150,16 +153,16 @@ mod tests {
     }
 
     #[test]
-    fn an_extremum_beyond_the_bound_is_seen() {
+    fn stays_in_range_rejects_an_extremum_out_of_range() {
         let there_and_back = Cubic { v: i64::MAX - 10, a: 8, j: -4 };
         assert!(ticked(there_and_back, 6).iter().any(|(v, _)| *v > i64::MAX.into()));
         assert!(there_and_back.speed(6) < i64::MAX.into());
         assert!(!there_and_back.stays_in_range(6));
     }
 
-    /// The next V would be in range, if only A had a bit more.
+    /// V + A is in range again after A has wrapped, so only the check of A itself detects it.
     #[test]
-    fn an_a_that_wraps_is_seen() {
+    fn stays_in_range_rejects_an_acceleration_that_wraps() {
         let cubic = Cubic { v: 9 - i64::MAX, a: 5, j: i64::MAX };
         assert!(cubic.speed(2).unsigned_abs() < 100);
         assert!(!cubic.stays_in_range(2));

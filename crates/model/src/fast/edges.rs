@@ -1,49 +1,50 @@
-//! What happens on the pins, and six streams of it as one.
+//! The edges on the pins of all axes, merged into one stream in order of time.
 
 use crate::parts::shaper;
 use carrystep_core::engine::MAX_AXES;
 
-/// What changes on an axis' pins. STEP falls W clocks after it rises, always, so that is not told.
+/// A change on an axis' pins. STEP always falls W clocks after it rises, so its falling edge is not
+/// reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Change {
     /// STEP rises.
     Rise,
-    /// DIR turns.
+    /// DIR changes its level.
     Turn,
 }
 
 /// A change on the pins of one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Edge {
-    /// The first clock cycle with the new level.
+    /// The first clock cycle with the new level, from 0.
     pub clock: u64,
-    /// Which axis.
+    /// Number of the axis, from 0.
     pub axis: u8,
-    /// What.
+    /// The kind of change.
     pub change: Change,
-    /// The level of DIR.
+    /// The level of DIR after the change; true is backward.
     pub backward: bool,
 }
 
-/// Who wants to hear of every edge, in order of clock, then axis.
+/// A receiver of edges, in order of clock and then of axis.
 pub trait Edges {
-    /// One edge.
+    /// Receives one edge.
     fn edge(&mut self, edge: Edge);
 }
 
-/// Keeps every edge: for tests and short runs.
+/// Collects every edge; for tests and short runs.
 impl Edges for Vec<Edge> {
     fn edge(&mut self, edge: Edge) {
         self.push(edge);
     }
 }
 
-/// Nobody wants to.
+/// Ignores the edges.
 impl Edges for () {
     fn edge(&mut self, _: Edge) {}
 }
 
-/// An edge in 64 bits that order as edges do: clock, axis, change, DIR.
+/// An edge packed into 64 bits. Records compare as edges are ordered: clock, axis, change, DIR.
 pub(super) type Record = u64;
 
 impl Edge {
@@ -60,7 +61,7 @@ impl Edge {
     }
 }
 
-/// What one clock has changed on an axis' pins.
+/// Reports the edges on an axis' pins between two consecutive states.
 pub(super) fn changes(clock: u64, axis: u8, before: &shaper::State, now: &shaper::State, to: &mut impl Edges) {
     let backward = now.dir;
     if now.position != before.position {
@@ -71,12 +72,13 @@ pub(super) fn changes(clock: u64, axis: u8, before: &shaper::State, now: &shaper
     }
 }
 
-/// The edges of one window, each axis' in order.
+/// The edges of one window; those of each axis are in order of time.
 #[derive(Debug, Clone)]
 pub(super) struct Window {
-    /// Between the least and the greatest record there is.
+    /// One list per axis, with [`Record::MIN`] before its edges and [`Record::MAX`] behind them
+    /// during a merge.
     axes: [Vec<Record>; MAX_AXES],
-    /// The later half, the last edge first.
+    /// The later half of the edges, in reverse order.
     late: Vec<Record>,
 }
 
@@ -87,13 +89,13 @@ impl Default for Window {
 }
 
 impl Window {
-    /// None yet; one list for each axis, behind [`Record::MIN`].
+    /// Empties all lists and returns them, one per axis.
     pub fn clear(&mut self) -> &mut [Vec<Record>] {
         self.axes.iter_mut().for_each(|axis| axis.truncate(1));
         &mut self.axes
     }
 
-    /// Hands over the edges of all axes in order.
+    /// Reports the edges of all axes in order of time.
     pub fn merge(&mut self, to: &mut impl Edges) {
         let edges = self.axes.iter().map(Vec::len).sum::<usize>() - MAX_AXES;
         if edges == 0 {
@@ -110,8 +112,9 @@ impl Window {
     }
 }
 
-/// From both ends at once: what is first has to be known before the second can be looked for, and so two
-/// searches take no longer than one. Without a branch on who is first, which cannot be predicted.
+/// Merges from both ends at once. Each search depends on the result of the previous one, so two
+/// independent searches take no longer than one. The selection is branch-free, because the next
+/// axis cannot be predicted.
 fn merge<const N: usize>(axes: [&[Record]; N], edges: usize, late: &mut Vec<Record>, to: &mut impl Edges) {
     let (mut next, mut last) = ([1; N], axes.map(|axis| axis.len() - 2));
     late.clear();
@@ -120,7 +123,7 @@ fn merge<const N: usize>(axes: [&[Record]; N], edges: usize, late: &mut Vec<Reco
         let tails: [Record; N] = std::array::from_fn(|axis| axes[axis][last[axis]]);
         let (least, greatest) = (best(heads, Record::min), best(tails, Record::max));
         for axis in 0..N {
-            // No two are the same: each names its axis.
+            // All records differ, because each contains the number of its axis.
             next[axis] += usize::from(heads[axis] == least);
             last[axis] -= usize::from(tails[axis] == greatest);
         }
@@ -133,7 +136,7 @@ fn merge<const N: usize>(axes: [&[Record]; N], edges: usize, late: &mut Vec<Reco
     late.iter().rev().for_each(|record| to.edge(Edge::from_record(*record)));
 }
 
-/// The least or the greatest, in as few steps one after the other as there can be.
+/// Returns the least or the greatest record with the fewest dependent comparisons.
 #[inline(always)]
 fn best<const N: usize>(mut records: [Record; N], better: impl Fn(Record, Record) -> Record) -> Record {
     let mut count = N;

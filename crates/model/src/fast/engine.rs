@@ -1,7 +1,9 @@
-//! The engine without visiting every clock: the same states, outputs and faults as [`Engine`], exactly.
+//! The engine without visiting every clock. States, outputs and faults are exactly those of
+//! [`Engine`].
 //!
-//! It leaps over clocks in which nothing happens but plain additions, ramps included. Words that are taken,
-//! loads, starts, calls of stops, limits that change and clears are left to the clock-by-clock model.
+//! It leaps over clocks in which the axes only repeat their additions, ramps included. Accepted
+//! words, loads, starts, calls of stops, changes of debounced limits and clears are executed by the
+//! clock-by-clock model.
 
 use super::edges::{self, Edges};
 use super::passage::{From, Passages};
@@ -10,10 +12,10 @@ use crate::fast::Moving;
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{EngineInputs, EngineOutputs, MAX_AXES};
 
-/// The engine, and the clock cycle that it is in.
+/// The engine, and the number of the clock cycle that it is in.
 ///
-/// Inputs stay what they are until the caller changes them, which it may in any cycle: it goes on to that
-/// cycle and then with other inputs.
+/// Inputs are constant during a call. To change them in some cycle, the caller runs to that cycle
+/// and then continues with the new inputs.
 #[derive(Debug, Clone)]
 pub struct FastEngine {
     core: Engine,
@@ -23,30 +25,30 @@ pub struct FastEngine {
 }
 
 impl FastEngine {
-    /// The engine as it is configured, in cycle 0.
+    /// The engine at configuration, in cycle 0.
     pub fn new(build: &EngineBuild) -> Self {
         Self { core: Engine::new(build), cycle: 0, passages: Passages::default(), axes: Vec::new() }
     }
 
-    /// Its registers.
+    /// The registers of the engine.
     pub fn core(&self) -> &Engine {
         &self.core
     }
 
-    /// The cycle it is in.
+    /// The number of the current cycle, from 0.
     pub fn cycle(&self) -> u64 {
         self.cycle
     }
 
-    /// The outputs in this cycle, given its inputs.
+    /// The outputs in this cycle for these inputs.
     pub fn outputs(&self, inputs: &EngineInputs) -> EngineOutputs {
         self.core.outputs(inputs)
     }
 
-    /// Goes on with these inputs to cycle `end`, and stops behind a cycle that the host has to hear of: what it
-    /// offers is taken in it, axes are started by it, or `fault`, `halted`, `idle`,
-    /// `enabled` or `homing` changes with it.
-    /// The outputs in that cycle, or `None` at `end`.
+    /// Runs with these inputs up to cycle `end`, or until a cycle that the host must react to: an
+    /// offered word or start is accepted, axes start, or `fault`, `halted`, `idle`, `enabled` or
+    /// `homing` changes after it. Returns the outputs in that cycle, or `None` if `end` was
+    /// reached.
     pub fn run(&mut self, inputs: &EngineInputs, end: u64, to: &mut impl Edges) -> Option<EngineOutputs> {
         while self.cycle < end {
             if self.leap(inputs, end - self.cycle, to) > 0 {
@@ -66,7 +68,7 @@ impl FastEngine {
         None
     }
 
-    /// Goes to the next cycle.
+    /// Advances by one cycle and reports the edges on the pins to `to`.
     pub fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
         let axes = self.core.build().axes();
         let before: [_; MAX_AXES] = std::array::from_fn(|axis| *self.core.shaper(axis.min(axes - 1)));
@@ -77,9 +79,10 @@ impl FastEngine {
         }
     }
 
-    /// Passes as many cycles as it can, `most` at the most, in which nothing but STEP, DIR, positions, the
-    /// three `ready`s, `latch` and `room` changes while the inputs stay; how many they were. No word and no start is taken in them.
-    /// After 0 the next cycle needs [`FastEngine::clock`].
+    /// Skips as many cycles as possible, up to `most`, and returns how many they were. In these
+    /// cycles nothing changes but STEP, DIR, the positions, the three `ready` outputs, `latch` and
+    /// `room`, provided that the inputs stay the same; no word and no start is accepted. If the
+    /// result is 0, the caller must execute the next cycle with [`FastEngine::clock`].
     pub fn leap(&mut self, inputs: &EngineInputs, most: u64, to: &mut impl Edges) -> u64 {
         let mut clocks = self.core.plain_clocks(inputs, most.min(LONGEST));
         if clocks > 0 && !self.core.is_still() {
@@ -98,5 +101,5 @@ impl FastEngine {
     }
 }
 
-/// Most clocks of a leap over rest, so that no sum of cycles overflows.
+/// The greatest number of clocks that one leap skips, so that no sum of cycles overflows.
 const LONGEST: u64 = 1 << 48;

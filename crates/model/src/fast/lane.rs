@@ -1,4 +1,5 @@
-//! One axis through a window of clocks: its accumulator stretch by stretch, its shaper request by request.
+//! Passes one axis through a window of clocks: its accumulator stretch by stretch, its step shaper
+//! request by request.
 
 use super::crossings::{BATCH, Stretch};
 use super::cubic::Cubic;
@@ -10,7 +11,7 @@ use crate::parts::phase::{bisect, crosses};
 use crate::parts::shaper;
 use carrystep_core::{PinTiming, Timebase};
 
-/// What strobes that only add, and the clocks between them, change of an axis.
+/// The part of an axis that changes while strobes only add.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Moving {
     pub p: u64,
@@ -20,18 +21,18 @@ pub(crate) struct Moving {
     pub shaper: shaper::State,
 }
 
-/// Clocks that are passed at once; every strobe among them only adds.
+/// A run of clocks that is passed at once; every strobe in it only adds.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
     /// First cycle of the tick in which the window begins.
     pub tick: u64,
     /// First cycle of the window.
     pub from: u64,
-    /// First cycle behind it.
+    /// First cycle after the window.
     pub to: u64,
 }
 
-/// A cycle in which a fault is latched: the window has to end before it.
+/// The cycle in which a fault is latched; the window must end before it.
 pub(super) struct FaultIn(pub u64);
 
 impl From<Overrun> for FaultIn {
@@ -40,7 +41,7 @@ impl From<Overrun> for FaultIn {
     }
 }
 
-/// An axis on its way through a window.
+/// An axis that is being passed through a window.
 struct Passage<'a> {
     pins: Pins<'a>,
     window: Window,
@@ -49,7 +50,8 @@ struct Passage<'a> {
     phase_bits: u32,
 }
 
-/// Brings an axis through a window; its edges go to the end of `edges`.
+/// Passes an axis through a window and appends its edges to `edges`. The error is the cycle of a
+/// fault.
 pub(super) fn pass(
     lane: &mut Moving,
     axis: u8,
@@ -70,7 +72,7 @@ pub(super) fn pass(
     if strobes > 0 {
         passage.emit(lane.computed, 1)?;
     }
-    // What the last two ticks bring forth stays in the pipeline.
+    // The results of the last two ticks stay in the pipeline.
     let ahead = strobes.saturating_sub(2);
     passage.add(lane, ahead)?;
     for strobe in ahead..strobes {
@@ -89,20 +91,21 @@ impl Passage<'_> {
         self.window.tick + u64::from(n) * u64::from(self.clocks_per_tick)
     }
 
-    /// A stage begins to be emitted with tick `n`.
+    /// Begins to emit a stage with tick `n`.
     fn emit(&mut self, stage: Stage, n: u32) -> Result<(), Overrun> {
         self.pins.sign(self.cycle(n), stage.sign)?;
         self.request(stage, n)
     }
 
-    /// The request of a stage that is emitted during tick `n`, where it falls into the window.
+    /// Requests the step of a stage that is emitted during tick `n`, if the request falls into the
+    /// window.
     fn request(&mut self, stage: Stage, n: u32) -> Result<(), Overrun> {
         let Some(step) = stage.step else { return Ok(()) };
         let at = self.cycle(n) + u64::from(step.phase) * u64::from(self.clocks_per_phase);
         if (self.window.from..self.window.to).contains(&at) { self.pins.requests(&[at], step.backward) } else { Ok(()) }
     }
 
-    /// The strobe at the end of tick `n`.
+    /// Executes the strobe at the end of tick `n`.
     fn tick(&mut self, lane: &mut Moving, n: u32) -> Result<(), FaultIn> {
         let Cubic { v, a, j } = lane.cubic;
         let Some(faster) = v.checked_add(a).filter(|&faster| faster != i64::MIN) else {
@@ -116,7 +119,7 @@ impl Passage<'_> {
         Ok(())
     }
 
-    /// The first `ticks` strobes; all that they bring forth reaches the pins within the window.
+    /// Executes the first `ticks` strobes. All of their steps reach the pins within the window.
     fn add(&mut self, lane: &mut Moving, ticks: u32) -> Result<(), FaultIn> {
         if !lane.cubic.stays_in_range(ticks) {
             for n in 0..ticks {
@@ -138,7 +141,7 @@ impl Passage<'_> {
         Ok(())
     }
 
-    /// All requests of a stretch that begins at tick `done`.
+    /// Requests all steps of a stretch that begins at tick `done`.
     fn requests(&mut self, stretch: Stretch, done: u32, backward: bool) -> Result<(), Overrun> {
         let mut overrun = Ok(());
         let first = self.cycle(done + 2);

@@ -1,4 +1,5 @@
-//! All axes through a window of clocks, one after the other, and their edges in order of time.
+//! Passes all axes through a window of clocks, one after the other, and reports their edges in
+//! order of time. It chooses the length of windows.
 
 use super::cubic::MOST_TICKS;
 use super::edges::{Edges, Window as EdgeWindow};
@@ -6,19 +7,20 @@ use super::lane::{self, FaultIn, Moving, Window};
 use carrystep_core::engine::MAX_AXES;
 use carrystep_core::{PinTiming, Timebase};
 
-/// Most ticks of a window where edges are dense: its edges are to stay in the cache.
+/// The greatest number of ticks of a window with dense edges, so that its edges fit the cache.
 const DENSE_TICKS: u32 = 1 << 13;
 
-/// A speed, in 2^-64 step per tick, from which on edges are dense.
+/// The speed, in 2^-64 step per tick, above which edges are dense.
 const DENSE_SPEED: u64 = 1 << 58;
 
-/// Most ticks of a window in which every axis keeps its speed: closed forms without A and J hold in any number of ticks.
+/// The greatest number of ticks of a window in which every axis keeps its speed. The closed forms
+/// are exact for any number of ticks if A and J are 0.
 const CALM_TICKS: u32 = 1 << 28;
 
-/// Edges an axis in such a window, as a power of two.
+/// Number of edges per axis for which such a window is sized, as a power of two.
 const CALM_EDGES: u32 = 8;
 
-/// Where windows begin.
+/// The position in time at which a window begins, in clocks.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct From {
     pub cycle: u64,
@@ -32,8 +34,8 @@ pub(super) struct Passages {
 }
 
 impl Passages {
-    /// Brings axes through cycles whose strobes only add, `most` at the most, and not into one in which that
-    /// ends in a fault; how many cycles and strobes they were.
+    /// Passes axes through at most `most` cycles whose strobes only add, and stops before a cycle
+    /// that latches a fault. Returns the number of cycles and of strobes passed.
     pub fn pass(
         &mut self,
         axes: &mut [Moving],
@@ -54,7 +56,7 @@ impl Passages {
             clocks = cycle - from.cycle;
         }
         self.edges.merge(to);
-        // A window is at most so long that strobes fit.
+        // A window is short enough for the number of strobes to fit 32 bits.
         (clocks, ((from.clock_of_tick + clocks) / u64::from(time.clocks_per_tick())) as u32)
     }
 
@@ -78,7 +80,8 @@ impl Passages {
     }
 }
 
-/// How many ticks a window may have in which every axis keeps its speed, if each does: so many that edges are few.
+/// The number of ticks of a window if every axis keeps its speed, chosen so that the window has few
+/// edges; `None` if an axis accelerates.
 fn calm(axes: &[Moving]) -> Option<u32> {
     let level = axes.iter().all(|axis| axis.cubic.a == 0 && axis.cubic.j == 0);
     let fastest = axes.iter().map(|axis| axis.cubic.v.unsigned_abs()).max().filter(|_| level)?;

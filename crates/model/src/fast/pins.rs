@@ -1,34 +1,36 @@
-//! One shaper from request to request.
+//! Passes one step shaper from request to request.
 //!
-//! It is *calm* where nothing is owed and DIR is as the speed wants it: then nothing happens on the pins
-//! until the next request but STEP's fall, and timers are times at which they run out. Anything else goes
-//! clock by clock through [`shaper::clock`] until it is calm again.
+//! The shaper is *calm* if no step is held back and DIR has the direction of the speed. Until the
+//! next request, nothing but the falling edge of STEP then happens on the pins, and the timers are
+//! represented by the clocks at which they expire. In all other situations [`shaper::clock`] is
+//! executed clock by clock until the shaper is calm again.
 
 use super::edges::{Change, Edge, Record};
 use crate::parts::shaper::{self, Input};
 use carrystep_core::PinTiming;
 
-/// A clock in which the shaper would latch an overrun.
+/// The clock in which the shaper would latch an overrun.
 pub(super) struct Overrun(pub u64);
 
-/// A shaper on its way through a window.
+/// A shaper that is being passed through a window.
 pub(super) struct Pins<'a> {
     axis: u8,
     pins: PinTiming,
     edges: &'a mut Vec<Record>,
     sign: i8,
     calm: bool,
-    /// As it is in clock `at`; while calm only DIR, position and what does not change are up to date.
+    /// The state in clock `at`. While calm, only DIR, the position and the constant fields are up
+    /// to date.
     state: shaper::State,
     at: u64,
-    /// The clocks from which each timer is 0.
+    /// The first clock in which each timer is 0.
     busy: u64,
     hold: u64,
     setup: u64,
 }
 
 impl<'a> Pins<'a> {
-    /// A shaper as it is in clock `at`, with the sign of the speed that it sees.
+    /// The shaper in clock `at`, with the sign of the speed that it sees.
     pub fn new(axis: u8, pins: PinTiming, state: shaper::State, sign: i8, at: u64, edges: &'a mut Vec<Record>) -> Self {
         let after = |timer: u32| at + u64::from(timer);
         let (busy, hold, setup) = (after(state.busy), after(state.hold), after(state.setup));
@@ -37,7 +39,7 @@ impl<'a> Pins<'a> {
         Self { axis, pins, edges, sign, calm, state, at, busy, hold, setup }
     }
 
-    /// Steps are asked for in these clocks, which ascend.
+    /// Requests steps in these clocks, which must ascend.
     #[inline]
     pub fn requests(&mut self, clocks: &[u64], backward: bool) -> Result<(), Overrun> {
         let period = u64::from(self.pins.width + self.pins.gap);
@@ -53,7 +55,7 @@ impl<'a> Pins<'a> {
         Ok(())
     }
 
-    /// A step is asked for.
+    /// Requests one step.
     fn request(&mut self, at: u64, backward: bool) -> Result<(), Overrun> {
         if !self.calm || backward != self.state.dir || at < self.busy.max(self.setup) {
             return self.hard_request(at, backward);
@@ -63,7 +65,7 @@ impl<'a> Pins<'a> {
         Ok(())
     }
 
-    /// So many steps were made as they were asked for, the last of them in clock `at`.
+    /// Records that `steps` steps rose without delay, the last of them requested in clock `at`.
     fn made(&mut self, at: u64, steps: i32, backward: bool) {
         self.busy = at + u64::from(self.pins.width + self.pins.gap);
         self.hold = at + u64::from(self.pins.hold);
@@ -71,7 +73,7 @@ impl<'a> Pins<'a> {
         self.state.position = self.state.position.wrapping_add(if backward { -steps } else { steps });
     }
 
-    /// From clock `at` on the speed has this sign.
+    /// Sets the sign of the speed from clock `at` on.
     pub fn sign(&mut self, at: u64, sign: i8) -> Result<(), Overrun> {
         self.reach(at)?;
         self.sign = sign;
@@ -81,7 +83,7 @@ impl<'a> Pins<'a> {
         Ok(())
     }
 
-    /// The shaper as it is in clock `at`.
+    /// Returns the shaper in clock `at`.
     pub fn finish(mut self, at: u64) -> Result<shaper::State, Overrun> {
         self.reach(at)?;
         if self.calm {
@@ -99,7 +101,7 @@ impl<'a> Pins<'a> {
         self.clock(Some(backward))
     }
 
-    /// Comes to clock `at`, or to where the shaper is calm.
+    /// Advances to clock `at`, or stops earlier if the shaper becomes calm.
     fn reach(&mut self, at: u64) -> Result<(), Overrun> {
         while !self.calm && self.at < at {
             self.clock(None)?;
@@ -107,9 +109,9 @@ impl<'a> Pins<'a> {
         Ok(())
     }
 
-    /// From times back to registers.
+    /// Converts the expiry times of the timers back to registers.
     fn wake(&mut self, at: u64) {
-        // A timer is at most 17 bits wide.
+        // A timer is at most 17 bits wide, so the value fits.
         let timer = |end: u64| end.saturating_sub(at) as u32;
         let busy = timer(self.busy);
         let step = self.state.step && busy >= self.pins.gap;
@@ -118,7 +120,7 @@ impl<'a> Pins<'a> {
         self.calm = false;
     }
 
-    /// One clock as it is written in the contract.
+    /// Executes one clock of [`shaper::clock`].
     fn clock(&mut self, request: Option<bool>) -> Result<(), Overrun> {
         let before = self.state;
         let next = shaper::clock(before, Input { request, sign: self.sign, frozen: false }, self.pins);

@@ -1,4 +1,5 @@
-//! The CRC's register: a bit a clock, eight clocks a byte.
+//! The CRC register of the link: one bit per clock, eight clocks per byte. It also assembles words
+//! from bytes.
 
 use carrystep_core::link::CRC_POLYNOMIAL;
 
@@ -8,25 +9,25 @@ pub(super) struct Check {
     count: u8,
 }
 
-/// What it is told in a clock.
+/// The operation of the register in one clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Told {
     Nothing,
-    /// To begin with this.
+    /// Loads this word.
     Begin(u32),
-    /// A bit further, with one of this byte fed to it.
+    /// Shifts by one bit and feeds one bit of this byte to the CRC.
     Feed(u8),
-    /// A bit further, with one of this byte shifted in above it.
+    /// Shifts by one bit and shifts one bit of this byte in at the top.
     Shift(u8),
 }
 
 impl Check {
-    /// The eighth of eight clocks.
+    /// True in the eighth clock of a byte.
     pub(super) const fn over(self) -> bool {
         self.count == 7
     }
 
-    /// All of it.
+    /// The whole register.
     pub(super) const fn word(self) -> u32 {
         self.sum
     }

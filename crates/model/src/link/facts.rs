@@ -1,20 +1,20 @@
-//! What can be read: the build's facts, and what the engine has last said of each axis. All items are asked for in turn,
-//! one a turn of the engine.
+//! The memory of all words that the host can read: the constants of the build, and the engine's
+//! last answers for each axis. The link requests all items cyclically, one per turn of the engine.
 
 use carrystep_core::EngineBuild;
 use carrystep_core::link::machine::SCAN;
 use carrystep_core::link::registers as map;
 use carrystep_core::link::{self, BuildId, LinkInputs};
 
-/// Words of the memory.
+/// Number of words in the memory.
 const WORDS: usize = 128;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Facts {
     words: [u32; WORDS],
-    /// What the memory gives.
+    /// The word that the memory outputs.
     read: u32,
-    /// Axis 3 | item 2.
+    /// The item that is being requested: the axis in bits 4 to 2, the item in bits 1 and 0.
     asked: u8,
 }
 
@@ -27,17 +27,17 @@ impl Facts {
         Self { words, read: 0, asked: 0 }
     }
 
-    /// The axis and the item that are asked for.
+    /// The axis and the item that are being requested.
     pub(super) const fn asks(&self) -> (u8, u8) {
         (self.asked >> 2, self.asked & 3)
     }
 
-    /// The last item of the last axis is said.
+    /// True if the engine answers the last item of the last axis in this clock.
     pub(super) fn scanned(&self, inputs: &LinkInputs) -> bool {
         inputs.get_valid && u32::from(self.asked) == SCAN - 1
     }
 
-    /// What was read.
+    /// The word that was read.
     pub(super) const fn data(&self) -> u32 {
         self.read
     }
@@ -59,12 +59,12 @@ impl Facts {
         self.words[usize::from(map::of_axis(map::AXES_AT + item, axis)) % WORDS] = word;
     }
 
-    /// The position of an axis that waits for its limit.
+    /// Stores the position (in steps) of an axis that waits for its limit.
     pub(super) fn latch(&mut self, axis: u8, position: u32) {
         self.words[usize::from(map::of_axis(map::LATCHED, axis & 7)) % WORDS] = position;
     }
 
-    /// So many turns have passed: what was asked for in them is what is said now.
+    /// Accounts for `turns` skipped turns. Every item requested in them gets its current value.
     pub(super) fn pass(&mut self, turns: u64, said: impl Fn(u8, u8) -> u32) {
         let last = turns.min(u64::from(SCAN));
         self.asked = ((u64::from(self.asked) + turns - last) % u64::from(SCAN)) as u8;

@@ -1,4 +1,4 @@
-//! The gateware's end of the line, of either kind.
+//! The gateware's end of the line to the host, which is either UART or SPI.
 
 use super::spi::Spi;
 use super::uart::{Receiver, Transmitter};
@@ -21,7 +21,7 @@ impl End {
         }
     }
 
-    /// The line to the host.
+    /// The level of the line to the host.
     pub(super) const fn level(&self) -> bool {
         match self {
             Self::Uart { transmitter, .. } => transmitter.line(),
@@ -29,7 +29,7 @@ impl End {
         }
     }
 
-    /// The byte that has come.
+    /// The byte that is received in this clock.
     pub(super) fn byte(&self) -> Option<u8> {
         match self {
             Self::Uart { receiver, .. } => receiver.byte(),
@@ -37,7 +37,7 @@ impl End {
         }
     }
 
-    /// Whether a byte that is offered is taken in this clock.
+    /// True if an offered byte is accepted in this clock.
     pub(super) const fn takes(&self, offered: bool) -> bool {
         match self {
             Self::Uart { transmitter, .. } => transmitter.takes(offered),
@@ -58,8 +58,8 @@ impl End {
         }
     }
 
-    /// For so many clocks it only counts, while the line stays at `rx` and an SPI's other pins at rest, and a byte is
-    /// offered or none is.
+    /// The number of clocks in which the line only counts, provided that it stays at `rx`, the
+    /// other pins of an SPI stay at rest, and `offered` stays the same.
     pub(super) fn quiet(&self, rx: bool, offered: bool) -> u64 {
         match self {
             Self::Uart { receiver, transmitter } => receiver.quiet(rx).min(transmitter.quiet(offered)),

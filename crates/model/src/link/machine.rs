@@ -1,6 +1,8 @@
-//! The machine that reads requests, does what they ask for and writes answers: three clocks an instruction.
+//! The processor of the link. It reads requests, executes them and writes answers; an instruction
+//! takes three clocks or more. It must stay equal to docs/link.md in every clock.
 //!
-//! Its memories give in a clock what they were asked for in the one before, and the old value of a word that was written then.
+//! Its memories are synchronous: the word of an address is output one clock later. A word that is
+//! written in the same clock is output with its old value.
 
 use super::check::{Check, Told};
 use carrystep_core::engine::EngineOutputs;
@@ -12,10 +14,10 @@ use carrystep_core::link::machine::{
 use carrystep_core::link::registers::{CONTROL_ENABLE, CONTROL_STOP};
 use std::sync::Arc;
 
-/// Words of each memory of bytes, and of the program.
+/// Number of entries in each byte memory and in the program.
 const SIZE: usize = 256;
 
-/// The clock of an instruction in which it does what it does.
+/// The clock of an instruction in which it is executed.
 const EXECUTE: u8 = 2;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,7 +25,7 @@ pub(super) struct Machine {
     program: Arc<[Code]>,
     data: [u8; SIZE],
     ring: [u8; SIZE],
-    /// What the memories give.
+    /// The outputs of the memories.
     code: Code,
     read: u8,
     received: u8,
@@ -32,38 +34,38 @@ pub(super) struct Machine {
     pc: u8,
     a: u8,
     x: u8,
-    /// Where the ring is written next,
+    /// Index in the ring at which the next byte is written.
     written: u8,
-    /// and where it is read.
+    /// Index in the ring from which the next byte is read.
     read_from: u8,
-    /// What an axis has last said of its room.
+    /// The room that the engine last reported for an axis, in segments.
     room: u8,
     control: u8,
     clear: bool,
 }
 
-/// What goes in, in a clock.
+/// The inputs in one clock.
 pub(super) struct Inputs<'a> {
-    /// A byte has come.
+    /// The byte that is received in this clock.
     pub received: Option<u8>,
-    /// The byte that goes is taken.
+    /// The byte to the host is accepted.
     pub taken: bool,
-    /// The fact at X.
+    /// The word of the facts memory at address X.
     pub fact: u32,
-    /// All items of all axes were asked for.
+    /// A complete scan of all items of all axes is over.
     pub scanned: bool,
     pub engine: &'a EngineOutputs,
 }
 
-/// What comes out.
+/// The outputs in one clock.
 pub(super) struct Outputs {
     pub a: u8,
     pub x: u8,
-    /// The word of a segment.
+    /// A word of a segment.
     pub word: u32,
     pub puts: bool,
     pub starts: bool,
-    /// A goes to the host.
+    /// A is offered to the transmitter.
     pub goes: bool,
     pub homes: bool,
     pub kicks: bool,
@@ -73,14 +75,14 @@ pub(super) struct Outputs {
     pub enable: bool,
 }
 
-/// What it waits for.
+/// The reason for which the processor waits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Waits {
-    /// Nothing, or the engine.
+    /// It does not wait, or it waits for the engine.
     No,
-    /// A byte.
+    /// It waits for a byte.
     ForByte,
-    /// The transmitter.
+    /// It waits for the transmitter.
     ToSend,
 }
 
@@ -110,12 +112,13 @@ impl Machine {
         }
     }
 
-    /// An instruction with this bit does what it does.
+    /// True if an instruction that contains one of these bits is executed in this clock.
     fn executes(&self, bit: Code) -> bool {
         self.stage == EXECUTE && self.code & bit != 0
     }
 
-    /// Does what these bits of an instruction say that neither sets nor stores.
+    /// True if an instruction that neither sets nor stores is executed in this clock and contains
+    /// all of these bits.
     fn does(&self, bits: Code) -> bool {
         self.executes(ACTS) && self.code & (SETS | STORES) == 0 && self.code & bits == bits
     }
@@ -153,7 +156,7 @@ impl Machine {
         let [sets, stores, acts] = [SETS, STORES, ACTS].map(|bit| self.executes(bit));
         let controls = self.does(CONTROL) && code & KICK == 0;
 
-        // The memories, before anything of this clock is written.
+        // The memories are read before this clock writes to them.
         self.code = self.program[usize::from(self.pc)];
         self.read = self.data[place];
         self.received = self.ring[usize::from(self.read_from)];
@@ -192,7 +195,7 @@ impl Machine {
         }
     }
 
-    /// The instruction that executes is over in this clock.
+    /// True if the instruction that is being executed ends in this clock.
     fn is_over(&self, inputs: &Inputs<'_>) -> bool {
         let waited = if self.code & STARTS != 0 {
             inputs.engine.start_ready || inputs.engine.fault.is_some()
@@ -216,7 +219,7 @@ impl Machine {
         }
     }
 
-    /// Whether the condition of a jump holds.
+    /// True if the condition of a jump holds.
     fn holds(&self, engine: &EngineOutputs) -> bool {
         match self.code >> 8 & 7 {
             c if c == Condition::Zero as Code => self.a == 0,
@@ -230,7 +233,7 @@ impl Machine {
         }
     }
 
-    /// What A would take.
+    /// The value that A would take.
     fn value(&self, engine: &EngineOutputs) -> u8 {
         match self.code >> 8 & 7 {
             s if s == Source::Data as Code || s == Source::DataAtX as Code => self.read,
@@ -250,7 +253,7 @@ impl Machine {
         }
     }
 
-    /// What it does in this clock depends on what the engine says, or tells it something.
+    /// True if this clock depends on the engine's outputs or changes an input of the engine.
     pub(super) fn minds_the_engine(&self) -> bool {
         const TELLS: Code = PUTS | STARTS | BROKEN | KICK | CONTROL;
         let acts = self.does(0) && self.code & TELLS != 0;
@@ -272,7 +275,7 @@ impl Machine {
         }
     }
 
-    /// So many clocks have passed in which it waited.
+    /// Skips this many clocks in which the processor waits.
     pub(super) fn pass(&mut self, clocks: u64) {
         if self.waits() == Waits::ForByte {
             self.stage = ((u64::from(self.stage) + clocks) % 3) as u8;

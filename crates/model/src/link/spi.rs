@@ -1,8 +1,9 @@
-//! SPI mode 0, the gateware being the peripheral: a byte is whole where SCK rises for the eighth time, seen two clocks late.
+//! The SPI peripheral of the gateware, mode 0. A byte is complete at the eighth rising edge of SCK,
+//! which the link sees two clocks later.
 
 use carrystep_core::link::END;
 
-/// The pins from the host.
+/// The pins driven by the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Pins {
     sck: bool,
@@ -12,14 +13,17 @@ struct Pins {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Spi {
-    /// The pins one clock and two clocks ago, and SCK three.
+    /// The pins one clock ago (`sync`) and two clocks ago (`now`), and SCK three clocks ago
+    /// (`before`).
     sync: Pins,
     now: Pins,
     before: bool,
+    /// The bits that have been received, the bits that are still to be sent, and the number of bits
+    /// in the current byte.
     comes: u8,
     goes: u8,
     count: u8,
-    /// The last byte was an END.
+    /// True if the last byte was an END.
     ended: bool,
 }
 
@@ -29,7 +33,7 @@ impl Spi {
         Self { sync: rest, now: rest, before: false, comes: 0, goes: END, count: 0, ended: true }
     }
 
-    /// The byte that is whole in this clock.
+    /// The byte that is complete in this clock.
     const fn whole(&self) -> Option<u8> {
         let rises = self.now.sck && !self.before && !self.now.select_n;
         if rises && self.count == 7 { Some(self.shifted()) } else { None }
@@ -39,22 +43,22 @@ impl Spi {
         self.comes << 1 | self.now.mosi as u8
     }
 
-    /// The byte that is received in this clock: of ENDs in a row only the first.
+    /// The byte that is received in this clock. Of consecutive ENDs only the first is received.
     pub(super) fn byte(&self) -> Option<u8> {
         self.whole().filter(|&byte| byte != END || !self.ended)
     }
 
-    /// Whether a byte that is offered is taken in this clock.
+    /// True if an offered byte is accepted in this clock.
     pub(super) const fn takes(&self, offered: bool) -> bool {
         offered && self.whole().is_some()
     }
 
-    /// MISO.
+    /// The level of MISO.
     pub(super) const fn line(&self) -> bool {
         self.goes & 0x80 != 0
     }
 
-    /// Nothing is on its way from the pins.
+    /// The number of clocks in which nothing happens while the pins stay at rest: `u64::MAX` or 0.
     pub(super) const fn quiet(&self) -> u64 {
         let rests = self.sync.select_n && self.now.select_n && self.count == 0;
         let low = !self.sync.sck && !self.now.sck && !self.before;

@@ -1,16 +1,18 @@
-//! The UART's two ends: eight data bits, low bit first, no parity, one stop bit, each of so many clocks.
+//! The receiver and the transmitter of the UART: eight data bits, least significant bit first, no
+//! parity, one stop bit. The length of a bit is given in clocks.
 
-/// Above the bits that are still to come or to go.
+/// A marker bit above the bits that are still to be received or sent.
 const MARK: u16 = 0x100;
 
-/// Bytes from the line, which is looked at in the middle of each bit.
+/// The receiver. It samples the line in the middle of each bit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Receiver {
     bit_clocks: u32,
-    /// The line, one clock and two clocks ago.
+    /// The line one clock ago (`sync`) and two clocks ago (`now`).
     sync: bool,
     now: bool,
-    /// Clocks to the next look, and the bits that have come under a mark; at rest, nothing.
+    /// Clocks to the next sample, and the received bits below a marker bit; `None` while no byte is
+    /// being received.
     byte: Option<(u32, u16)>,
 }
 
@@ -19,7 +21,7 @@ impl Receiver {
         Self { bit_clocks, sync: true, now: true, byte: None }
     }
 
-    /// The byte whose stop bit is looked at in this clock, if it is one.
+    /// The byte whose stop bit is sampled in this clock, if the stop bit is 1.
     pub(super) fn byte(&self) -> Option<u8> {
         match self.byte {
             Some((0, bits)) if bits & 1 == 1 && self.now => Some((bits >> 1) as u8),
@@ -39,7 +41,8 @@ impl Receiver {
         self.sync = rx;
     }
 
-    /// For so many clocks it only counts, while the line stays at `rx`.
+    /// The number of clocks in which the receiver only counts, provided that the line stays at
+    /// `rx`.
     pub(super) fn quiet(&self, rx: bool) -> u64 {
         match self.byte {
             Some((left, _)) => left.into(),
@@ -60,14 +63,14 @@ impl Receiver {
     }
 }
 
-/// Bytes to the line.
+/// The transmitter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Transmitter {
     bit_clocks: u32,
     line: bool,
     /// Clocks to the next bit.
     left: u32,
-    /// Bits that are still to go, the stop bit above them.
+    /// Bits that are still to be sent, with the stop bit on top.
     bits: u16,
 }
 
@@ -80,7 +83,7 @@ impl Transmitter {
         self.line
     }
 
-    /// Whether a byte that is offered is taken in this clock.
+    /// True if an offered byte is accepted in this clock.
     pub(super) const fn takes(&self, offered: bool) -> bool {
         offered && self.left == 0 && self.bits == 0
     }
@@ -96,7 +99,8 @@ impl Transmitter {
         }
     }
 
-    /// For so many clocks it only counts, while a byte is offered, or none is.
+    /// The number of clocks in which the transmitter only counts, provided that `offered` stays the
+    /// same.
     pub(super) fn quiet(&self, offered: bool) -> u64 {
         if self.bits == 0 && !offered { u64::MAX } else { self.left.into() }
     }

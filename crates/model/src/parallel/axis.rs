@@ -1,4 +1,6 @@
-//! One axis: Ranade's speed-time accumulator (2009), to third order, fed by segments.
+//! The accumulator of one axis: Ranade's speed-time accumulator (2009), extended to third order
+//! (jerk) and fed by segments. [`tick`] must stay equal to the section "axis" of
+//! docs/clock-by-clock.md.
 //!
 //! ```text
 //!          +---+      +---+      +---+   carry
@@ -6,7 +8,8 @@
 //!          +---+ +J   +---+ +A   +---+ +V
 //! ```
 //!
-//! Each tick adds; nothing else ever happens to P. A segment replaces V, A and J when it starts.
+//! In every tick V is added to P, A to V and J to A, and the carry of P is a step. A segment
+//! replaces V, A and J when it starts; only additions of V ever change P.
 
 use crate::parts::phase::{bisect, crosses};
 use carrystep_core::Segment;
@@ -14,71 +17,72 @@ use carrystep_core::Segment;
 /// The registers of one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct State {
-    /// Position in the step, 2^-64 step.
+    /// Fraction of a step that the axis has travelled, in 2^-64 step.
     pub p: u64,
-    /// Speed, 2^-64 step per tick.
+    /// Speed in 2^-64 step per tick; negative is backward.
     pub v: i64,
-    /// Acceleration, 2^-64 step per tick^2.
+    /// Acceleration in 2^-64 step per tick^2.
     pub a: i64,
-    /// Jerk, 2^-64 step per tick^3.
+    /// Jerk in 2^-64 step per tick^3.
     pub j: i64,
-    /// Ticks left of the running segment.
+    /// Remaining ticks of the running segment, the current tick included.
     pub left: u32,
-    /// A segment is running.
+    /// True while a segment is running.
     pub running: bool,
-    /// The running segment is the last of its move.
+    /// True if the running segment is the last of its move.
     pub last: bool,
-    /// The segment that comes next.
+    /// The next segment, held until the running one ends or a start releases it.
     pub waiting: Option<Segment>,
 }
 
-/// A step: which way, and where in its tick.
+/// A step: its direction, and the phase of the tick in which it falls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Step {
-    /// Against the direction of counting.
+    /// True if the step is in the negative direction.
     pub backward: bool,
-    /// 0 .. Q - 1.
+    /// Phase of the tick, 0 to Q - 1.
     pub phase: u32,
 }
 
-/// What one tick brings forth.
+/// The output of one tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Output {
     /// The step in this tick, if there is one.
     pub step: Option<Step>,
-    /// Sign of the speed that was added: -1, 0 or 1.
+    /// Sign of the V that this tick added: -1, 0 or 1.
     pub sign: i8,
-    /// V would have left (-2^63, 2^63).
+    /// True if the next V is not in the open interval (-2^63, 2^63).
     pub overspeed: bool,
-    /// The queue was dry after a segment not marked last.
+    /// True if a segment that is not the last of its move ended and no segment was waiting.
     pub underrun: bool,
 }
 
 impl State {
-    /// At rest, nothing waiting.
+    /// An axis at rest, with P = `start_value` (2^-64 step) and no segment waiting.
     pub const fn at_rest(start_value: u64) -> Self {
         Self { p: start_value, v: 0, a: 0, j: 0, left: 0, running: false, last: false, waiting: None }
     }
 
-    /// The running segment is in its last tick.
+    /// True in the last tick of the running segment.
     pub const fn ending(&self) -> bool {
         self.running && self.left == 1
     }
 
-    /// A start in this tick would begin the waiting segment.
+    /// True if a start in this tick would begin the waiting segment.
     pub const fn startable(&self) -> bool {
         self.waiting.is_some() && (!self.running || (self.ending() && self.last))
     }
 
-    /// No motion and no cause for any.
+    /// The same axis with V, A and J cleared and no running segment. P and the waiting segment
+    /// stay.
     #[must_use]
     pub const fn stopped(self) -> Self {
         Self { v: 0, a: 0, j: 0, running: false, ..self }
     }
 }
 
-/// One tick: `state, go -> state, output`; `go` starts the waiting segment of an axis that is
-/// [`State::startable`].
+/// Executes one tick and returns the next state and the output. `go` starts the waiting segment if
+/// the axis is [`State::startable`]. `phase_bits` is log2 of the number of phases per tick.
 pub fn tick(state: State, go: bool, phase_bits: u32) -> (State, Output) {
     let mut output = Output {
         step: crosses(state.p, state.v)
@@ -105,7 +109,8 @@ pub fn tick(state: State, go: bool, phase_bits: u32) -> (State, Output) {
         output.underrun = ending && !state.last;
         (moved.stopped(), Some(0))
     };
-    // abs(V) < 2^63, always: half a step per tick is where direction and carry lose their meaning.
+    // V must stay in (-2^63, 2^63): from half a step per tick on, direction and carry are
+    // ambiguous.
     if speed.is_none_or(|v| v == i64::MIN) {
         output.overspeed = true;
         return (next.stopped(), output);

@@ -1,5 +1,6 @@
-//! The whole core, clock by clock: six axes, six shapers, one tick, a segment port, a start mask,
-//! and the freeze.
+//! The parallel core, clock by clock: six accumulators, six step shapers, one tick counter, a
+//! segment port, a start mask and the freeze after a fault. It must stay equal to the section
+//! "six_axis" of docs/clock-by-clock.md.
 //!
 //! ```text
 //! cycle   c-1 | c                 | c+C               | c+2C
@@ -15,7 +16,7 @@ use crate::parts::shaper;
 use carrystep_core::ports::{Inputs, Outputs};
 use carrystep_core::{AXES, Build, Faults};
 
-/// A step on its way from the accumulator to the pins, one stage a tick.
+/// A step between the accumulator and the pins. It advances by one stage per tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Stage {
     pub step: Option<Step>,
@@ -23,12 +24,13 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
-    /// Nothing is on its way.
+    /// True if the stage holds neither a step nor a direction.
     pub(crate) const fn is_empty(&self) -> bool {
         self.step.is_none() && self.sign == 0
     }
 }
 
+/// One axis: its accumulator, the two stages behind it, its latched faults and its step shaper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Lane {
     pub axis: axis::State,
@@ -39,7 +41,7 @@ pub(crate) struct Lane {
     pub shaper: shaper::State,
 }
 
-/// The core's state; [`SixAxis::outputs`] and [`SixAxis::clock`] are its one clock cycle.
+/// The state of the core. [`SixAxis::outputs`] and [`SixAxis::clock`] together are one clock cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SixAxis {
     pub(crate) build: Build,
@@ -51,7 +53,7 @@ pub struct SixAxis {
 }
 
 impl SixAxis {
-    /// The core as it is configured.
+    /// The core at configuration.
     pub fn new(build: &Build) -> Self {
         let lane = |axis: usize| Lane {
             axis: axis::State::at_rest(build.phase.start_value()),
@@ -64,17 +66,17 @@ impl SixAxis {
         Self { build: build.clone(), sub: 0, phase: 0, armed: None, protocol: false, lanes: std::array::from_fn(lane) }
     }
 
-    /// The registers of one axis.
+    /// The registers of an axis' accumulator. Panics if `axis` is not less than 6.
     pub fn axis(&self, axis: usize) -> &axis::State {
         &self.lanes[axis].axis
     }
 
-    /// The registers of one shaper.
+    /// The registers of an axis' step shaper. Panics if `axis` is not less than 6.
     pub fn shaper(&self, axis: usize) -> &shaper::State {
         &self.lanes[axis].shaper
     }
 
-    /// The outputs in this cycle, given its inputs.
+    /// The outputs in this cycle for these inputs.
     pub fn outputs(&self, inputs: &Inputs) -> Outputs {
         let faults = self.faults();
         let frozen = faults.any();
@@ -92,7 +94,7 @@ impl SixAxis {
         }
     }
 
-    /// Goes to the next cycle.
+    /// Advances by one cycle.
     pub fn clock(&mut self, inputs: &Inputs) {
         let frozen = self.faults().any();
         let strobe = self.strobe();
@@ -140,7 +142,7 @@ impl SixAxis {
         self.advance();
     }
 
-    /// What is latched; anything freezes the core.
+    /// The latched faults. Any of them freezes the core.
     pub fn faults(&self) -> Faults {
         Faults {
             overrun: bits(&self.lanes, |lane| lane.shaper.overrun),
@@ -150,12 +152,13 @@ impl SixAxis {
         }
     }
 
-    /// Whether a segment for this axis is taken: its slot is free, or the axis does not exist (a fault).
+    /// True if a segment for this axis is accepted: its waiting slot is free, or the axis does not
+    /// exist (a protocol fault).
     fn takes(&self, axis: u8) -> bool {
         self.lanes.get(usize::from(axis)).is_none_or(|lane| lane.axis.waiting.is_none())
     }
 
-    /// The axes that start in the coming tick: all that are armed, or none.
+    /// The axes that start in the coming tick: all armed axes together, or `None`.
     fn go(&self) -> Option<u8> {
         let startable = bits(&self.lanes, |lane| lane.axis.startable());
         self.armed.filter(|mask| mask & !startable == 0)
@@ -176,31 +179,31 @@ impl SixAxis {
     }
 }
 
-/// What lets `fast` pass many cycles at once.
+/// Access for the fast model, which passes many cycles at once.
 impl SixAxis {
-    /// Cycles since the tick began.
+    /// Cycles since the beginning of the tick.
     pub(crate) fn clock_of_tick(&self) -> u64 {
         let time = &self.build.timebase;
         u64::from(self.phase * time.clocks_per_phase() + self.sub)
     }
 
-    /// Time goes by for the counters of the tick.
+    /// Advances the counters of the tick by this many clocks.
     pub(crate) fn pass(&mut self, clocks: u64) {
         let time = &self.build.timebase;
         let now = (self.clock_of_tick() + clocks) % u64::from(time.clocks_per_tick());
         let per_phase = u64::from(time.clocks_per_phase());
-        // Both are less than the clocks of a tick.
+        // Both values are less than the number of clocks per tick, which is a `u32`.
         (self.phase, self.sub) = ((now / per_phase) as u32, (now % per_phase) as u32);
     }
 
-    /// The inputs change nothing in this cycle, nor the next strobe anything but by adding; and neither
-    /// `idle` nor a fault is near, so that this stays so until a segment ends.
+    /// True if the inputs change nothing in this cycle, the next strobe only adds, and neither
+    /// `idle` nor a fault can occur before a segment ends.
     pub(crate) fn only_adds(&self, inputs: &Inputs) -> bool {
         let moving = self.armed.is_some() || self.lanes.iter().any(|l| l.axis.running || l.axis.waiting.is_some());
         moving && !self.faults().any() && self.go().is_none() && !self.hears(inputs)
     }
 
-    /// Nothing changes until the inputs do.
+    /// True if nothing changes as long as the inputs stay the same.
     pub(crate) fn is_still(&self, inputs: &Inputs) -> bool {
         let frozen = self.faults().any();
         let deaf =
@@ -208,14 +211,14 @@ impl SixAxis {
         deaf && self.lanes.iter().all(Lane::is_still)
     }
 
-    /// Whether a core that is not frozen takes an input in this cycle.
+    /// True if a core that is not frozen would accept an offered segment or start in this cycle.
     fn hears(&self, inputs: &Inputs) -> bool {
         inputs.segment.is_some_and(|(axis, _)| self.takes(axis)) || (inputs.start.is_some() && self.armed.is_none())
     }
 }
 
 impl Lane {
-    /// The strobe: results move one stage on, and a tick is added unless frozen.
+    /// Executes the strobe: the stages advance, and one tick is added unless the core is frozen.
     pub(crate) fn tick(&mut self, go: bool, frozen: bool, phase_bits: u32) {
         self.emitted = self.computed;
         self.computed = Stage::default();
@@ -237,23 +240,23 @@ impl Lane {
         self.shaper.overrun = false;
     }
 
-    /// A step has left the accumulator and is not yet over on the pin.
+    /// True if a step has left the accumulator and its pulse on the pin is not yet over.
     fn on_its_way(&self) -> bool {
         self.computed.step.is_some() || self.emitted.step.is_some() || self.shaper.step
     }
 
-    /// No clock and no strobe changes anything.
+    /// True if no clock and no strobe changes the axis.
     fn is_still(&self) -> bool {
         !self.axis.running && self.computed.is_empty() && self.emitted.is_empty() && self.shaper.is_still(false)
     }
 
-    /// As a window sees it.
+    /// The part of the axis that a window of the fast model changes.
     pub(crate) fn moving(&self) -> Moving {
         let cubic = Cubic { v: self.axis.v, a: self.axis.a, j: self.axis.j };
         Moving { p: self.axis.p, cubic, computed: self.computed, emitted: self.emitted, shaper: self.shaper }
     }
 
-    /// What has become of it after so many strobes.
+    /// Writes back the axis as it is after a window with this many strobes.
     pub(crate) fn moved(&mut self, moved: &Moving, strobes: u32) {
         let Moving { p, cubic: Cubic { v, a, .. }, computed, emitted, shaper } = *moved;
         let left = self.axis.left - if self.axis.running { strobes } else { 0 };

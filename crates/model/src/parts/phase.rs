@@ -1,15 +1,18 @@
-//! Where inside its tick a step falls, without a divider: add-only bisection.
+//! Finds the phase of its tick in which a step falls, without a divider, by bisection with
+//! additions only. The results must equal docs/clock-by-clock.md bit by bit.
 
-/// Whether adding `v` to `p` passes a whole step: carry forward, no carry (borrow) backward.
+/// True if adding `v` to `p` passes a whole step: the addition carries (forward) or borrows
+/// (backward).
 pub const fn crosses(p: u64, v: i64) -> bool {
     let (_, carry) = p.overflowing_add(v.cast_unsigned());
     carry != (v < 0)
 }
 
-/// Phase (0 .. 2^bits - 1) of a tick that crosses, from the position and speed it began with.
+/// Returns the phase (0 to 2^bits - 1) of a tick that crosses a step, from its initial `p` and `v`.
 ///
-/// Halve the tick `bits` times and keep each half that does not cross yet; what is kept is the time
-/// before the edge. On the top 32 bits of both registers, as the gateware has it.
+/// The function halves the tick `bits` times and keeps each half that does not yet cross the step.
+/// The halves kept are the time before the edge, in units of 2^-bits tick. Like the gateware it
+/// uses only the top 32 bits of both registers.
 ///
 /// ```text
 /// p |          kept: 1/4        crossing
@@ -25,7 +28,7 @@ pub const fn bisect(p: u64, v: i64, bits: u32) -> u32 {
         let half = v >> k;
         let (moved, carry) = p.overflowing_add(half.cast_unsigned());
         let keep = carry == (half < 0);
-        // No branch: which half it is cannot be predicted.
+        // Branch-free: the processor cannot predict which half crosses.
         p = if keep { moved } else { p };
         q = q << 1 | keep as u32;
         k += 1;
@@ -33,7 +36,7 @@ pub const fn bisect(p: u64, v: i64, bits: u32) -> u32 {
     q
 }
 
-/// [`bisect`] for many ticks at once, in such a form that the compiler takes several in one instruction.
+/// [`bisect`] for `N` ticks at once. The loops are arranged so that the compiler vectorizes them.
 pub fn bisect_all<const N: usize>(p: &[u64; N], v: &[i64; N], bits: u32) -> [u32; N] {
     let (mut top_p, mut top_v, mut q) = ([0; N], [0; N], [0; N]);
     for i in 0..N {
@@ -56,9 +59,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_step_in_mid_tick_has_the_middle_phase() {
-        let v = 1 << 62; // a quarter step per tick
-        let p = u64::MAX - (1 << 61); // just over half of that below the step
+    fn step_in_mid_tick_has_the_middle_phase() {
+        let v = 1 << 62; // This is a quarter step per tick.
+        let p = u64::MAX - (1 << 61); // This is just over half of that below the step.
         assert!(crosses(p, v));
         assert_eq!(bisect(p, v, 4), 8);
         assert_eq!(bisect(p, v, 2), 2);
@@ -66,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn many_at_once_are_as_one_by_one() {
+    fn bisect_all_equals_bisect_for_each_tick() {
         let mut seed = 1_u64;
         let mut next = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -82,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn backward_steps_where_the_borrow_is() {
+    fn backward_addition_steps_if_it_borrows() {
         assert!(crosses(0, -1), "from zero, any move back steps at once");
         assert!(!crosses(1, -1));
         assert!(!crosses(u64::MAX, 0));

@@ -1,4 +1,6 @@
-//! The step shaper: what keeps the promises of width, gap, set-up and hold on the pins.
+//! The step shaper of one axis. It keeps the promised pulse width W, gap S, direction set-up D and
+//! direction hold H on the pins STEP and DIR, all in clocks. [`clock`] must stay equal to the
+//! section "shaper" of docs/clock-by-clock.md.
 //!
 //! ```text
 //! DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
@@ -7,49 +9,51 @@
 //!                    :<-W ->:<- S -->:
 //! ```
 //!
-//! One step may be owed while the timers run; a second is an overrun. Nothing is dropped in silence:
-//! rising edges + owed + discarded == requests, in every clock.
+//! While the timers run, one step is held back (`owed`). A second step in that time is an overrun.
+//! Every step is accounted for; in every clock: rising edges + held-back steps + discarded steps ==
+//! requests.
 
 use carrystep_core::PinTiming;
 
 /// The registers of one shaper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct State {
-    /// STEP pin.
+    /// Level of the STEP pin.
     pub step: bool,
-    /// DIR pin; true is backward.
+    /// Level of the DIR pin; true is backward.
     pub dir: bool,
-    /// Direction of the last speed that was not zero.
+    /// Direction of the last speed that was not zero; true is backward.
     pub want: bool,
-    /// A step waits for the timers; its direction.
+    /// The direction of the step that is held back until the timers allow it, if there is one.
     pub owed: Option<bool>,
-    /// Clocks until the next rise is allowed.
+    /// Clocks until the next rising edge of STEP is allowed.
     pub busy: u32,
-    /// Clocks until DIR may turn.
+    /// Clocks until DIR may change.
     pub hold: u32,
-    /// Clocks until a rise is allowed after a turn.
+    /// Clocks until STEP may rise after a change of DIR.
     pub setup: u32,
-    /// Rising edges forward less rising edges back.
+    /// Rising edges forward minus rising edges backward, in steps, wrapping.
     pub position: i32,
-    /// Steps that were not made.
+    /// Steps that never reached the pin, because of an overrun or a freeze; wrapping.
     pub discarded: u32,
-    /// A second step was owed.
+    /// Latched: a second step arrived while one was held back.
     pub overrun: bool,
 }
 
-/// What a shaper is told in one clock.
+/// The inputs of a shaper in one clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Input {
-    /// A step is due now; true is backward.
+    /// The direction of the step that is due in this clock, if there is one; true is backward.
     pub request: Option<bool>,
-    /// Sign of the speed: the direction that DIR is to have.
+    /// Sign of the speed (-1, 0 or 1). DIR follows it; 0 keeps the direction.
     pub sign: i8,
-    /// No new edges.
+    /// True while the core is frozen: neither pin begins a new edge, and steps are discarded.
     pub frozen: bool,
 }
 
 impl State {
-    /// At configuration. The set-up timer runs, so that promise 3 holds from the first clock.
+    /// The state at configuration. The set-up timer runs, so that the direction set-up is kept from
+    /// the first clock on.
     pub const fn at_configuration(pins: PinTiming) -> Self {
         Self {
             step: false,
@@ -67,14 +71,14 @@ impl State {
 }
 
 impl State {
-    /// No clock changes anything while no step is due and the speed keeps its sign.
+    /// True if no clock changes the state while no step is requested and the speed keeps its sign.
     pub(crate) const fn is_still(&self, frozen: bool) -> bool {
         let timers = self.busy == 0 && self.hold == 0 && self.setup == 0;
         timers && !self.step && self.owed.is_none() && (frozen || self.dir == self.want)
     }
 }
 
-/// One clock: `state, input -> state`. The pins are registers of the state.
+/// Executes one clock and returns the next state. The pins are registers of the state.
 #[inline]
 pub fn clock(state: State, input: Input, pins: PinTiming) -> State {
     let Input { request, sign, frozen } = input;

@@ -1,4 +1,5 @@
-//! Everything that stops the engine: each cause, alone, in another's clock, and at the wrong moment.
+//! Stimuli with everything that stops the engine: each cause alone, in the same clock as another
+//! one, and in critical moments.
 
 use super::Stimulus;
 use carrystep_core::engine::EngineOutputs;
@@ -7,12 +8,12 @@ use carrystep_simulators::engine::{Event, Events};
 
 /// Clocks of a tick of `sim/engine.toml`.
 const TICK: u64 = 96;
-/// Ticks between two looks at a limit.
+/// Clocks between two samples of a limit.
 const ROUND: u64 = 64 * TICK;
-/// The drivers are warm, and all axes cruise.
+/// A clock in which the drivers are warm and all axes cruise.
 const THEN: u64 = 64_000;
 
-/// The modules on the way from a limit switch to the stop.
+/// The modules on the path from a limit switch to the stop.
 const GUARDS: [&str; 6] = ["limits", "switches", "stops", "watch", "turn", "engine"];
 
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
@@ -36,24 +37,24 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
     all
 }
 
-/// All axes at these speeds.
+/// All axes move at these speeds.
 fn cruise(ticks: u32, v: [i64; AXES]) -> Program {
     let segment = |v| Segment { ticks, v, a: 0, j: 0, last: true };
     let segments = (0..).zip(v).map(|(axis, v)| Command::Segment { axis, segment: segment(v) });
     segments.chain([Command::Start { mask: 0x3f }]).collect()
 }
 
-/// A speed on every axis, the odd ones backward.
+/// A speed for every axis, the odd ones backward.
 fn both_ways(v: i64) -> [i64; AXES] {
     std::array::from_fn(|axis| if axis % 2 == 0 { v } else { -v })
 }
 
-/// Clears, and moves a little.
+/// A clear, and a short move after it.
 fn again(wait: u32) -> Program {
     [vec![Command::Wait { clocks: wait }, Command::Clear], cruise(40, both_ways(-(1 << 59)))].concat()
 }
 
-/// Pressed for less than a tick; pressed; pressed again in the middle of the clear.
+/// The e-stop is pressed for less than a tick, then for longer, then again during the clear.
 fn e_stop(build: &EngineBuild) -> Stimulus {
     let program = [cruise(400, both_ways((1 << 60) + 12_345)), again(30_000), again(10_000)].concat();
     let presses = [(60_000, 100), (62_010, 90), (THEN, 3_000), (96_000, 10_000)];
@@ -62,7 +63,7 @@ fn e_stop(build: &EngineBuild) -> Stimulus {
     Stimulus::new(build, "e-stop", &program, &events.collect())
 }
 
-/// The host stops all axes, and what happens so many clocks later.
+/// The host stops all axes; the events `later` follow the given numbers of clocks after it.
 fn stop(build: &EngineBuild, name: &str, later: &[(u64, Event)]) -> Stimulus {
     let program = [cruise(1_500, both_ways(1 << 55)), again(20_000)].concat();
     let mut events = vec![(THEN, Event::Stop(true)), (THEN + 1, Event::Stop(false))];
@@ -70,7 +71,8 @@ fn stop(build: &EngineBuild, name: &str, later: &[(u64, Event)]) -> Stimulus {
     Stimulus::new(build, name, &program, &events)
 }
 
-/// An axis that turns with a step in every tick, twice: its driver cannot follow, but where it takes two steps a tick.
+/// An axis reverses twice with a step in every tick, which is faster than its driver allows. A
+/// driver that allows it gets two steps per tick.
 fn overrun(build: &EngineBuild, axis: usize) -> Stimulus {
     let segment = |(ticks, v)| Segment { ticks, v, a: 0, j: 0, last: false };
     let near = (1 << 62) - (1 << 57);
@@ -79,7 +81,7 @@ fn overrun(build: &EngineBuild, axis: usize) -> Stimulus {
     let mut program = Program::new();
     for back in [false, true] {
         for (ticks, v) in turns {
-            // Backward a step is not at the boundary but below it.
+            // Backward, a step occurs just below the boundary and not at it.
             let back_to = if v == 1 << 58 { -v - 1 } else { -v };
             let segment = segment((ticks, if back { back_to } else { v }));
             program.push(Command::Segment { axis: axis as u8, segment });
@@ -89,7 +91,8 @@ fn overrun(build: &EngineBuild, axis: usize) -> Stimulus {
     Stimulus::new(build, format!("overrun of axis {axis}"), &program, &Events::new())
 }
 
-/// An axis runs onto a switch, from which it may go back; all others stand on theirs and go away, or have none.
+/// An axis moves onto a switch, from which it may move back. All other axes stand on their switches
+/// and move away, or have none.
 fn limit(build: &EngineBuild, axis: usize, max: bool, others: bool) -> Stimulus {
     let on = if max { 1 << 54 } else { -(1 << 54) };
     let mut v = if others { [-on; AXES] } else { both_ways(1 << 54) };
@@ -103,7 +106,8 @@ fn limit(build: &EngineBuild, axis: usize, max: bool, others: bool) -> Stimulus 
     Stimulus::new(build, format!("limit of axis {axis} at its {end} end{others}"), &program, &events).only_for(&GUARDS)
 }
 
-/// All switches bounce, for one look less than is believed; then they are there, and go, bouncing.
+/// All switches bounce, each time for one sample less than the debounce count. Then they become
+/// active and later inactive, with bounces.
 fn bounces(build: &EngineBuild) -> Stimulus {
     let mut events = Events::new();
     for (at, looks) in [(1, 7), (10, 7), (20, 4), (26, 7), (34, 12), (48, 7)] {
@@ -115,8 +119,8 @@ fn bounces(build: &EngineBuild) -> Stimulus {
     Stimulus::new(build, "limits that bounce", &program, &events).only_for(&GUARDS)
 }
 
-/// The host tries every set of axes; then all wait for their limits, the odd ones for the low ends, and meet them one after
-/// the other, with segments in their queues.
+/// The host selects every set of axes. Then all axes wait for their limits, the odd ones for the
+/// low ends, and find them one after the other while segments are in their queues.
 fn homing(build: &EngineBuild) -> Stimulus {
     let mut events: Events = (0..64).map(|axes: u8| (100 * u64::from(axes), Event::Home(axes))).collect();
     let ends = (0..AXES as u8).map(|axis| THEN + 9 * ROUND * u64::from(axis)).zip(0..AXES as u8);
@@ -140,12 +144,13 @@ fn homing(build: &EngineBuild) -> Stimulus {
     stimulus
 }
 
-/// What a host must not do.
+/// Commands that a host must not send.
 fn nonsense(build: &EngineBuild) -> Stimulus {
     let stray = |axis| Command::Segment { axis, segment: Segment { ticks: 1, v: 0, a: 0, j: 0, last: true } };
     let clear = [Command::Wait { clocks: 1_000 }, Command::Clear];
     let mut program: Program = [vec![stray(6)], clear.to_vec(), vec![stray(7)], clear.to_vec()].concat();
-    // All queues full, then all but one axis started; each axis by itself with nothing.
+    // All queues are filled, then all axes but one are started, then each axis alone with an empty
+    // queue.
     program.extend((0..7 * 6).map(|place| stray(place % 6)));
     program.extend([Command::Start { mask: 0x2f }, Command::Wait { clocks: 2_000 }]);
     for axis in [0, 1, 2, 3, 5] {
@@ -156,7 +161,7 @@ fn nonsense(build: &EngineBuild) -> Stimulus {
     Stimulus::new(build, "nonsense", &program, &Events::new())
 }
 
-/// Each axis runs dry in its own tick, from its own speed, with an acceleration.
+/// Each axis runs dry in its own tick, at its own speed, with an acceleration.
 fn dry(build: &EngineBuild) -> Stimulus {
     let mut program = Program::new();
     for first in 0..6 {
@@ -171,7 +176,8 @@ fn dry(build: &EngineBuild) -> Stimulus {
     Stimulus::new(build, "dry queues", &program, &Events::new())
 }
 
-/// An armed start may go in the very tick that finds an axis dry, or in the clock after a stop was asked for.
+/// An armed start could take effect in the tick in which another axis runs dry, or in the clock
+/// after a stop was requested.
 fn starts_that_stop(build: &EngineBuild) -> [Stimulus; 2] {
     let segment =
         |axis, ticks, last| Command::Segment { axis, segment: Segment { ticks, v: 1 << 52, a: 0, j: 0, last } };
@@ -217,7 +223,8 @@ fn coincidences(build: &EngineBuild) -> Vec<Stimulus> {
             &[program.clone(), again(20_000)].concat(),
             &stop,
         ));
-        // Pressed at the strobe before, and held: pressed in this clock, if it is a strobe.
+        // The e-stop is pressed before the preceding strobe and held, so that it is called in this
+        // clock if this clock is a strobe.
         let press = vec![(at - TICK - 10, Event::EStop(true)), (at + 5, Event::EStop(false))];
         all.push(Stimulus::new(
             build,
@@ -239,7 +246,7 @@ fn coincidences(build: &EngineBuild) -> Vec<Stimulus> {
             ));
         }
     }
-    // A stop and the e-stop in one strobe, and both with nonsense.
+    // A stop and the e-stop in one strobe, and each of them together with a protocol fault.
     let at = THEN / TICK * TICK + TICK - 1;
     let events = vec![
         (at - TICK - 10, Event::EStop(true)),
@@ -265,7 +272,7 @@ fn called(stimulus: &Stimulus) -> Option<u64> {
     first.map(|(cycle, _)| cycle - 1)
 }
 
-/// The last step of an axis comes in the last tick of its ramp, while the host wants to clear.
+/// The last step of an axis comes in the last tick of its ramp, while the host asks for a clear.
 fn last_step(build: &EngineBuild, axis: usize) -> Stimulus {
     let cruise = if axis.is_multiple_of(2) { 1 << 50 } else { -(1 << 50) };
     let run = |first: i64, then: &[Command]| {
@@ -279,12 +286,12 @@ fn last_step(build: &EngineBuild, axis: usize) -> Stimulus {
     };
     let [low, high, ..] = run(0, &[]).recording.kept[axis];
     let rests_at = u64::from(high) << 32 | u64::from(low);
-    // Just over the boundary, there.
+    // P comes to rest just beyond the boundary.
     let aim: u64 = if cruise > 0 { 1 } else { u64::MAX - 1 };
     run(aim.wrapping_sub(rests_at).cast_signed(), &[Command::Wait { clocks: 9_000 }, Command::Clear])
 }
 
-/// A host that was heard of once, then never again; a segment waits.
+/// The host kicks once and then falls silent while a segment waits.
 fn silence(build: &EngineBuild) -> Stimulus {
     let rounds = u64::from(build.guard.watchdog);
     let heard = 3 * ROUND + 1_000;

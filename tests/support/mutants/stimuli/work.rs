@@ -1,11 +1,12 @@
-//! The engine at work: joint moves of any curve, axes that start by themselves, power on and off.
+//! Stimuli of normal work: joint moves of any curve, axes that start separately, and power switched
+//! on and off.
 
 use super::{Stimulus, drawn};
 use carrystep_core::{AXES, Command, EngineBuild, Program, Segment};
 use carrystep_simulators::engine::{Event, Events};
 use proptest::prelude::*;
 
-/// Speeds below 2^bits let the drivers of `sim/engine.toml` follow nearly always.
+/// For each axis, the drivers of `sim/engine.toml` can nearly always follow speeds below 2^bits.
 const SPEED_BITS: [u32; AXES] = [63, 62, 62, 60, 63, 61];
 
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
@@ -21,14 +22,15 @@ pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
     ]
 }
 
-/// V, A and J that stay below 2^bits for so many ticks.
+/// V, A and J for which the speed stays below 2^bits for this many ticks.
 fn curve(bits: u32, ticks: u32) -> impl Strategy<Value = (i64, i64, i64)> {
     let (most, ticks) = (i64::MAX >> (63 - bits), i64::from(ticks));
     let within = |most: i64| -most..=most;
     (within(most / 2), within(most / 4 / ticks), within(most / 4 / ticks / ticks))
 }
 
-/// Axis k comes to rest with its live segment in slot k, where the memory also keeps what outlasts a move.
+/// Axis k comes to rest with its running segment in slot k. The memory holds values that outlast a
+/// move beside it.
 fn rests() -> Program {
     let segment = |axis: u8, place: u8| {
         let v = -(0x0123_4567_89ab_cdef >> (axis % 3)) - (i64::from(place) << 40);
@@ -41,7 +43,7 @@ fn rests() -> Program {
     rows(0..7).chain([Command::Start { mask: 0x3f }]).chain(rows(7..13)).collect()
 }
 
-/// A segment of each axis.
+/// One segment for each axis.
 fn row(ticks: u32) -> impl Strategy<Value = Vec<Segment>> {
     let axes: Vec<_> = SPEED_BITS.iter().map(|&bits| curve(bits, ticks)).collect();
     axes.prop_map(move |axes| {
@@ -49,7 +51,8 @@ fn row(ticks: u32) -> impl Strategy<Value = Vec<Segment>> {
     })
 }
 
-/// A joint move of up to ten segments: what fits into the queues, the start, the rest as there is room.
+/// A joint move of up to ten segments: those that fit into the queues, the start, then the others
+/// as there is room.
 fn moves() -> impl Strategy<Value = Program> {
     let ticks = prop_oneof![2 => 1_u32..4, 3 => 4_u32..40, 4 => 40_u32..300];
     prop::collection::vec(ticks.prop_flat_map(row), 1..=10).prop_map(|rows| {
@@ -63,13 +66,13 @@ fn moves() -> impl Strategy<Value = Program> {
                 program.push(Command::Start { mask: 0x3f });
             }
         }
-        // Nothing to clear, but where the queues have run dry.
+        // The clear has an effect only if the queues have run dry.
         program.extend([Command::Wait { clocks: 96 * 400 }, Command::Clear]);
         program
     })
 }
 
-/// Each axis by itself, started while the others run; then again, while it runs itself.
+/// Each axis is started separately while the others run, and again while it is running itself.
 fn starts() -> Program {
     let mut program = Program::new();
     for round in 0..2 {
@@ -82,12 +85,13 @@ fn starts() -> Program {
     program
 }
 
-/// A rest, then a step the other way: DIR turns and the step waits for its set-up, from each phase and each way.
+/// An axis rests and then steps in the other direction: DIR changes and the step waits for its
+/// set-up. This covers each phase and both directions.
 fn turns() -> Program {
     let mut program = Program::new();
     for (sixteenths, back) in (0..12).flat_map(|sixteenths| [(sixteenths, false), (sixteenths, true)]) {
         let to = |v: i64| if back { v } else { -v };
-        // To just beside the boundary, a few ticks away from it, and then across it.
+        // The axis goes to a place near the boundary, rests a few ticks, and then crosses it.
         let beside = (sixteenths << 57) + 99;
         for (ticks, v) in [(1, i64::MAX - beside), (6, -1), (1, 1 << 61), (5, 0)] {
             let last = v == 0;
@@ -100,17 +104,18 @@ fn turns() -> Program {
     program
 }
 
-/// Steps whose phase hangs on the last bit of the bisection: P is put so that a sixteenth part of V just crosses, or does not.
+/// Steps whose phase depends on the last bit of the bisection: P is placed so that a multiple of a
+/// sixteenth of V just crosses the boundary, or just does not.
 fn knife_edges() -> impl Strategy<Value = Program> {
     let axis = |bits: u32| ((1_i64 << (bits - 4))..=(i64::MAX >> (63 - bits)), any::<bool>(), 1_i64..16, -2_i64..3);
     let axes: Vec<_> = SPEED_BITS.iter().map(|&bits| axis(bits)).collect();
     axes.prop_map(|axes| {
         let mut program = Program::new();
         for (axis, (v, back, part, off)) in (0_u8..).zip(axes) {
-            // The way to the boundary, in the units of the bisection.
+            // The distance to the boundary, in the units of the bisection.
             let way = ((v >> 32) * part / 16 + off).clamp(1, (1 << 31) - 1) << 32;
             let (v, to) = if back { (-v, i64::MIN + way) } else { (v, i64::MAX - way + 1) };
-            // There, across, and back by the same way.
+            // The axis goes near the boundary, crosses it, and returns the same way.
             for (ticks, v) in [(1, to), (1, v), (8, 0), (1, -v), (1, -to)] {
                 program.push(Command::Segment { axis, segment: Segment { ticks, v, a: 0, j: 0, last: v == -to } });
             }
@@ -120,13 +125,14 @@ fn knife_edges() -> impl Strategy<Value = Program> {
     })
 }
 
-/// Few ticks in which axes leave their range or step faster than their drivers take, or run dry; then a clear.
+/// Within few ticks, axes leave their range, step faster than their drivers allow, or run dry; then
+/// a clear follows.
 fn crash() -> impl Strategy<Value = Program> {
     let v = prop_oneof![3 => any::<i64>(), 1 => Just(i64::MIN), 3 => -(1_i64 << 60)..(1 << 60)];
     let a = prop_oneof![2 => Just(0), 1 => any::<i64>(), 1 => -(1_i64 << 60)..(1 << 60)];
     let lane = prop::collection::vec((1_u32..5, v, a), 1..3);
     (1_u8..64, prop::collection::vec(lane, AXES), 1_u32..3000, any::<bool>()).prop_map(|(mask, lanes, clocks, dry)| {
-        // A ramp from half a step a tick takes a hundred thousand ticks.
+        // A ramp from half a step per tick would take a hundred thousand ticks.
         let calm = if dry { 9 } else { 0 };
         let mut program = Program::new();
         for (axis, lane) in (0_u8..).zip(lanes).filter(|(axis, _)| mask >> axis & 1 == 1) {
@@ -142,7 +148,8 @@ fn crash() -> impl Strategy<Value = Program> {
     })
 }
 
-/// Power goes in a move and at rest; a start waits until it has been there for its time.
+/// The host switches the power off during a move and at rest. A start waits until the drivers have
+/// been powered for their warm-up time.
 fn power() -> (Program, Events) {
     let segment = |ticks, v| Segment { ticks, v, a: 0, j: 0, last: true };
     let go = |ticks, v| [Command::Segment { axis: 0, segment: segment(ticks, v) }, Command::Start { mask: 1 }];

@@ -1,4 +1,5 @@
-//! The questions of `carrystep machine new`: a line each on standard error, the answers from standard input.
+//! The questions of `carrystep machine new`: each is one line on standard error, and the answer is
+//! read from standard input.
 
 use super::axis::Axis;
 use super::{Clock, Wishes};
@@ -7,7 +8,7 @@ use crate::failure::Failure;
 use carrystep_files::BigDecimal;
 use std::io::{BufRead as _, Write as _};
 
-/// Asks for what is open.
+/// Asks for everything that the options leave open.
 pub fn complete(wishes: &mut Wishes) -> Result<(), Failure> {
     if wishes.clock.is_none() {
         let answer = ask("Board (see `carrystep boards`), or the FPGA's clock in MHz", Some("48"), |text| {
@@ -33,7 +34,7 @@ pub fn complete(wishes: &mut Wishes) -> Result<(), Failure> {
     wishes.axes.iter_mut().try_for_each(|axis| of_axis(axis, new))
 }
 
-/// What a board or a clock is called: a board by its name, or MHz.
+/// Parses a board's name or a clock in MHz.
 fn clock(text: &str) -> Result<Clock, String> {
     let hz = |mhz: BigDecimal| {
         let hz = mhz * BigDecimal::from(1_000_000);
@@ -67,7 +68,7 @@ fn of_axis(axis: &mut Axis, new: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Asks until the answer is one for this key.
+/// Asks until the answer is valid for this key.
 fn put(axis: &mut Axis, key: &str, question: &str, default: Option<&str>) -> Result<(), Failure> {
     let mut done = axis.clone();
     ask(question, default, |text| {
@@ -83,7 +84,7 @@ fn put(axis: &mut Axis, key: &str, question: &str, default: Option<&str>) -> Res
     Ok(())
 }
 
-/// One question; an empty answer is the default. An answer that is refused is asked for again.
+/// Asks one question. An empty answer selects the default; a refused answer repeats the question.
 fn ask(
     question: &str,
     default: Option<&str>,
@@ -92,7 +93,7 @@ fn ask(
     loop {
         let shown = default.map_or_else(String::new, |default| format!(" [{default}]"));
         let mut out = std::io::stderr().lock();
-        // Nobody is asked if this fails, and the answer lacks.
+        // If this write fails, the user sees no question and the answer will be missing.
         let _ = write!(out, "{question}{shown}: ").and_then(|()| out.flush());
         let mut line = String::new();
         let read = std::io::stdin().lock().read_line(&mut line);

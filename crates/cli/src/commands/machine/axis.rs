@@ -1,18 +1,20 @@
-//! One axis of a new machine file: the keys of `[[machine.axis]]` and their values, as options or answers give them.
+//! One axis of a new machine file: the keys of `[[machine.axis]]` and their values, from options or
+//! answers.
 
 use crate::failure::Failure;
 use carrystep_files::decimal;
 use carrystep_files::driver::drivers;
 use std::collections::BTreeMap;
 
-/// What a key holds.
+/// The type of a key's value.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Text,
     Number,
 }
 
-/// Every key but the name, in the order in which they are written, and what stands behind it; `UNIT` is the axis' unit.
+/// Every key except the name, in the order in which they are written, with the comment behind each;
+/// `UNIT` stands for the axis' unit.
 const KEYS: [(&str, Kind, &str); 16] = [
     ("unit", Kind::Text, "positions and speeds are shown in it"),
     ("steps_per_unit", Kind::Number, "microsteps that move one UNIT"),
@@ -32,7 +34,7 @@ const KEYS: [(&str, Kind, &str); 16] = [
     ("hold_ns", Kind::Number, "ns that DIR is stable after STEP has risen"),
 ];
 
-/// Keys of which one must be there, or all of a set that does instead.
+/// The required keys. Each entry lists alternatives; all keys of one alternative must be given.
 const NEEDED: [&[&[&str]]; 4] = [
     &[&["lead", "steps_per_rev", "microsteps"], &["steps_per_unit"]],
     &[&["speed_limit"], &["speed_limit_per_min"]],
@@ -53,7 +55,7 @@ impl Axis {
         Self { name: name.to_owned(), keys: BTreeMap::new() }
     }
 
-    /// `x,unit=mm,lead=40,...`
+    /// Parses the option `x,unit=mm,lead=40,...`.
     pub fn parse(option: &str) -> Result<Self, Failure> {
         let mut parts = option.split(',').map(str::trim);
         let mut axis = Self::named(parts.next().unwrap_or_default());
@@ -67,7 +69,7 @@ impl Axis {
         Ok(axis)
     }
 
-    /// Takes a key's value, or says why not.
+    /// Sets a key, or returns the reason why it is refused.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
         let Some(&(key, kind, _)) = KEYS.iter().find(|(known, ..)| *known == key) else {
             let known: Vec<&str> = KEYS.iter().map(|(key, ..)| *key).collect();
@@ -86,7 +88,8 @@ impl Axis {
         }
     }
 
-    /// The keys that lack, each as the first way to give it; behind it, what would do instead.
+    /// The missing keys: for each requirement the missing keys of its first alternative, and a text
+    /// with all alternatives.
     pub fn missing(&self) -> Vec<(Vec<&'static str>, String)> {
         let has = |set: &&[&str]| set.iter().all(|key| self.keys.contains_key(key));
         let lacks = |ways: &&&[&[&'static str]]| !ways.iter().any(has);
@@ -102,7 +105,7 @@ impl Axis {
         self.keys.get("unit").map_or("units", String::as_str)
     }
 
-    /// Its table.
+    /// The text of the axis' table.
     pub fn text(&self) -> String {
         let quoted = |text: &str| format!("{text:?}");
         let mut lines = vec!["[[machine.axis]]".to_owned(), format!("name = {}", quoted(&self.name))];
