@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod arrows;
+mod decisions;
 mod ladder;
 mod long;
 mod readme;
@@ -40,8 +41,14 @@ enum Chore {
         #[arg(long)]
         write: bool,
     },
-    /// Check that the arrows between the crates go one way.
-    Arrows,
+    /// Check the arrows between the crates, and their drawing in `docs/architecture.md`.
+    Arrows {
+        /// Write the drawing anew.
+        #[arg(long)]
+        write: bool,
+    },
+    /// Write the index of `docs/decisions/` and its part of `docs/SUMMARY.md`.
+    Decisions,
     /// Formatting and lints, without a warning.
     Lint,
     /// Check that the link's core needs no `std`, on a bare microcontroller.
@@ -83,7 +90,9 @@ fn main() -> ExitCode {
         Chore::Long { runs } => long::run(&runs),
         Chore::Lockstep => ladder::lockstep(),
         Chore::Mutants { write } => ladder::mutants(write),
-        Chore::Arrows => arrows::check(),
+        Chore::Arrows { write: true } => arrows::write(),
+        Chore::Arrows { write: false } => arrows::check(),
+        Chore::Decisions => decisions::write(),
         Chore::Lint => ladder::lint(),
         Chore::Bare => ladder::bare(),
         Chore::Bench { json } => bench(json),
