@@ -1,4 +1,5 @@
-//! Boards as data: what is on them, which pin does what, and how their clock is made. One file of `data/boards/` each.
+//! Boards as data: the parts on a board, the function of each pin, and the clocks that it can make.
+//! Each board is one file of `data/boards/`.
 
 use crate::clock::ClockManager;
 use crate::engine::Limits;
@@ -23,10 +24,11 @@ pub use family::{Family, IoStandard, PllInput, Toolchain};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
 pub use port::{OSCILLATOR, PORTS, Port, Way};
 
-/// Baud rates that are proposed, the fastest first: those that USB serial chips make exactly, and the usual ones.
+/// The baud rates that are proposed, the fastest first: rates that USB serial chips make exactly,
+/// and the usual ones.
 pub const BAUDS: [u32; 7] = [3_000_000, 2_000_000, 1_500_000, 1_000_000, 500_000, 230_400, 115_200];
 
-/// The files, in the order in which boards are listed.
+/// The boards' files, in the order in which boards are listed.
 const DATA: [&str; 14] = [
     include_str!("../data/boards/icestick.toml"),
     include_str!("../data/boards/icebreaker.toml"),
@@ -180,7 +182,7 @@ pub struct Tie {
     pub why: String,
 }
 
-/// All boards.
+/// All boards that carrystep ships.
 pub fn boards() -> &'static [Board] {
     static BOARDS: LazyLock<Vec<Board>> = LazyLock::new(|| {
         let read = |text: &&str| {
@@ -192,7 +194,7 @@ pub fn boards() -> &'static [Board] {
     &BOARDS
 }
 
-/// Names of all boards, for messages.
+/// The names of all boards, for messages.
 fn names() -> String {
     let names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
     names.join(", ")
@@ -201,32 +203,32 @@ fn names() -> String {
 /// The board of this name.
 ///
 /// # Errors
-/// [`BoardError::Unknown`] names those that there are.
+/// [`BoardError::Unknown`] if there is none; it names the boards that exist.
 pub fn board(name: &str) -> Result<&'static Board, BoardError> {
     boards().iter().find(|board| board.name == name).ok_or_else(|| BoardError::Unknown { name: name.to_owned() })
 }
 
 impl Board {
-    /// Reads a board of one's own.
+    /// Reads a user's own board file.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and column.
+    /// [`InputError`] with file, line and column of the first mistake.
     pub fn load(path: &Path) -> Result<Self, InputError> {
         Self::from_source(&Source::read(path)?)
     }
 
-    /// Checks a board whose text is already there.
+    /// Checks the text of a board file.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and column.
+    /// [`InputError`] with file, line and column of the first mistake.
     pub fn from_source(source: &Source) -> Result<Self, InputError> {
         raw::read(source)
     }
 
-    /// The part of this name; without one, the default.
+    /// The part of this name, or the default part if no name is given.
     ///
     /// # Errors
-    /// [`BoardError::Part`] names those that there are.
+    /// [`BoardError::Part`] if the board is not sold with it; it names the parts that exist.
     pub fn part(&self, name: Option<&str>) -> Result<&Part, BoardError> {
         let found = self.parts.iter().find(|part| name.is_none_or(|name| part.name == name));
         found.ok_or_else(|| BoardError::Part {
@@ -236,10 +238,10 @@ impl Board {
         })
     }
 
-    /// How it makes this clock.
+    /// The clock manager's settings for this clock, Hz.
     ///
     /// # Errors
-    /// [`BoardError::Clock`] names the nearest that it can.
+    /// [`BoardError::Clock`] if it cannot be made; it names the nearest possible clock.
     pub fn clock(&self, clock_hz: u64) -> Result<ClockManager, BoardError> {
         self.family.clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
             board: self.name.clone(),
@@ -248,20 +250,21 @@ impl Board {
         })
     }
 
-    /// The fastest of the [`BAUDS`] that this clock makes within 2 % and that its serial chip takes.
+    /// The UART with the fastest of the [`BAUDS`] that this clock (Hz) makes within 2 % and that
+    /// the board's serial chip supports.
     ///
     /// # Errors
-    /// [`BaudError`]: the clock makes none of them.
+    /// [`BaudError`] if there is no such rate.
     pub fn uart(&self, clock_hz: u64) -> Result<Uart, BaudError> {
         let most = self.max_baud.unwrap_or(BAUDS[0]);
         let made = BAUDS.into_iter().filter(|baud| *baud <= most).find_map(|baud| Uart::new(clock_hz, baud).ok());
         made.map_or_else(|| Uart::new(clock_hz, most), Ok)
     }
 
-    /// Whether its serial chip takes this baud rate.
+    /// Checks that the board's serial chip supports this baud rate, bits per second.
     ///
     /// # Errors
-    /// [`BoardError::Baud`] names the greatest that it takes.
+    /// [`BoardError::Baud`] names the greatest rate that it supports.
     pub fn takes(&self, baud: u32) -> Result<(), BoardError> {
         match self.max_baud {
             Some(most) if most < baud => Err(BoardError::Baud { board: self.name.clone(), most, wanted: baud }),
@@ -269,10 +272,10 @@ impl Board {
         }
     }
 
-    /// Whether it has pins for so many axes and their limit switches.
+    /// Checks that the board has pins for this number of axes and for their limit switches.
     ///
     /// # Errors
-    /// [`BoardError`] says what it has pins for.
+    /// [`BoardError::Axes`] or [`BoardError::Limits`] if not; each gives the number of pins.
     pub fn carries(&self, axes: usize, limits: Limits) -> Result<(), BoardError> {
         let board = || self.name.clone();
         let has = self.bits("step");
@@ -293,23 +296,24 @@ impl Board {
         Err(BoardError::Limits { board: board(), low, high, wanted, instead })
     }
 
-    /// The wire of a port's bit.
+    /// The wire of one bit of a port, such as `step[0]`.
     ///
     /// # Errors
-    /// [`BoardError::Port`]: it goes nowhere on this board.
+    /// [`BoardError::Port`] if this board has no pin for it.
     pub fn wire(&self, port: &str) -> Result<&Wire, BoardError> {
         let found = self.wires.iter().find(|wire| wire.port == port);
         found.ok_or_else(|| BoardError::Port { board: self.name.clone(), port: port.to_owned() })
     }
 
-    /// How many bits of a port have a pin.
+    /// The number of bits of a port that have a pin.
     pub fn bits(&self, port: &str) -> usize {
         self.wires.iter().filter(|wire| wire.port.split('[').next() == Some(port)).count()
     }
 }
 
 impl Part {
-    /// What ISE and Vivado call it: `xc3s400-ft256-4`, `xc7s25csga324-1`; as well the name of an iCE40 in its package.
+    /// The part's order name as ISE and Vivado use it: `xc3s400-ft256-4`, `xc7s25csga324-1`. For an
+    /// iCE40, its name and package.
     pub fn ordered(&self) -> String {
         let Self { name, package, speed, .. } = self;
         match speed {

@@ -1,7 +1,7 @@
-//! The single source of carrystep's facts: number formats, segments, build parameters, faults,
-//! driver timings, boards and their clocks, machine and move files.
+//! The definitions that the crates of carrystep share: number formats, segments, build parameters,
+//! faults, driver timings, boards and their clocks, machine and move files.
 //!
-//! Nothing here computes motion. Everything that two crates must agree on stands here once.
+//! This crate computes no motion. Each fact that two crates must agree on is defined here, once.
 
 pub mod board;
 pub mod build;

@@ -1,4 +1,5 @@
-//! What the shipped gateware takes of each board: `data/measured.toml`, which `cargo xtask long boards` writes.
+//! The resources that the shipped gateware uses on each board, from `data/measured.toml`. The
+//! command `cargo xtask long boards` writes that file.
 
 use super::Board;
 use schemars::JsonSchema;
@@ -6,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The file, seen from the root of the workspace.
+/// Path of the file, from the root of the workspace.
 pub const MEASURED_AT: &str = "crates/spec/data/measured.toml";
 
 /// What the shipped gateware takes of a board, on its first part with its first clock.
@@ -49,11 +50,11 @@ pub struct Mapped {
     pub block_rams: u32,
 }
 
-/// By the names of the boards.
+/// Measurements by the name of the board.
 pub type AllMeasured = BTreeMap<String, Measured>;
 
 impl Board {
-    /// What the gateware takes of it; nothing is known of a board of one's own.
+    /// The resources that the gateware uses on this board; `None` for a board that is not shipped.
     pub fn measured(&self) -> Option<Measured> {
         static MEASURED: LazyLock<AllMeasured> = LazyLock::new(|| {
             let text = include_str!("../../data/measured.toml");
@@ -68,7 +69,7 @@ mod tests {
     use crate::board::{Measured, boards};
 
     #[test]
-    fn every_board_was_measured_and_holds_it() {
+    fn every_board_was_measured_and_is_large_enough() {
         for board in boards() {
             let (rams, of) = match board.measured().expect(&board.name) {
                 Measured::Placed(placed) => {

@@ -1,4 +1,5 @@
-//! What a guard does in seconds, as counted: the file's figures are rounded up to rounds of ticks.
+//! Times of a guard in seconds. The times of a machine file are rounded up to whole rounds of
+//! ticks; these are the times that the gateware then keeps.
 
 use super::{EngineBuild, Limits};
 use crate::machine::steps_per_s2;
@@ -38,14 +39,16 @@ pub struct GuardFigures {
 }
 
 impl EngineBuild {
-    /// What its guard comes to.
+    /// The times and ramps of this build's guard, in the units of a machine file.
     pub fn guard_figures(&self) -> GuardFigures {
         let guard = &self.guard;
         let level = |low| if low { "low" } else { "high" };
-        // Whole ns, and few of them: the floats are the nearest there are.
+        // Each argument is a whole number of ns well below 2^53, so that the conversion to a float
+        // is exact.
         let ns = |ticks: u64| (ticks * self.timebase.tick_ns()) as f64;
         let round = u64::from(guard.round);
-        // The first of the rounds may be almost over as it begins; what it finds is called a tick later.
+        // The first round may be almost over when a time begins, so up to one round is missing. The
+        // result is committed one tick after the last round.
         let between = |rounds: u32, ns_of_unit: f64| {
             let rounds = u64::from(rounds);
             let (least, most) = (round * rounds.saturating_sub(1), round * rounds + 1);
