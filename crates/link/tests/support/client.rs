@@ -1,5 +1,5 @@
-//! A client that is told what to do, a line at a time, and says what came of it. The one in C
-//! (`tests/bench/link_bench.c`) understands the same words.
+//! A test client that reads commands line by line and prints their results. The client in C
+//! (`tests/bench/link_bench.c`) understands the same commands.
 //!
 //! ```text
 //! begin RESEND PAUSE          a new session
@@ -23,7 +23,7 @@ pub trait Client {
     fn say(&mut self, words: &str) -> String;
 }
 
-/// Writes on their way, as in the C bench.
+/// Size of the window of unacknowledged writes, as in the C bench.
 pub const SLOTS: usize = 64;
 
 pub struct RustClient {
@@ -33,7 +33,7 @@ pub struct RustClient {
     feeder: Option<Feeder<Owned>>,
 }
 
-/// The program, by value.
+/// A program that owns its commands.
 struct Owned {
     segments: Vec<std::collections::VecDeque<Segment>>,
     starts: std::collections::VecDeque<u8>,
@@ -50,7 +50,7 @@ impl carrystep_link::Source for Owned {
 }
 
 impl Owned {
-    /// Not through `Program`, which would refuse what a source may get wrong.
+    /// Does not use `Program`, because that would refuse the mistakes that these tests make.
     fn new(commands: &[Command]) -> Self {
         let own = |axis: u8| {
             commands.iter().filter_map(move |command| match *command {
