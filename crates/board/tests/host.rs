@@ -1,5 +1,5 @@
-//! The driver from connecting to a clean stop, with a board of models and with the exported Verilog, on clean lines and on
-//! bad ones; every error names its cause.
+//! The driver from connecting to a clean stop, with a board of models and with the exported
+//! Verilog, on clean and on bad lines. Every error must name its cause.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -15,7 +15,7 @@ use support::{BoardHost, CLOCK_HZ, End, Kind, MS, build, waves};
 const QUICK: Patience =
     Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 100, look: 20 };
 
-/// Runs a body with both boards.
+/// Runs a function with both kinds of board.
 macro_rules! on_both {
     ($($name:ident)*) => {
         $(mod $name {
@@ -45,7 +45,7 @@ fn uart() -> Uart {
     Uart::new(CLOCK_HZ, 3_000_000).unwrap()
 }
 
-/// Connected and powered.
+/// A host that is connected and has powered the drivers.
 fn ready<B: Kind>(faults: Faults, seed: u64) -> (End<B>, BoardHost<B>) {
     let end = End::new(uart(), faults, seed);
     let mut host = end.connect_to(uart().build_id(&build()), QUICK).unwrap();
@@ -57,12 +57,12 @@ fn go_on(_: &Progress<'_>) -> Wish {
     Wish::GoOn
 }
 
-/// A tenth of a second on all axes; the queues hold most of it.
+/// A program of a tenth of a second on all axes; the queues hold most of it.
 fn moves(seed: u64) -> Vec<Command> {
     waves(&mut Random(seed), 9, 6000)
 }
 
-/// Three steps up on axis 0 in 3 ms, on axis `axis`.
+/// A program of three steps forward in 3 ms on this axis.
 fn hop(axis: u8) -> [Command; 2] {
     let segment = Segment { ticks: 1536, v: 1 << 55, a: 0, j: 0, last: true };
     [Command::Segment { axis, segment }, Command::Start { mask: 1 << axis }]
@@ -72,7 +72,7 @@ fn program(commands: &[Command]) -> Program<'_> {
     Program::new(commands, 6).unwrap()
 }
 
-/// The board has been so many milliseconds in its first move.
+/// Whether the board is `milliseconds` or more into its first move.
 fn into_the_move<B: Kind>(end: &End<B>, milliseconds: u64) -> bool {
     let board = &end.0.borrow().board;
     board.loads().first().is_some_and(|load| board.cycle() > load + milliseconds * MS)
@@ -84,7 +84,7 @@ fn positions_are_true<B: Kind>(end: &End<B>, host: &BoardHost<B>) {
     assert_eq!(host.status().positions[..6], travelled);
 }
 
-/// The same engine on an SPI is another build.
+/// The same engine with an SPI is another build.
 fn another_build_is_refused_and_both_are_named<B: Kind>() {
     let end = End::<B>::new(uart(), Faults::default(), 1);
     let (own, other) = (uart().build_id(&build()), Line::Spi.build_id(&build()));
@@ -101,14 +101,14 @@ fn a_wish_to_stop_is_obeyed_and_a_clear_resumes<B: Kind>() {
     let status = *host.status();
     assert_eq!(status.answer.cause_name(), Some("stop"));
     positions_are_true(&end, &host);
-    // Not before a clear.
+    // No program is accepted before a clear.
     let hop = hop(0);
     assert_eq!(host.stream(program(&hop), go_on), Err(HostError::Fault { cause: Cause::Stop as u8, culprits: 0 }));
     host.clear().unwrap();
     assert_eq!(host.stream(program(&hop), go_on), Ok(Ended::Done));
     assert_eq!(host.status().positions[0], status.positions[0] + 3);
     positions_are_true(&end, &host);
-    // A clear without a stop is nothing.
+    // A clear without a stop in force writes nothing.
     let next = host.status().answer.next;
     host.clear().unwrap();
     assert_eq!(host.look().unwrap().answer.next, next);
@@ -152,7 +152,7 @@ fn a_restarted_gateware_is_noticed<B: Kind>() {
     assert!(matches!(error, HostError::Restarted | HostError::OutOfStep(_)), "{error}");
 }
 
-/// It died before the start: its segments lie in the queues.
+/// The first host died before the start; its segments are still in the queues.
 fn what_a_dead_host_has_left_is_not_started<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::default(), 15);
     let mut looks = 0;
