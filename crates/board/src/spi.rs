@@ -2,10 +2,12 @@
 //!
 //! ```text
 //! select_n  ^^\______________________________________/^^^
-//! sck       ________/^^\__/^^\__ ... __/^^\______________     half a period before the first edge and behind the last
+//! sck       ________/^^\__/^^\__ ... __/^^\______________
 //! mosi      --< bit 7 >< bit 6 > ...  < bit 0 >----------
-//! miso                 looked at where SCK rises
 //! ```
+//!
+//! The chip select is asserted half a period before the first edge of SCK, and deasserted half a
+//! period after the last one. MISO is sampled at the rising edges of SCK.
 
 use std::collections::VecDeque;
 

@@ -109,7 +109,7 @@ fn pulses_on_a_bad_line_equal_those_on_a_clean_line() {
 /// The exported Verilog on the same line; its pulses must equal those of the models on a clean
 /// line.
 #[test]
-fn verilog_pulses_on_a_bad_line_equal_model_pulses_on_a_clean_line() {
+fn pulses_of_the_verilog_on_a_bad_line_equal_those_of_models_on_a_clean_line() {
     let commands = waves(&mut Random(12), 9, 3000);
     let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
     let (went, harms) = on_a_line::<VerilatedBoard>(Faults::BAD, 5, &commands);
@@ -121,13 +121,13 @@ fn verilog_pulses_on_a_bad_line_equal_model_pulses_on_a_clean_line() {
 
 /// `CARRYSTEP_GARBAGE` sets the length of the test in ms.
 #[test]
-fn model_answers_after_garbage() {
+fn garbage_hangs_nothing() {
     hears_garbage::<Board>(asked("CARRYSTEP_GARBAGE", 2000));
 }
 
 /// `CARRYSTEP_VERILOG_MS` sets the length of the test in ms.
 #[test]
-fn verilog_answers_after_garbage_at_921_600_baud() {
+fn garbage_does_not_hang_the_verilog_at_921_600_baud() {
     hears_garbage::<VerilatedBoard>(asked("CARRYSTEP_VERILOG_MS", 50));
 }
 

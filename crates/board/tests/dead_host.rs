@@ -15,7 +15,7 @@ use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, FASTEST, Kind, MS, STOP, TICK, asked, build, waves};
 
 #[test]
-fn board_stops_when_its_host_dies_and_another_host_continues() {
+fn the_board_stops_when_its_host_dies_and_another_host_continues() {
     hosts_die::<Board>(asked("CARRYSTEP_DEATHS", 4), 700, Faults::BAD);
 }
 

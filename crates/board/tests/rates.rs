@@ -73,7 +73,7 @@ fn uart_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
 /// The number of queued segments is not visible at the Verilog's pins, but an empty queue is a
 /// fault. `CARRYSTEP_VERILOG_MS` sets the length of the test in ms.
 #[test]
-fn verilog_uart_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
+fn verilog_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
     carries::<VerilatedBoard>(3_000_000, 500, asked("CARRYSTEP_VERILOG_MS", 100) as u32);
 }
 

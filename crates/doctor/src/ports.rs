@@ -1,4 +1,4 @@
-//! Serial ports of USB devices, and USB devices that are a board: what programmers want to open.
+//! Finds serial ports of USB devices, and USB devices that may be a board; programmers open these.
 
 use crate::Host;
 use crate::access::{Access, access};
@@ -43,7 +43,7 @@ pub fn serial_ports(host: &Host) -> Vec<SerialPort> {
     let port = |path: PathBuf| {
         let usb = path.file_name().and_then(|name| {
             let device = host.root.join("sys/class/tty").join(name).join("device");
-            // The interface is a link; its device is a folder or two above.
+            // The interface is a symbolic link; its device is one or two directories above.
             fs::canonicalize(device).ok()?.ancestors().find_map(usb_id)
         });
         let access = access(host, &path);
@@ -65,13 +65,13 @@ pub fn usb_devices(host: &Host) -> Vec<UsbDevice> {
     host.list("sys/bus/usb/devices").into_iter().filter_map(device).collect()
 }
 
-/// Vendor and product in a folder of `sys`.
+/// Vendor and product id in a directory of `sys`.
 fn usb_id(folder: &Path) -> Option<String> {
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok().map(|text| text.trim().to_owned());
     Some(format!("{}:{}", read("idVendor")?, read("idProduct")?))
 }
 
-/// Names of the boards with this USB chip.
+/// Names of the boards that have this USB chip.
 fn with(usb: Option<&str>) -> Vec<String> {
     let same = boards().iter().filter(|board| usb.is_some() && board.usb.as_deref() == usb);
     same.map(|board| board.name.clone()).collect()

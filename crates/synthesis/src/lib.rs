@@ -1,4 +1,5 @@
-//! The open tools behind one door: Verilog to netlist, placed design and bitstream, and back to Verilog; and what it costs.
+//! An interface to the open tools: from Verilog to netlist, placed design and bitstream, back to
+//! Verilog, and the resources used.
 //!
 //! ```text
 //! Verilog --yosys--> netlist --nextpnr--> placed --icepack--> bitstream
@@ -6,7 +7,7 @@
 //!    Verilog with the netlist's names <--icebox_vlog-- iceunpack <+
 //! ```
 //!
-//! Nothing here knows the engine but [`resources`], which is the table of what it costs.
+//! Only [`resources`], the table of the engine's resources, depends on the engine.
 
 pub mod board;
 mod cells;

@@ -1,9 +1,9 @@
-//! The arrows between the crates: who may depend on whom, checked with `cargo tree`.
+//! The dependencies between the crates: which crate may depend on which, checked with `cargo tree`.
 
 use crate::shell::{self, Done};
 use std::collections::BTreeSet;
 
-/// Each crate and all crates of the house that it may reach, directly or through others.
+/// Each crate, and all crates of the workspace on which it may depend, directly or through others.
 const ALLOWED: [(&str, &[&str]); 19] = [
     ("files", &[]),
     ("spec", &["files"]),
@@ -46,8 +46,8 @@ const ALLOWED: [(&str, &[&str]); 19] = [
     ("xtask", &[]),
 ];
 
-/// Fails on the first arrow that is not allowed. `model` and `hdl` must never reach each other: a
-/// shared line would make their agreement prove nothing.
+/// Fails at the first dependency that is not allowed. `model` and `hdl` must never depend on each
+/// other, because shared code would make their agreement prove nothing.
 pub fn check() -> Done {
     for (name, allowed) in ALLOWED {
         let package = format!("carrystep-{name}");
