@@ -222,7 +222,7 @@ fn refusals_feed<B: Kind>() {
 
 /// The times of the page must be those of the driver in Rust.
 #[test]
-fn time_outs_equal_those_of_the_page() {
+fn timeouts_equal_those_of_the_page() {
     let page = include_str!("../../../docs/protocol.md");
     let Patience { timing, silence, lost, change, look } = Patience::default();
     for row in [
