@@ -11,34 +11,34 @@ use std::path::Path;
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Access {
-    /// It may.
+    /// The user may open the device.
     Granted,
-    /// A program has it open.
+    /// Another program has the device open.
     InUse {
         /// Its process.
         pid: u32,
         /// Its name.
         program: String,
     },
-    /// The system forbids it.
+    /// The operating system denies access.
     Refused(Refusal),
 }
 
-/// Why the system forbids it.
+/// Why the operating system denies access.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case", tag = "reason")]
 pub enum Refusal {
-    /// Its group may use it, and the user is not in that.
+    /// The device's group may use it, but the user is not a member of the group.
     NotInGroup {
         /// The group.
         group: String,
     },
-    /// The user is in its group, but was not when this session began.
+    /// The user is a member of the group, but was not when this session began.
     LogInAgain {
         /// The group.
         group: String,
     },
-    /// Not even its group may use it: a rule of udev is missing.
+    /// Not even the device's group may use it, because a udev rule is missing.
     NoRule,
 }
 

@@ -21,11 +21,11 @@ use serde::Serialize;
 /// What was found.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Report {
-    /// Tools that are wanted, whether they are there or not.
+    /// The tools that are needed, installed or not.
     pub tools: Vec<Found>,
     /// Serial ports of USB devices.
     pub serial_ports: Vec<SerialPort>,
-    /// USB devices that are one of the boards, by vendor and product.
+    /// USB devices whose vendor and product id are those of a board.
     pub usb_devices: Vec<UsbDevice>,
 }
 

@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 /// A serial port.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct SerialPort {
-    /// `/dev/ttyUSB0`.
+    /// Path of the port, such as `/dev/ttyUSB0`.
     pub path: PathBuf,
-    /// Vendor and product of its USB device, where the system tells.
+    /// Vendor and product id of its USB device, if the system reports them.
     pub usb: Option<String>,
-    /// Boards with that USB chip; so have many other things.
+    /// Boards that have this USB chip. Many other devices have the same chip.
     pub maybe: Vec<String>,
     /// Whether it may be opened.
     pub access: Access,
@@ -24,11 +24,11 @@ pub struct SerialPort {
 /// A USB device with the vendor and product of a board.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct UsbDevice {
-    /// `/dev/bus/usb/001/004`.
+    /// Path of the device, such as `/dev/bus/usb/001/004`.
     pub path: PathBuf,
-    /// Vendor and product.
+    /// Vendor and product id.
     pub usb: String,
-    /// Boards with that USB chip.
+    /// Boards that have this USB chip.
     pub maybe: Vec<String>,
     /// Whether a programmer may open it.
     pub access: Access,

@@ -10,18 +10,18 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A tool, there or not.
+/// A tool, installed or not.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Found {
-    /// What one types.
+    /// Name of the command.
     pub name: &'static str,
-    /// Where it is.
+    /// Path of the program, if it is installed.
     pub path: Option<PathBuf>,
-    /// The first line that it says of its version.
+    /// The first line that it prints about its version.
     pub version: Option<String>,
-    /// What it is wanted for.
+    /// Purpose of the tool.
     pub purpose: &'static str,
-    /// How to get it.
+    /// The ways to install it.
     pub install: String,
 }
 

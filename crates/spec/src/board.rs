@@ -46,71 +46,71 @@ const DATA: [&str; 14] = [
     include_str!("../data/boards/cmod-s7.toml"),
 ];
 
-/// A board whose every fact has been checked against the others.
+/// A board. All entries of its file have been checked against each other.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Board {
-    /// As on the command line.
+    /// Name of the board on the command line.
     pub name: String,
-    /// As its maker calls it.
+    /// Full name, as its maker uses it.
     pub title: String,
-    /// Which toolchain, which clock manager.
+    /// FPGA family, which determines toolchain and clock manager.
     pub family: Family,
     /// The parts that it is sold with; the first is the default.
     pub parts: Vec<Part>,
-    /// The clock that comes from outside.
+    /// The external oscillator.
     pub oscillator: Oscillator,
     /// The clocks that are proposed; the first is the default.
     pub clocks: Vec<Clocking>,
-    /// What the gateware's pins are set to.
+    /// Electrical standard of the gateware's pins.
     pub io: IoStandard,
     /// How the oscillator reaches an iCE40's PLL.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pll: Option<PllInput>,
-    /// VCCAUX of a Spartan-6, V: ISE takes 2.5 V unless told.
+    /// VCCAUX of a Spartan-6, V. The default of ISE is 2.5 V.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vccaux: Option<String>,
-    /// Where each port of the top level goes, in the order of [`PORTS`].
+    /// The pin of each port of the top level, in the order of [`PORTS`].
     pub wires: Vec<Wire>,
-    /// Pins that must be driven although the gateware has no use for them.
+    /// Pins that must be driven although the gateware does not use them.
     pub ties: Vec<Tie>,
     /// Modes in which its bitstream may be loaded, besides JTAG.
     pub configured: Vec<Mode>,
-    /// Its ports that are on configuration pins, and why they may be.
+    /// The ports that are on configuration pins, and why this does no harm.
     pub shared: Vec<Shared>,
-    /// What the tables of configuration pins were made from.
+    /// Sources of the tables of configuration pins.
     pub configuration_sources: Vec<String>,
-    /// The input that says from when on some of its lines may be driven.
+    /// The gate: an input that determines when some lines of the board may be driven.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gate: Option<Gate>,
-    /// Its LED lights where the pin is low.
+    /// Whether the LED lights while its pin is low.
     pub led_low: bool,
-    /// Greatest baud rate of its serial chip, where that is under the fastest of [`BAUDS`].
+    /// Greatest baud rate of the serial chip, if it is less than the fastest of [`BAUDS`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_baud: Option<u32>,
-    /// The command that loads the bitstream, `FILE` in its place.
+    /// The command that loads the bitstream; `FILE` stands for its path.
     pub flash: String,
     /// Extension of the bitstream.
     pub bitstream: String,
-    /// What ISE's `bitgen` must be told.
+    /// Additional options of ISE's `bitgen`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bitgen: Option<String>,
-    /// Vendor and product of its USB chip, as in `0403:6010`.
+    /// Vendor and product id of the USB chip, such as `0403:6010`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub usb: Option<String>,
-    /// What else one should know.
+    /// Notes for the user.
     pub notes: Vec<String>,
-    /// Where its sources contradict each other.
+    /// Contradictions between the sources.
     pub conflicts: Vec<String>,
-    /// Repository, commit and file of what this was taken from.
+    /// Repository, commit and file of each source.
     pub sources: Vec<String>,
 }
 
 /// An FPGA.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Part {
-    /// `hx1k`, `xc3s400`.
+    /// Name of the part, such as `hx1k` or `xc3s400`.
     pub name: String,
-    /// `tq144`, `ft256`.
+    /// Package, such as `tq144` or `ft256`.
     pub package: String,
     /// Speed grade of a Spartan.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -118,67 +118,67 @@ pub struct Part {
     /// Logic cells of an iCE40.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub logic_cells: Option<u32>,
-    /// Block RAMs.
+    /// Number of block RAMs.
     pub block_rams: u32,
 }
 
-/// The clock that comes from outside.
+/// The external oscillator.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Oscillator {
     /// Pin of the package.
     pub pin: String,
     /// Hz.
     pub hz: u64,
-    /// What its pin is set to.
+    /// Electrical standard of its pin.
     pub io: IoStandard,
 }
 
-/// A clock of a board, and the tick and phases that go with it.
+/// A clock that is proposed for a board, with its tick and phases.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Clocking {
     /// Hz.
     pub clock_hz: u64,
-    /// ns.
+    /// Tick, ns.
     pub tick_ns: u64,
-    /// 1, 4 or 16.
+    /// Phases of a tick: 1, 4 or 16.
     pub phases: u32,
-    /// How it is made of the oscillator's.
+    /// Settings of the clock manager that make it from the oscillator.
     pub made_by: ClockManager,
-    /// Why this one.
+    /// Why this clock is proposed.
     pub why: String,
 }
 
-/// Where a bit of a port goes.
+/// The pin of one bit of a port.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Wire {
-    /// `uart_rx`, `step[0]`.
+    /// The bit, such as `uart_rx` or `step[0]`.
     pub port: String,
     /// Pin of the package.
     pub pin: String,
-    /// Where it is on a connector.
+    /// Place of the pin on a connector, if it is on one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Place>,
 }
 
-/// A place that a person can see.
+/// A pin of a connector.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Place {
-    /// The connector.
+    /// Name of the connector.
     pub connector: String,
-    /// What is printed beside the pin.
+    /// Label of the pin.
     pub label: String,
 }
 
-/// A pin that is driven to one level for ever.
+/// A pin that is always driven to the same level.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Tie {
-    /// Its port of the top level.
+    /// Name of its port of the top level.
     pub port: String,
     /// Pin of the package.
     pub pin: String,
-    /// 0 or 1.
+    /// Level, 0 or 1.
     pub level: u8,
-    /// What for.
+    /// Purpose.
     pub why: String,
 }
 

@@ -22,11 +22,11 @@ pub use dcm::Dcm;
 pub use ice40::Ice40Pll;
 pub use mmcm::Mmcm;
 
-/// What makes a clock of another.
+/// The clock manager, which makes the gateware's clock from the oscillator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClockManager {
-    /// Nothing: the oscillator is the clock.
+    /// No clock manager: the oscillator is the clock.
     Oscillator,
     /// The PLL of an iCE40.
     Ice40Pll(Ice40Pll),

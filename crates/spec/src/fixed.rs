@@ -19,7 +19,7 @@ pub const TICKS_BITS: u32 = 32;
 /// Width of the position register, bits, two's complement.
 pub const POSITION_BITS: u32 = 32;
 
-/// Where in a step a move starts and ends.
+/// Phase of a step in which a move starts and ends.
 ///
 /// `Half` puts every pulse of a move in the middle of a step, so that the last pulse of a move which
 /// ends at rest is well conditioned. `Zero` is Table 1 of Ranade (2009).

@@ -18,21 +18,21 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
-/// The speed profiles of the literature that a move can ask for.
+/// The speed profiles that a move file can name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ProfileKind {
-    /// Ranade (2009): triangle whenever possible, else trapezoid at the speed limit.
+    /// Ranade (2009): a triangle if possible, otherwise a trapezoid at the speed limit.
     Ranade,
     /// From rest to rest at the acceleration limit.
     Trapezoid,
-    /// Seven segments: limits on speed, acceleration and jerk.
+    /// Seven segments within limits of speed, acceleration and jerk.
     Scurve,
-    /// Along a logistic curve: gentle at both ends, never quite at rest.
+    /// Along a logistic curve, with small accelerations at both ends; never quite at rest.
     Logistic,
-    /// Acceleration as 1 - cos: jerk continuous too.
+    /// Acceleration proportional to 1 - cos, so that the jerk is continuous too.
     Sine,
-    /// One speed, at most the start speed.
+    /// One constant speed, at most the start speed.
     Constant,
 }
 
@@ -61,14 +61,14 @@ impl fmt::Display for ProfileKind {
     }
 }
 
-/// Which way a move of several axes takes.
+/// How the axes of a move are combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PathKind {
-    /// Each axis as its own limits allow, in the common time.
+    /// Each axis moves within its own limits; all take the same time.
     #[default]
     Free,
-    /// All along one straight line: one profile, scaled for each axis.
+    /// All axes move along one straight line: one profile, scaled for each axis.
     Straight,
 }
 

@@ -3,16 +3,16 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// A program.
+/// An external program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Tool {
-    /// What one types; those of `yowasp-*` packages have that before it.
+    /// Name of the command. Packages of pip install it with the prefix `yowasp-`.
     pub name: &'static str,
-    /// The option that shows its version; some have none, or take seconds.
+    /// The option that prints its version. `None` if there is none, or if it takes seconds.
     pub version: Option<&'static str>,
-    /// What it is wanted for.
+    /// Purpose of the tool.
     pub purpose: &'static str,
-    /// Ways to get it: commands, where there is one.
+    /// Ways to install it, as commands if possible.
     pub install: &'static [&'static str],
 }
 

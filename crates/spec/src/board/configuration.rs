@@ -9,17 +9,17 @@ use std::sync::LazyLock;
 
 const DATA: &str = include_str!("../../data/packages.toml");
 
-/// How an FPGA gets its bitstream. JTAG needs no user pin, so it is no mode here.
+/// How an FPGA loads its bitstream. JTAG is not listed, because it needs no user pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
     /// The pin has its function in every mode.
     Any,
-    /// Bit by bit, from a PROM or a host.
+    /// Serially, from a PROM or a host.
     Serial,
     /// From an SPI flash.
     Spi,
-    /// Byte by byte: SelectMAP, or a parallel flash.
+    /// By bytes: SelectMAP, or a parallel flash.
     Parallel,
     /// The data lines beyond the first eight.
     Wide,
@@ -96,36 +96,37 @@ pub(super) fn packages() -> &'static [Package] {
     &PACKAGES
 }
 
-/// A port on a configuration pin: the board's page shows each of them.
+/// A port on a configuration pin. The board's page lists all of them.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Shared {
-    /// `step[0]`, or `the oscillator`.
+    /// The port, such as `step[0]`, or `the oscillator`.
     pub port: String,
     /// Pin of the package.
     pub pin: String,
-    /// What the pin is in configuration, `HSWAPEN`; several with a `/` between.
+    /// Function of the pin in configuration, such as `HSWAPEN`; several are separated by `/`.
     pub function: String,
-    /// The modes in which it is that.
+    /// The modes in which the pin has this function.
     pub modes: Vec<Mode>,
-    /// Why the port may be there although the board is configured in one of these modes.
+    /// Why this does no harm although the board is configured in one of these modes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
 }
 
-/// An input that says from when on lines of the board may be driven.
+/// An input that determines when some lines of the board may be driven.
 ///
-/// The lines have high impedance until the input has been high for `wait_ns`, and again as soon as it is low.
+/// The lines have high impedance until the input has been high for `wait_ns`, and become so again as
+/// soon as it is low.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Gate {
-    /// Its port of the top level.
+    /// Name of its port of the top level.
     pub port: String,
     /// Pin of the package.
     pub pin: String,
-    /// So long it must have been high, ns.
+    /// Time for which the input must have been high, ns.
     pub wait_ns: u64,
     /// The outputs that wait for it.
     pub holds: Vec<String>,
-    /// What for.
+    /// Purpose.
     pub why: String,
 }
 

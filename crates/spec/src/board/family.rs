@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A family.
+/// An FPGA family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Family {
@@ -22,7 +22,7 @@ pub enum Family {
     Spartan7,
 }
 
-/// Who makes a bitstream.
+/// The tools that make a bitstream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Toolchain {
@@ -102,7 +102,7 @@ impl fmt::Display for Toolchain {
     }
 }
 
-/// What a pin is set to; it follows from its bank's voltage.
+/// Electrical standard of a pin, which is determined by the voltage of its bank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 pub enum IoStandard {
     /// 3.3 V.
@@ -144,8 +144,8 @@ impl IoStandard {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PllInput {
-    /// Straight from its pad: `SB_PLL40_PAD`.
+    /// Directly from its pad: `SB_PLL40_PAD`.
     Pad,
-    /// Over the fabric: `SB_PLL40_CORE`.
+    /// By way of the fabric: `SB_PLL40_CORE`.
     Core,
 }

@@ -37,7 +37,7 @@ pub struct Guard {
     /// Time from power at ENABLE to the first start, in rounds, up to [`MAX_ROUNDS`]; 0 for no
     /// delay.
     pub enable: u32,
-    /// How the limit switches are wired.
+    /// Wiring of the limit switches.
     pub limits: Limits,
     /// Whether a limit freezes the axes at once; otherwise they ramp down.
     pub limit_freezes: bool,
@@ -49,18 +49,18 @@ pub struct Guard {
     pub stop: Vec<u64>,
 }
 
-/// How the limit switches are wired.
+/// Wiring of the limit switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Limits {
-    /// There are none.
+    /// There are no limit switches.
     None,
-    /// Two for each axis: each stops the way that it ends.
+    /// Two for each axis. Each stops motion toward its own end only.
     #[default]
     Pair,
-    /// One for each axis, for both ends.
+    /// One input for each axis, shared by both ends.
     Each,
-    /// One for all axes.
+    /// One input for all axes.
     One,
 }
 

@@ -6,35 +6,35 @@ use crate::machine::steps_per_s2;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// A time as a guard keeps it.
+/// A time that the guard keeps, as a range.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct Between {
-    /// It is never shorter.
+    /// Shortest possible time.
     pub least: f64,
-    /// It is never longer.
+    /// Longest possible time.
     pub most: f64,
 }
 
-/// A guard in the units of a machine file.
+/// The settings of a guard, in the units of a machine file.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct GuardFigures {
-    /// From one look at a limit to the next, us.
+    /// Time between two samples of a limit, us.
     pub round_us: f64,
-    /// From the host's last sign to the stop, ms; `None`: it is not missed.
+    /// Time from the host's last valid request to the stop, ms; `None` if the watchdog is off.
     pub watchdog_ms: Option<Between>,
-    /// From ENABLE to the first start, ms; `None`: no time.
+    /// Time from ENABLE to the first start, ms; `None` for no delay.
     pub enable_ms: Option<Between>,
-    /// From the change of a limit's pin until it is believed, us; `None`: there are no limits.
+    /// Time from the change of a limit's pin until it is accepted, us; `None` without limits.
     pub debounce_us: Option<Between>,
-    /// The level at which the e-stop is pressed.
+    /// Level of the e-stop pin at which the e-stop counts as pressed.
     pub estop: &'static str,
-    /// How the limits are wired.
+    /// Wiring of the limits.
     pub limits: Limits,
-    /// The level at which a limit is reached.
+    /// Level of a limit pin at which the limit counts as reached.
     pub limit_level: &'static str,
-    /// How a limit stops the axes.
+    /// How a limit stops the axes: `ramp` or `freeze`.
     pub limit_stop: &'static str,
-    /// The ramp of each axis, steps/s^2.
+    /// Acceleration of each axis' stop ramp, steps/s^2.
     pub stop_accel_steps_per_s2: Vec<f64>,
 }
 
