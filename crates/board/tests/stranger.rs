@@ -18,8 +18,8 @@ fn crc(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| step(crc)))
 }
 
-/// "A frame ends with END. Inside a frame END is sent as DB DC and DB as DB DD. Send an END before a
-/// frame too."
+/// "A frame ends with END. Inside a frame END is sent as DB DC and DB as DB DD. Send an END before
+/// a frame too."
 fn on_the_line(content: &[u8]) -> Vec<u8> {
     let mut line = vec![0xc0];
     for byte in content.iter().copied().chain(crc(content).to_le_bytes()) {

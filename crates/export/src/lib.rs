@@ -6,7 +6,8 @@
 //! per kind, with real names, ANSI ports, and registers in clocked blocks.
 //!
 //! ```text
-//! blocks --netlist--> ports, registers, children, kernel --kernel--> wires, blocks, clocked --module--> text
+//! blocks --netlist--> ports, registers, children, kernel --kernel--> wires, blocks, clocked
+//!        --module--> text
 //! ```
 
 mod board;

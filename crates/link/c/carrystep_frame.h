@@ -34,7 +34,7 @@ typedef struct {
     carrystep_segment segment; /* of a segment */
 } carrystep_request;
 
-/* What the gateware says to a request; meanings in carrystep_registers.h. */
+/* The gateware's answer to a request; carrystep_registers.h gives the meaning of the fields. */
 typedef struct {
     uint8_t sequence;
     uint8_t address;

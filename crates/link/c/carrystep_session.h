@@ -1,10 +1,10 @@
-/* The dialogue of one host with one gateware. Writes are executed in order, each exactly once; reads
- * without an answer are sent again. The caller passes the bytes and the time in milliseconds:
+/* The dialogue of one host with one gateware. Writes are executed in order, each exactly once;
+ * reads without an answer are sent again. The caller passes the bytes and the time in milliseconds:
  *
  *     static carrystep_session link;
  *     static carrystep_feeder program;
  *     carrystep_begin(&link, 40, 2);
- *     carrystep_read(&link, CARRYSTEP_IDENTITY); ...       then carrystep_check() and carrystep_adopt()
+ *     carrystep_read(&link, CARRYSTEP_IDENTITY); ...    then carrystep_check() and carrystep_adopt()
  *     for (;;) {
  *         uint8_t line[CARRYSTEP_LINE_BYTES];
  *         carrystep_feed(&link, &program);

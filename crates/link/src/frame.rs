@@ -86,7 +86,7 @@ pub struct RequestBytes {
 }
 
 impl RequestBytes {
-    /// The bytes.
+    /// The bytes as a slice.
     pub fn as_slice(&self) -> &[u8] {
         self.bytes.get(..self.length).unwrap_or(&self.bytes)
     }

@@ -21,8 +21,8 @@ pub const POSITION_BITS: u32 = 32;
 
 /// Phase of a step in which a move starts and ends.
 ///
-/// `Half` puts every pulse of a move in the middle of a step, so that the last pulse of a move which
-/// ends at rest is well conditioned. `Zero` is Table 1 of Ranade (2009).
+/// `Half` puts every pulse of a move in the middle of a step, so that the last pulse of a move
+/// which ends at rest is well conditioned. `Zero` is Table 1 of Ranade (2009).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StartPhase {

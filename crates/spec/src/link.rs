@@ -4,8 +4,12 @@
 //! ```text
 //! line      END, then the frame with END and ESC escaped, then END         RFC 1055
 //! request   sequence 1 | address 1 | words, 4 each, low byte first | CRC 4
-//! answer    sequence 1 | address 1 | next 1 | state 1 | free 1 | culprits 1 | homing 1 | data 4 | CRC 4
+//! answer    sequence 1 | address 1 | next 1 | state 1 | free 1 | culprits 1 | homing 1 | data 4 |
+//!           CRC 4
 //! ```
+//!
+//! The numbers are lengths in bytes. A change of the register map or of a build parameter changes
+//! the build id, so that a driver refuses the gateware that it was not made for.
 
 mod assembler;
 mod build_id;

@@ -3,7 +3,7 @@
 //! of its queue.
 //!
 //! ```text
-//! x  1 2 3 4 5 6 7    8    9        10       room for segment k: at the begin of segment k - 7
+//! x  1 2 3 4 5 6 7    8    9        10       there is room for segment k when segment k - 7 begins
 //! y  1 2 3 4 5 6 7        8     9
 //!                  ^ start
 //! ```

@@ -1,13 +1,13 @@
-/* An RP2040 (Raspberry Pi Pico) drives the gateware over SPI: it connects, powers the drivers, makes
- * one move and removes the power.
+/* An RP2040 (Raspberry Pi Pico) drives the gateware over SPI: it connects, powers the drivers,
+ * makes one move and removes the power.
  *
  *     Pico GP16 (SPI0 RX)  <- MISO        CMakeLists.txt:
  *     Pico GP17            -> CS              add_executable(move rp2040_spi.c carrystep_frame.c
  *     Pico GP18 (SPI0 SCK) -> SCK                 carrystep_session.c carrystep_feeder.c)
  *     Pico GP19 (SPI0 TX)  -> MOSI            target_link_libraries(move pico_stdlib hardware_spi)
  *
- * Only setup(), exchange() and now() depend on the RP2040; for another microcontroller, replace these
- * three. The numbers of a move come from a planner on a PC, or from integers as below. */
+ * Only setup(), exchange() and now() depend on the RP2040; for another microcontroller, replace
+ * these three. The numbers of a move come from a planner on a PC, or from integers as below. */
 #include "carrystep_feeder.h"
 
 #include "hardware/gpio.h"
@@ -104,8 +104,8 @@ static bool connect(void)
     return high.idle; /* otherwise a host before this one has left something in the queues */
 }
 
-/* A move of axis 0 at a tick of 2 us: half a second of acceleration to 5000 steps/s and half a second
- * of deceleration, exactly 2500 steps. */
+/* A move of axis 0 at a tick of 2 us: half a second of acceleration to 5000 steps/s and half a
+ * second of deceleration, exactly 2500 steps. */
 static const carrystep_segment move[] = {
     {250000u, INT64_C(368934881474), INT64_C(737869762948), 0, false},
     {40000u, INT64_C(184467071802214043), INT64_C(-737869762948), 0, false},

@@ -4,16 +4,18 @@
 //! ```text
 //! begin RESEND PAUSE          a new session
 //! adopt NEXT AXES
-//! read ADDRESS                yes or no                     addresses, words and masks in hex
-//! write ADDRESS WORD          yes or no
-//! segment AXIS TICKS V A J LAST     of the program; start MASK likewise; load: the program is whole
-//! feed                        feeding, fed, bad or unpowered
+//! read ADDRESS                replies yes or no; addresses, words and masks are hexadecimal
+//! write ADDRESS WORD          replies yes or no
+//! segment AXIS TICKS V A J LAST     adds a segment to the program
+//! start MASK                  adds a start to the program
+//! load                        ends the program
+//! feed                        replies feeding, fed, bad or unpowered
 //! withdraw
-//! send NOW                    bytes of one request, or -
-//! take NOW BYTES              one word for each frame: the answer's fields, `damaged` or `step`
-//! step NOW BYTES              take, feed, and send until there is nothing to send; answers | feed | bytes
-//! check IDENTITY PROTOCOL BUILD WANTED      fine, device, protocol or build
-//! busy                        which of `waiting` and `writing` it is
+//! send NOW                    replies the bytes of one request, or -
+//! take NOW BYTES              replies a word per frame: the answer's fields, `damaged` or `step`
+//! step NOW BYTES              take, feed, and send until nothing is left; answers | feed | bytes
+//! check IDENTITY PROTOCOL BUILD WANTED      replies fine, device, protocol or build
+//! busy                        replies which of `waiting` and `writing` hold
 //! ```
 
 use super::{hex, unhex};

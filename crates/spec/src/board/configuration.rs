@@ -114,8 +114,8 @@ pub struct Shared {
 
 /// An input that determines when some lines of the board may be driven.
 ///
-/// The lines have high impedance until the input has been high for `wait_ns`, and become so again as
-/// soon as it is low.
+/// The lines have high impedance until the input has been high for `wait_ns`, and become so again
+/// as soon as it is low.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Gate {
     /// Name of its port of the top level.

@@ -140,7 +140,8 @@ impl IoStandard {
     }
 }
 
-/// How the oscillator reaches an iCE40's PLL: nextpnr places one kind only, by the oscillator's pin.
+/// How the oscillator reaches an iCE40's PLL. The oscillator's pin decides which of the two kinds
+/// nextpnr can place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PllInput {

@@ -7,13 +7,14 @@
 //! X + 1.
 //!
 //! ```text
-//! clock     | fetch | address | execute |       three clocks an instruction; a wait and a CRC step hold the third
+//! clock     | fetch | address | execute |   three clocks per instruction; a wait and a CRC step
+//!                                           extend the third
 //!
 //! bit    15     14     13     12     11       10 9 8       7 .. 0
 //!        sets                        xor      source       operand      A <= value, or A xor value
 //!               stores                              X   operand      data[operand or X] <= A
 //!                      jumps         invert   condition    target       pc <= target
-//!                             acts   put      start go br  wait .. tax  what these bits do
+//!                             acts   put      start go br  wait .. tax  the actions of these bits
 //! ```
 //!
 //! The two `acts` bits that change X (TAX and INX) can be combined with a value or a store that

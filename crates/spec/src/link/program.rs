@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! begin -> next <---------------.
-//!            | a byte           |   escapes are taken out, the request grows
+//!            | END              |   until then: removes escapes, appends bytes to the request
 //!            v                  |
-//!          ended: length, CRC --' damaged: not a word
-//!            | whole
+//!          ended: length, CRC --'   damaged: no answer
+//!            | valid
 //!            v
 //!          known -> execute -> done -> answer -> begin
 //!            '---- again, refused ------^
