@@ -35,7 +35,7 @@ fn freeze_of_the_verilog_counts_every_discarded_step() {
 }
 
 /// Presses the e-stop within `within` + 20 ms of the move of each seed. Returns how many e-stops
-/// came before the end of a move, and how many steps were discarded.
+/// were the first stop cause of their move, and how many steps were discarded.
 fn freezes<B: Kind>(seeds: Range<u64>, within: u64, faults: Faults) -> (u32, u32) {
     let uart = Uart::new(CLOCK_HZ, 3_000_000).unwrap();
     let mut random = Random(5);

@@ -33,12 +33,12 @@ macro_rules! on_both {
 }
 
 on_both! {
-    another_build_is_refused_and_both_are_named
-    a_wish_to_stop_is_obeyed_and_a_clear_resumes
-    a_stop_of_the_machine_is_named
-    a_restarted_gateware_is_noticed
-    what_a_dead_host_has_left_is_not_started
-    a_jog_is_a_move_of_one_axis
+    other_build_is_refused_and_both_ids_are_named
+    stop_request_stops_the_axes_and_clear_resumes
+    stop_of_the_machine_is_reported_with_its_cause
+    restarted_gateware_is_reported
+    segments_of_a_dead_host_are_not_started
+    jog_moves_one_axis
 }
 
 fn uart() -> Uart {
@@ -85,7 +85,7 @@ fn positions_are_true<B: Kind>(end: &End<B>, host: &BoardHost<B>) {
 }
 
 /// The same engine with an SPI is another build.
-fn another_build_is_refused_and_both_are_named<B: Kind>() {
+fn other_build_is_refused_and_both_ids_are_named<B: Kind>() {
     let end = End::<B>::new(uart(), Faults::default(), 1);
     let (own, other) = (uart().build_id(&build()), Line::Spi.build_id(&build()));
     let refused = end.connect_to(other, QUICK).err().unwrap().to_string();
@@ -94,7 +94,7 @@ fn another_build_is_refused_and_both_are_named<B: Kind>() {
     assert_eq!(end.connect_to(own, QUICK).unwrap().status().answer.next, 0, "something was written");
 }
 
-fn a_wish_to_stop_is_obeyed_and_a_clear_resumes<B: Kind>() {
+fn stop_request_stops_the_axes_and_clear_resumes<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::BAD, 7);
     let stop_soon = |_: &Progress<'_>| if into_the_move(&end, 20) { Wish::Stop } else { Wish::GoOn };
     assert_eq!(host.stream(program(&moves(7)), stop_soon), Ok(Ended::Stopped));
@@ -114,7 +114,7 @@ fn a_wish_to_stop_is_obeyed_and_a_clear_resumes<B: Kind>() {
     assert_eq!(host.look().unwrap().answer.next, next);
 }
 
-fn a_stop_of_the_machine_is_named<B: Kind>() {
+fn stop_of_the_machine_is_reported_with_its_cause<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::BAD, 8);
     end.0.borrow_mut().meanwhile = Box::new(|board| {
         let reached = u8::from(board.position(2).abs() > 30) << 2;
@@ -137,7 +137,7 @@ fn a_stop_of_the_machine_is_named<B: Kind>() {
     host.clear().unwrap();
 }
 
-fn a_restarted_gateware_is_noticed<B: Kind>() {
+fn restarted_gateware_is_reported<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::default(), 9);
     let mut fresh = Some(B::new(uart()));
     let restart = |_: &Progress<'_>| {
@@ -153,7 +153,7 @@ fn a_restarted_gateware_is_noticed<B: Kind>() {
 }
 
 /// The first host died before the start; its segments are still in the queues.
-fn what_a_dead_host_has_left_is_not_started<B: Kind>() {
+fn segments_of_a_dead_host_are_not_started<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::default(), 15);
     let mut looks = 0;
     let error = host.stream(program(&moves(15)), |_| {
@@ -175,7 +175,7 @@ fn what_a_dead_host_has_left_is_not_started<B: Kind>() {
     assert!(host.status().answer.ready, "the drivers kept their power");
 }
 
-fn a_jog_is_a_move_of_one_axis<B: Kind>() {
+fn jog_moves_one_axis<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::BAD, 14);
     let segment = Segment { ticks: 3072, v: 1 << 56, a: 0, j: 0, last: false };
     let segments = [segment, segment, Segment { last: true, ..segment }];

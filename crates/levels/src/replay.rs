@@ -43,7 +43,7 @@ pub struct Replay<'a, O> {
     /// Cycle of the next falling edge of each STEP.
     falls: [u64; MAX_AXES],
     first_fall: u64,
-    /// The cycle of `outputs`, which holds all changes known so far.
+    /// The cycle of `now`, which holds the outputs as far as they are known.
     at: u64,
     now: O,
     /// The outputs that were last reported.

@@ -54,7 +54,7 @@ impl Make for VerilatedBoard {
 pub enum Start {
     /// Off its switch.
     Open,
-    /// On its switch, as deep as moving off can leave it.
+    /// On its switch, at a depth from which moving off still opens the switch.
     Closed,
     /// At the edge of the switch, which bounces until the axis has left it.
     Bouncing,
