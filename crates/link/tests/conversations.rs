@@ -1,6 +1,6 @@
 //! Conversations, byte for byte: the clients in Rust and C must send and accept exactly these
 //! bytes. In `tests/conversations/*.txt` a line with `>` is a command for the client (commands:
-//! support/client.rs), and a line with `<` is its expected reply.
+//! support/client.rs), and a line with `<` is its expected reply. A new conversation is a new file.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;

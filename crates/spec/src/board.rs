@@ -1,5 +1,5 @@
 //! Boards as data: the parts on a board, the function of each pin, and the clocks that it can make.
-//! Each board is one file of `data/boards/`.
+//! Each board is one file of `data/boards/`; a new board also needs its entry in `DATA`.
 
 use crate::clock::ClockManager;
 use crate::engine::Limits;

@@ -1,4 +1,4 @@
-//! Timing presets of stepper drivers, from `data/drivers.toml`.
+//! Timing presets of stepper drivers, from `data/drivers.toml`. A new preset is a new table there.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;

@@ -1,4 +1,5 @@
 //! The dependencies between the crates: which crate may depend on which, checked with `cargo tree`.
+//! A new dependency must be added to `ALLOWED`.
 
 use crate::shell::{self, Done};
 use std::collections::BTreeSet;

@@ -1,4 +1,5 @@
-//! Installs the tools that the tests need beside Cargo, by apt where possible.
+//! Installs the tools that the tests need beside Cargo, by apt where possible. A new tool is a row
+//! of `NEEDED`.
 
 use crate::shell::{self, Done};
 

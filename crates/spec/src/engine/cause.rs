@@ -1,4 +1,6 @@
 //! The stop causes: number, name, meaning, and what the user does about each.
+//!
+//! An answer of the link has three bits for the number, so there is no room for a ninth cause.
 
 use std::fmt;
 

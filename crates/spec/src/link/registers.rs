@@ -1,9 +1,9 @@
 //! The register map. The gateware's address decoder, the constants in Rust and C, and
-//! docs/registers.md are generated from this table.
+//! docs/registers.md are generated from this table: run `cargo xtask generate` after a change.
 //!
 //! ```text
-//! 0x00 .. 0x1f   facts of the build, read only: who it is comes first, in every version
-//! 0x20 .. 0x3f   what the host commands
+//! 0x00 .. 0x1f   facts of the build, read only; the identity comes first in every version
+//! 0x20 .. 0x3f   commands of the host
 //! 0x40 .. 0x7f   eight words for each axis: 0x40 + 8 axis + word
 //! ```
 
