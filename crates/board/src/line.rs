@@ -33,9 +33,9 @@ impl Bits {
 pub struct Speaker {
     bits: Bits,
     queue: VecDeque<u8>,
-    /// The bits being sent, the current one lowest, and the number of them that are left; 0 when
-    /// idle.
+    /// The bits being sent; the current one is the lowest.
     word: u16,
+    /// Number of these bits that are left; 0 when idle.
     left: u32,
     /// End of the current bit.
     ends: u128,

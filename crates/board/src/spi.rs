@@ -17,21 +17,24 @@ const EDGES: u8 = 16;
 /// The SPI controller. Its clock period need not be a whole number of gateware clocks.
 #[derive(Debug, Clone)]
 pub(crate) struct Master {
-    /// Time units per clock, and per half period of SCK.
+    /// Time units per clock.
     parts: u128,
+    /// Time units per half period of SCK.
     half: u128,
     /// Time when the current levels may change.
     ends: u128,
     queue: VecDeque<u8>,
-    /// The byte being sent, the current bit highest, and the number of its edges that are left.
+    /// The byte being sent; the current bit is the highest.
     byte: u8,
+    /// Number of edges of SCK that are left of this byte.
     left: u8,
     selected: bool,
     sck: bool,
-    /// Clocks in which MISO will be sampled, its level, and the bits sampled so far below a marker
-    /// bit.
+    /// Clocks in which MISO will be sampled.
     looks: VecDeque<u64>,
+    /// Current level of MISO.
     miso: bool,
+    /// The bits sampled so far, below a marker bit.
     comes: u16,
     heard: VecDeque<u8>,
 }

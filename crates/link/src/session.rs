@@ -58,17 +58,19 @@ pub struct Session<const N: usize> {
     timing: Timing,
     /// Number of axes of the build; 0 until the gateware's sequence number was adopted.
     axes: u8,
-    /// Number of unacknowledged segments of each axis, and number of further ones that its queue
-    /// can hold.
+    /// Number of unacknowledged segments of each axis.
     under_way: [u8; MOST_AXES as usize],
+    /// Number of further segments that the queue of each axis can hold.
     room: [u8; MOST_AXES as usize],
-    /// Whether a start is unacknowledged, and whether one is armed in the gateware.
+    /// Whether a start is unacknowledged.
     starting: bool,
+    /// Whether a start is armed in the gateware.
     armed: bool,
-    /// Whether the last answer reported drivers without power, and whether this host has requested
-    /// power.
+    /// Whether the last answer reported drivers without power.
     unpowered: bool,
+    /// Whether this host has requested power.
     powering: bool,
+    /// Number of damaged frames that were received.
     broken: u32,
 }
 

@@ -41,13 +41,15 @@ pub struct Full;
 #[derive(Debug, Clone)]
 pub struct Window<const N: usize> {
     slots: [Body; N],
-    /// Slot of the first write, number of writes, and sequence number of the first.
+    /// Slot of the first write.
     at: usize,
+    /// Number of writes.
     length: usize,
+    /// Sequence number of the first write.
     first: u8,
-    /// Number of writes sent in this round, and number sent in any round. A round sends the writes
-    /// in order from the first.
+    /// Number of writes sent in this round. A round sends the writes in order from the first.
     sent: usize,
+    /// Number of writes that were sent at least once.
     reached: usize,
     /// Time when the round began or the last write was acknowledged, ms.
     since: u32,

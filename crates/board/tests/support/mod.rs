@@ -22,8 +22,9 @@ use wire::{Faults, Wire};
 
 pub const CLOCK_HZ: u64 = 48_000_000;
 pub const TICK_NS: u64 = 2000;
-/// Cycles per millisecond, and per tick.
+/// Cycles per millisecond.
 pub const MS: u64 = CLOCK_HZ / 1000;
+/// Cycles per tick.
 pub const TICK: u64 = CLOCK_HZ * TICK_NS / 1_000_000_000;
 /// Stop acceleration of every axis but axis 1: a stop from [`FASTEST`] takes 8192 ticks, 16 ms.
 pub const STOP: u64 = 1 << 45;
