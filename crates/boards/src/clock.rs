@@ -1,4 +1,5 @@
-//! How a part makes its clock of the oscillator's: exact settings of the clock manager, or the nearest clock that it can.
+//! Computes the settings of a part's clock manager for a clock made from the board's oscillator. F
+//! is the oscillator's frequency.
 //!
 //! ```text
 //! iCE40      F x (DIVF + 1) / (DIVR + 1) / 2^DIVQ         PLL
@@ -6,7 +7,8 @@
 //! Spartan-7  F x M / D / O                                MMCM
 //! ```
 //!
-//! A clock is exact or refused: a tick that is a thousandth off makes every speed a thousandth wrong.
+//! Only exact clocks are accepted; the error names the nearest possible one. With a clock that is
+//! off by a thousandth, every speed would be off by a thousandth.
 
 use carrystep_core::tick::mhz;
 use schemars::JsonSchema;
@@ -21,11 +23,11 @@ pub use dcm::Dcm;
 pub use ice40::Ice40Pll;
 pub use mmcm::Mmcm;
 
-/// What makes a clock of another.
+/// The clock manager, which makes the gateware's clock from the oscillator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClockManager {
-    /// Nothing: the oscillator is the clock.
+    /// No clock manager: the oscillator is the clock.
     Oscillator,
     /// The PLL of an iCE40.
     Ice40Pll(Ice40Pll),
@@ -35,35 +37,35 @@ pub enum ClockManager {
     Mmcm(Mmcm),
 }
 
-/// Which clock managers a family has.
+/// The clock manager of a family, with the ranges of its frequencies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClockManagers {
-    /// An iCE40's PLL.
+    /// The PLL of an iCE40.
     Ice40,
-    /// A DCM whose synthesised clock is within these, Hz.
+    /// A DCM, with the ranges of its input and of its synthesised clock, Hz.
     Dcm {
-        /// Slowest input.
+        /// Slowest input, Hz.
         least_in: u64,
-        /// Slowest output.
+        /// Slowest output, Hz.
         least_out: u64,
-        /// Fastest output.
+        /// Fastest output, Hz.
         most_out: u64,
     },
-    /// An MMCM of speed grade -1.
+    /// The MMCM of a Spartan-7 of speed grade -1.
     Mmcm,
 }
 
-/// A clock that cannot be made of the oscillator's.
+/// A clock that cannot be made from the oscillator.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{manager} makes no clock of {} MHz from {} MHz; {}", mhz(*.wanted_hz), mhz(*.oscillator_hz), nearest_said(.nearest_hz))]
 pub struct ClockError {
-    /// PLL, DCM or MMCM.
+    /// Name of the clock manager: PLL, DCM or MMCM.
     pub manager: &'static str,
-    /// The oscillator, Hz.
+    /// Frequency of the oscillator, Hz.
     pub oscillator_hz: u64,
-    /// What was asked for, Hz.
+    /// The wanted clock, Hz.
     pub wanted_hz: u64,
-    /// The nearest that can be made and is whole Hz.
+    /// The nearest clock of whole Hz that can be made, if there is one.
     pub nearest_hz: Option<u64>,
 }
 
@@ -74,18 +76,18 @@ fn nearest_said(nearest_hz: &Option<u64>) -> String {
     }
 }
 
-/// One way to set a clock manager, and the clock that it makes.
+/// One setting of a clock manager, and the clock that it makes.
 struct Way {
     manager: ClockManager,
-    /// Hz, as numerator and denominator.
+    /// The clock, Hz, as numerator and denominator.
     made: (u64, u64),
 }
 
 impl ClockManagers {
-    /// The settings for exactly this clock.
+    /// The settings for exactly this clock, both frequencies in Hz.
     ///
     /// # Errors
-    /// [`ClockError`] names the nearest clock of whole Hz that can be made.
+    /// [`ClockError`] names the nearest clock of whole Hz, if there is one.
     pub fn solve(self, oscillator_hz: u64, wanted_hz: u64) -> Result<ClockManager, ClockError> {
         if oscillator_hz == wanted_hz {
             return Ok(ClockManager::Oscillator);
@@ -97,7 +99,7 @@ impl ClockManagers {
             }
             Self::Mmcm => ("the MMCM", mmcm::ways(oscillator_hz).collect()),
         };
-        // The first of the exact ones, in the order of each manager's preference.
+        // The first exact setting in the order of the manager's preference.
         let exact = |way: &&Way| way.made.0 == u64::saturating_mul(wanted_hz, way.made.1);
         if let Some(way) = ways.iter().find(exact) {
             return Ok(way.manager);
@@ -113,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_clock_that_cannot_be_made_is_refused_with_the_nearest() {
+    fn clock_that_cannot_be_made_is_refused_with_the_nearest() {
         let refused = |managers: ClockManagers, from, to| managers.solve(from, to).unwrap_err().to_string();
         assert_eq!(
             refused(ClockManagers::Ice40, 12_000_000, 40_000_000),
@@ -123,13 +125,13 @@ mod tests {
             refused(ClockManagers::Ice40, 12_000_000, 80_000_000),
             "the PLL makes no clock of 80 MHz from 12 MHz; the nearest that it makes is 79.5 MHz"
         );
-        // 47.916666.. MHz is nearer, but no number of Hz.
+        // 47.916666... MHz is nearer, but it is not a whole number of Hz.
         assert!(refused(ClockManagers::Ice40, 100_000_000, 48_000_000).ends_with("makes is 48.125 MHz"));
         assert!(refused(ClockManagers::Ice40, 1_000_000, 48_000_000).ends_with("it makes none of that at all"));
     }
 
     #[test]
-    fn the_oscillator_itself_needs_no_manager() {
+    fn clock_of_the_oscillator_needs_no_manager() {
         assert_eq!(ClockManagers::Mmcm.solve(12_000_000, 12_000_000), Ok(ClockManager::Oscillator));
     }
 }

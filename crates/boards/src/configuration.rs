@@ -1,4 +1,5 @@
-//! Configuration pins: what the FPGA itself does with a pin before the design has it, for each package (`data/packages.toml`).
+//! Configuration pins: the functions that an FPGA itself gives to a pin while it loads its
+//! bitstream. The tables of `data/packages.toml` list them for each package.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,17 +9,17 @@ use std::sync::LazyLock;
 
 const DATA: &str = include_str!("../data/packages.toml");
 
-/// How an FPGA gets its bitstream. JTAG needs no user pin, so it is no mode here.
+/// How an FPGA loads its bitstream. JTAG is not listed, because it needs no user pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
     /// The pin has its function in every mode.
     Any,
-    /// Bit by bit, from a PROM or a host.
+    /// Serially, from a PROM or a host.
     Serial,
     /// From an SPI flash.
     Spi,
-    /// Byte by byte: SelectMAP, or a parallel flash.
+    /// By bytes: SelectMAP, or a parallel flash.
     Parallel,
     /// The data lines beyond the first eight.
     Wide,
@@ -44,9 +45,9 @@ impl fmt::Display for Mode {
 #[serde(deny_unknown_fields, expecting = "a [[package]] table")]
 pub(super) struct Package {
     pub name: String,
-    /// The parts that have these pins in it.
+    /// The parts to which this table applies in that package.
     pub parts: Vec<String>,
-    /// What the table was made from.
+    /// Sources of the table.
     pub sources: Vec<String>,
     #[serde(default)]
     any: Functions,
@@ -62,7 +63,7 @@ pub(super) struct Package {
     bpi: Functions,
 }
 
-/// Functions by pin.
+/// Functions, by pin.
 type Functions = BTreeMap<String, String>;
 
 impl Package {
@@ -86,7 +87,7 @@ struct Packages {
     package: Vec<Package>,
 }
 
-/// The tables that carrystep has.
+/// The tables that carrystep ships.
 pub(super) fn packages() -> &'static [Package] {
     static PACKAGES: LazyLock<Vec<Package>> = LazyLock::new(|| {
         let read: Result<Packages, _> = toml::from_str(DATA);
@@ -95,41 +96,42 @@ pub(super) fn packages() -> &'static [Package] {
     &PACKAGES
 }
 
-/// A port on a configuration pin: the board's page shows each of them.
+/// A port on a configuration pin. The board's page lists all of them.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Shared {
-    /// `step[0]`, or `the oscillator`.
+    /// The port, such as `step[0]`, or `the oscillator`.
     pub port: String,
     /// Pin of the package.
     pub pin: String,
-    /// What the pin is in configuration, `HSWAPEN`; several with a `/` between.
+    /// Function of the pin in configuration, such as `HSWAPEN`; several are separated by `/`.
     pub function: String,
-    /// The modes in which it is that.
+    /// The modes in which the pin has this function.
     pub modes: Vec<Mode>,
-    /// Why the port may be there although the board is configured in one of these modes.
+    /// Why this does no harm although the board is configured in one of these modes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
 }
 
-/// An input that says from when on lines of the board may be driven.
+/// An input that determines when some lines of the board may be driven.
 ///
-/// The lines have high impedance until the input has been high for `wait_ns`, and again as soon as it is low.
+/// The lines have high impedance until the input has been high for `wait_ns`, and become so again
+/// as soon as it is low.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Gate {
-    /// Its port of the top level.
+    /// Name of its port of the top level.
     pub port: String,
     /// Pin of the package.
     pub pin: String,
-    /// So long it must have been high, ns.
+    /// Time for which the input must have been high, ns.
     pub wait_ns: u64,
     /// The outputs that wait for it.
     pub holds: Vec<String>,
-    /// What for.
+    /// Purpose.
     pub why: String,
 }
 
 impl Gate {
-    /// Bits of a counter of the clock that runs for `wait_ns` or longer before its highest bit is set.
+    /// Width of a counter of this clock (Hz) whose highest bit is set after `wait_ns` or later.
     pub fn counter_bits(&self, clock_hz: u64) -> u32 {
         let clocks = (u128::from(self.wait_ns) * u128::from(clock_hz)).div_ceil(1_000_000_000).max(1);
         clocks.next_power_of_two().trailing_zeros() + 1
@@ -141,9 +143,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_counter_runs_for_the_time_or_longer() {
+    fn gate_counter_runs_at_least_its_wait_time() {
         let gate = |wait_ns| Gate { port: "go".into(), pin: "P1".into(), wait_ns, holds: vec![], why: String::new() };
-        // Highest bit is set after 2^(bits - 1) clocks.
+        // The highest bit is set after 2^(bits - 1) clocks.
         for (wait_ns, clock_hz, bits) in [(400_000, 80_000_000, 16), (12_800, 80_000_000, 11), (12_801, 80_000_000, 12)]
         {
             assert_eq!(gate(wait_ns).counter_bits(clock_hz), bits, "{wait_ns} ns at {clock_hz} Hz");
@@ -152,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn every_table_has_pins_and_a_source() {
+    fn every_package_table_has_pins_and_a_source() {
         assert_eq!(packages().len(), 11);
         for package in packages() {
             assert!(!package.sources.is_empty() && !package.parts.is_empty(), "{}", package.name);

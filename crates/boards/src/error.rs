@@ -1,4 +1,4 @@
-//! What a board cannot do: each error names what it can.
+//! Requests that a board cannot satisfy. Each error names what the board has instead.
 
 use super::{boards, names};
 use crate::clock::ClockError;
@@ -6,78 +6,78 @@ use carrystep_core::tick::mhz;
 use carrystep_files::did_you_mean;
 use thiserror::Error;
 
-/// What a board cannot do.
+/// A request that a board cannot satisfy.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum BoardError {
-    /// There is no such board.
+    /// No board has this name.
     #[error("no board is called '{name}'{}; there are {}", did_you_mean(name, boards().iter().map(|board| &*board.name)), names())]
     Unknown {
-        /// What was asked for.
+        /// The name that was given.
         name: String,
     },
-    /// It is not sold with this part.
+    /// The board is not sold with this part.
     #[error("{board} has no part '{part}'; there is {}", .parts.join(", "))]
     Part {
-        /// The board.
+        /// Name of the board.
         board: String,
-        /// What was asked for.
+        /// The part that was given.
         part: String,
-        /// Those that there are.
+        /// The parts that the board is sold with.
         parts: Vec<String>,
     },
-    /// More axes than it has pins for.
+    /// The machine has more axes than the board has pins for.
     #[error("{board} has pins for {has} axes, not for {wanted}: leave out axes, or take another board")]
     Axes {
-        /// The board.
+        /// Name of the board.
         board: String,
-        /// STEP and DIR pins.
+        /// Number of axes that have STEP and DIR pins.
         has: usize,
-        /// What the machine has.
+        /// Number of axes of the machine.
         wanted: usize,
     },
-    /// More limit switches than it has pins for.
+    /// The machine has more limit switches than the board has pins for.
     #[error("{board} has pins for {low} switches at low ends and {high} at high ends, too few for {wanted}: {instead}")]
     Limits {
-        /// The board.
+        /// Name of the board.
         board: String,
-        /// Pins for low ends.
+        /// Number of pins for switches at low ends.
         low: usize,
-        /// Pins for high ends.
+        /// Number of pins for switches at high ends.
         high: usize,
-        /// What the machine has.
+        /// The switches of the machine, in words.
         wanted: String,
-        /// What would do.
+        /// A wiring that the board has pins for.
         instead: &'static str,
     },
-    /// A port that is nowhere on it.
+    /// The board has no pin for a port.
     #[error("{board} has no pin for {port}")]
     Port {
-        /// The board.
+        /// Name of the board.
         board: String,
-        /// The port.
+        /// Name of the port.
         port: String,
     },
-    /// A baud rate that its serial chip does not take.
+    /// The board's serial chip does not support this baud rate.
     #[error("{board}'s serial chip takes at most {most} baud, not {wanted}: set `baud` in [machine.link]")]
     Baud {
-        /// The board.
+        /// Name of the board.
         board: String,
-        /// What it takes.
+        /// The greatest rate that it supports, bits per second.
         most: u32,
-        /// What the machine has.
+        /// The rate of the machine, bits per second.
         wanted: u32,
     },
-    /// A clock that cannot be made on it.
+    /// The board cannot make this clock.
     #[error("{board}: {source}; it is proposed to run at {proposed}")]
     Clock {
-        /// The board.
+        /// Name of the board.
         board: String,
-        /// Why not.
+        /// The clock manager's error.
         source: ClockError,
-        /// Those that it is known to make.
+        /// The clocks that the board is known to make.
         proposed: String,
     },
-    /// A clock that its part is not fast enough for, as far as it was measured.
+    /// The clock is faster than the board's part was measured to reach.
     #[error(
         "{board}: nextpnr reaches {} MHz with the shipped gateware, far less than the machine's {} MHz; \
          it is proposed to run at {proposed}",
@@ -85,13 +85,13 @@ pub enum BoardError {
         mhz(*.wanted_hz)
     )]
     Slow {
-        /// The board.
+        /// Name of the board.
         board: String,
-        /// What the machine has, Hz.
+        /// The clock of the machine, Hz.
         wanted_hz: u64,
-        /// What was reached, Hz.
+        /// The fastest clock that was measured, Hz.
         measured_hz: u64,
-        /// The clocks that it is known to make.
+        /// The clocks that the board is known to make.
         proposed: String,
     },
 }

@@ -1,11 +1,12 @@
-//! Families of FPGAs: who synthesises them, and what makes their clock.
+//! FPGA families: their toolchains, their clock managers and the electrical standards of their
+//! pins.
 
 use crate::clock::ClockManagers;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A family.
+/// An FPGA family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Family {
@@ -21,7 +22,7 @@ pub enum Family {
     Spartan7,
 }
 
-/// Who makes a bitstream.
+/// The tools that make a bitstream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Toolchain {
@@ -34,7 +35,7 @@ pub enum Toolchain {
 }
 
 impl Family {
-    /// Who makes its bitstreams.
+    /// The toolchain that makes the family's bitstreams.
     pub const fn toolchain(self) -> Toolchain {
         match self {
             Self::Ice40 => Toolchain::Open,
@@ -43,7 +44,8 @@ impl Family {
         }
     }
 
-    /// What yosys' `synth_xilinx` calls it; `None` for an iCE40, which has a command of its own.
+    /// The name of the family in yosys' `synth_xilinx`; `None` for an iCE40, which has a command of
+    /// its own.
     pub const fn yosys(self) -> Option<&'static str> {
         match self {
             Self::Ice40 => None,
@@ -54,14 +56,16 @@ impl Family {
         }
     }
 
-    /// Its block RAMs can write a part of a word (Xilinx UG331, 2011, "Using Block RAM": a Spartan-3 or 3E has one write
-    /// enable a port); where they cannot, memories that are written bit by bit lie in LUTs.
+    /// Whether the family's block RAMs can write a part of a word. A Spartan-3 or 3E has only one
+    /// write enable per port (Xilinx UG331, 2011, "Using Block RAM"). Memories that are written bit
+    /// by bit are then made of LUTs.
     pub const fn writes_parts_of_words(self) -> bool {
         !matches!(self, Self::Spartan3 | Self::Spartan3e)
     }
 
-    /// What makes clocks in it. The DCM's ranges are meant to be those of the slowest speed grade in the low-frequency mode. They
-    /// are as remembered: look them up in the data sheets (DS099, DS312, DS162) before counting on a clock near their ends.
+    /// The family's clock manager. The DCM's ranges are intended to be those of the slowest speed
+    /// grade in the low-frequency mode, but they were written from memory. Look them up in the data
+    /// sheets (DS099, DS312, DS162) before you rely on a clock near their ends.
     pub const fn clock_managers(self) -> ClockManagers {
         const fn dcm(least_in: u64, least_out: u64, most_out: u64) -> ClockManagers {
             ClockManagers::Dcm { least_in, least_out, most_out }
@@ -98,7 +102,7 @@ impl fmt::Display for Toolchain {
     }
 }
 
-/// What a pin is set to; it follows from its bank's voltage.
+/// Electrical standard of a pin, which is determined by the voltage of its bank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 pub enum IoStandard {
     /// 3.3 V.
@@ -116,7 +120,7 @@ pub enum IoStandard {
 }
 
 impl IoStandard {
-    /// What UCF and XDC call it.
+    /// The name of the standard in UCF and XDC files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Lvcmos33 => "LVCMOS33",
@@ -126,7 +130,7 @@ impl IoStandard {
         }
     }
 
-    /// Voltage of the bank, mV.
+    /// Supply voltage of the pin's bank, mV.
     pub const fn millivolts(self) -> u32 {
         match self {
             Self::Lvcmos33 | Self::Lvttl => 3300,
@@ -136,12 +140,13 @@ impl IoStandard {
     }
 }
 
-/// How the oscillator reaches an iCE40's PLL: nextpnr places one kind only, by the oscillator's pin.
+/// How the oscillator reaches an iCE40's PLL. The oscillator's pin decides which of the two kinds
+/// nextpnr can place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PllInput {
-    /// Straight from its pad: `SB_PLL40_PAD`.
+    /// Directly from its pad: `SB_PLL40_PAD`.
     Pad,
-    /// Over the fabric: `SB_PLL40_CORE`.
+    /// By way of the fabric: `SB_PLL40_CORE`.
     Core,
 }

@@ -1,4 +1,5 @@
-//! Boards as data: what is on them, which pin does what, and how their clock is made. One file of `data/boards/` each.
+//! Boards as data: the parts on a board, the function of each pin, and the clocks that it can make.
+//! Each board is one file of `data/boards/`; a new board also needs its entry in `DATA`.
 
 use crate::clock::ClockManager;
 use carrystep_core::engine::Limits;
@@ -24,10 +25,11 @@ pub use family::{Family, IoStandard, PllInput, Toolchain};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
 pub use port::{OSCILLATOR, PORTS, Port, Way};
 
-/// Baud rates that are proposed, the fastest first: those that USB serial chips make exactly, and the usual ones.
+/// The baud rates that are proposed, the fastest first: rates that USB serial chips make exactly,
+/// and the usual ones.
 pub const BAUDS: [u32; 7] = [3_000_000, 2_000_000, 1_500_000, 1_000_000, 500_000, 230_400, 115_200];
 
-/// The files, in the order in which boards are listed.
+/// The boards' files, in the order in which boards are listed.
 const DATA: [&str; 14] = [
     include_str!("../data/boards/icestick.toml"),
     include_str!("../data/boards/icebreaker.toml"),
@@ -45,71 +47,71 @@ const DATA: [&str; 14] = [
     include_str!("../data/boards/cmod-s7.toml"),
 ];
 
-/// A board whose every fact has been checked against the others.
+/// A board. All entries of its file have been checked against each other.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Board {
-    /// As on the command line.
+    /// Name of the board on the command line.
     pub name: String,
-    /// As its maker calls it.
+    /// Full name, as its maker uses it.
     pub title: String,
-    /// Which toolchain, which clock manager.
+    /// FPGA family, which determines toolchain and clock manager.
     pub family: Family,
     /// The parts that it is sold with; the first is the default.
     pub parts: Vec<Part>,
-    /// The clock that comes from outside.
+    /// The external oscillator.
     pub oscillator: Oscillator,
     /// The clocks that are proposed; the first is the default.
     pub clocks: Vec<Clocking>,
-    /// What the gateware's pins are set to.
+    /// Electrical standard of the gateware's pins.
     pub io: IoStandard,
     /// How the oscillator reaches an iCE40's PLL.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pll: Option<PllInput>,
-    /// VCCAUX of a Spartan-6, V: ISE takes 2.5 V unless told.
+    /// VCCAUX of a Spartan-6, V. The default of ISE is 2.5 V.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vccaux: Option<String>,
-    /// Where each port of the top level goes, in the order of [`PORTS`].
+    /// The pin of each port of the top level, in the order of [`PORTS`].
     pub wires: Vec<Wire>,
-    /// Pins that must be driven although the gateware has no use for them.
+    /// Pins that must be driven although the gateware does not use them.
     pub ties: Vec<Tie>,
     /// Modes in which its bitstream may be loaded, besides JTAG.
     pub configured: Vec<Mode>,
-    /// Its ports that are on configuration pins, and why they may be.
+    /// The ports that are on configuration pins, and why this does no harm.
     pub shared: Vec<Shared>,
-    /// What the tables of configuration pins were made from.
+    /// Sources of the tables of configuration pins.
     pub configuration_sources: Vec<String>,
-    /// The input that says from when on some of its lines may be driven.
+    /// The gate: an input that determines when some lines of the board may be driven.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gate: Option<Gate>,
-    /// Its LED lights where the pin is low.
+    /// Whether the LED lights while its pin is low.
     pub led_low: bool,
-    /// Greatest baud rate of its serial chip, where that is under the fastest of [`BAUDS`].
+    /// Greatest baud rate of the serial chip, if it is less than the fastest of [`BAUDS`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_baud: Option<u32>,
-    /// The command that loads the bitstream, `FILE` in its place.
+    /// The command that loads the bitstream; `FILE` stands for its path.
     pub flash: String,
     /// Extension of the bitstream.
     pub bitstream: String,
-    /// What ISE's `bitgen` must be told.
+    /// Additional options of ISE's `bitgen`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bitgen: Option<String>,
-    /// Vendor and product of its USB chip, as in `0403:6010`.
+    /// Vendor and product id of the USB chip, such as `0403:6010`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub usb: Option<String>,
-    /// What else one should know.
+    /// Notes for the user.
     pub notes: Vec<String>,
-    /// Where its sources contradict each other.
+    /// Contradictions between the sources.
     pub conflicts: Vec<String>,
-    /// Repository, commit and file of what this was taken from.
+    /// Repository, commit and file of each source.
     pub sources: Vec<String>,
 }
 
 /// An FPGA.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Part {
-    /// `hx1k`, `xc3s400`.
+    /// Name of the part, such as `hx1k` or `xc3s400`.
     pub name: String,
-    /// `tq144`, `ft256`.
+    /// Package, such as `tq144` or `ft256`.
     pub package: String,
     /// Speed grade of a Spartan.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -117,71 +119,71 @@ pub struct Part {
     /// Logic cells of an iCE40.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub logic_cells: Option<u32>,
-    /// Block RAMs.
+    /// Number of block RAMs.
     pub block_rams: u32,
 }
 
-/// The clock that comes from outside.
+/// The external oscillator.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Oscillator {
     /// Pin of the package.
     pub pin: String,
     /// Hz.
     pub hz: u64,
-    /// What its pin is set to.
+    /// Electrical standard of its pin.
     pub io: IoStandard,
 }
 
-/// A clock of a board, and the tick and phases that go with it.
+/// A clock that is proposed for a board, with its tick and phases.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Clocking {
     /// Hz.
     pub clock_hz: u64,
-    /// ns.
+    /// Tick, ns.
     pub tick_ns: u64,
-    /// 1, 4 or 16.
+    /// Phases of a tick: 1, 4 or 16.
     pub phases: u32,
-    /// How it is made of the oscillator's.
+    /// Settings of the clock manager that make it from the oscillator.
     pub made_by: ClockManager,
-    /// Why this one.
+    /// Why this clock is proposed.
     pub why: String,
 }
 
-/// Where a bit of a port goes.
+/// The pin of one bit of a port.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Wire {
-    /// `uart_rx`, `step[0]`.
+    /// The bit, such as `uart_rx` or `step[0]`.
     pub port: String,
     /// Pin of the package.
     pub pin: String,
-    /// Where it is on a connector.
+    /// Place of the pin on a connector, if it is on one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Place>,
 }
 
-/// A place that a person can see.
+/// A pin of a connector.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Place {
-    /// The connector.
+    /// Name of the connector.
     pub connector: String,
-    /// What is printed beside the pin.
+    /// Label of the pin.
     pub label: String,
 }
 
-/// A pin that is driven to one level for ever.
+/// A pin that is always driven to the same level.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Tie {
-    /// Its port of the top level.
+    /// Name of its port of the top level.
     pub port: String,
     /// Pin of the package.
     pub pin: String,
-    /// 0 or 1.
+    /// Level, 0 or 1.
     pub level: u8,
-    /// What for.
+    /// Purpose.
     pub why: String,
 }
 
-/// All boards.
+/// All boards that carrystep ships.
 pub fn boards() -> &'static [Board] {
     static BOARDS: LazyLock<Vec<Board>> = LazyLock::new(|| {
         let read = |text: &&str| {
@@ -193,7 +195,7 @@ pub fn boards() -> &'static [Board] {
     &BOARDS
 }
 
-/// Names of all boards, for messages.
+/// The names of all boards, for messages.
 fn names() -> String {
     let names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
     names.join(", ")
@@ -202,32 +204,32 @@ fn names() -> String {
 /// The board of this name.
 ///
 /// # Errors
-/// [`BoardError::Unknown`] names those that there are.
+/// [`BoardError::Unknown`] if there is none; it names the boards that exist.
 pub fn board(name: &str) -> Result<&'static Board, BoardError> {
     boards().iter().find(|board| board.name == name).ok_or_else(|| BoardError::Unknown { name: name.to_owned() })
 }
 
 impl Board {
-    /// Reads a board of one's own.
+    /// Reads a user's own board file.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and column.
+    /// [`InputError`] with file, line and column of the first mistake.
     pub fn load(path: &Path) -> Result<Self, InputError> {
         Self::from_source(&Source::read(path)?)
     }
 
-    /// Checks a board whose text is already there.
+    /// Checks the text of a board file.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and column.
+    /// [`InputError`] with file, line and column of the first mistake.
     pub fn from_source(source: &Source) -> Result<Self, InputError> {
         raw::read(source)
     }
 
-    /// The part of this name; without one, the default.
+    /// The part of this name, or the default part if no name is given.
     ///
     /// # Errors
-    /// [`BoardError::Part`] names those that there are.
+    /// [`BoardError::Part`] if the board is not sold with it; it names the parts that exist.
     pub fn part(&self, name: Option<&str>) -> Result<&Part, BoardError> {
         let found = self.parts.iter().find(|part| name.is_none_or(|name| part.name == name));
         found.ok_or_else(|| BoardError::Part {
@@ -237,10 +239,10 @@ impl Board {
         })
     }
 
-    /// How it makes this clock.
+    /// The clock manager's settings for this clock, Hz.
     ///
     /// # Errors
-    /// [`BoardError::Clock`] names the nearest that it can.
+    /// [`BoardError::Clock`] if it cannot be made; it names the nearest possible clock.
     pub fn clock(&self, clock_hz: u64) -> Result<ClockManager, BoardError> {
         self.family.clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
             board: self.name.clone(),
@@ -249,20 +251,21 @@ impl Board {
         })
     }
 
-    /// The fastest of the [`BAUDS`] that this clock makes within 2 % and that its serial chip takes.
+    /// The UART with the fastest of the [`BAUDS`] that this clock (Hz) makes within 2 % and that
+    /// the board's serial chip supports.
     ///
     /// # Errors
-    /// [`BaudError`]: the clock makes none of them.
+    /// [`BaudError`] if there is no such rate.
     pub fn uart(&self, clock_hz: u64) -> Result<Uart, BaudError> {
         let most = self.max_baud.unwrap_or(BAUDS[0]);
         let made = BAUDS.into_iter().filter(|baud| *baud <= most).find_map(|baud| Uart::new(clock_hz, baud).ok());
         made.map_or_else(|| Uart::new(clock_hz, most), Ok)
     }
 
-    /// Whether its serial chip takes this baud rate.
+    /// Checks that the board's serial chip supports this baud rate, bits per second.
     ///
     /// # Errors
-    /// [`BoardError::Baud`] names the greatest that it takes.
+    /// [`BoardError::Baud`] names the greatest rate that it supports.
     pub fn takes(&self, baud: u32) -> Result<(), BoardError> {
         match self.max_baud {
             Some(most) if most < baud => Err(BoardError::Baud { board: self.name.clone(), most, wanted: baud }),
@@ -270,10 +273,10 @@ impl Board {
         }
     }
 
-    /// Whether it has pins for so many axes and their limit switches.
+    /// Checks that the board has pins for this number of axes and for their limit switches.
     ///
     /// # Errors
-    /// [`BoardError`] says what it has pins for.
+    /// [`BoardError::Axes`] or [`BoardError::Limits`] if not; each gives the number of pins.
     pub fn carries(&self, axes: usize, limits: Limits) -> Result<(), BoardError> {
         let board = || self.name.clone();
         let has = self.bits("step");
@@ -294,23 +297,24 @@ impl Board {
         Err(BoardError::Limits { board: board(), low, high, wanted, instead })
     }
 
-    /// The wire of a port's bit.
+    /// The wire of one bit of a port, such as `step[0]`.
     ///
     /// # Errors
-    /// [`BoardError::Port`]: it goes nowhere on this board.
+    /// [`BoardError::Port`] if this board has no pin for it.
     pub fn wire(&self, port: &str) -> Result<&Wire, BoardError> {
         let found = self.wires.iter().find(|wire| wire.port == port);
         found.ok_or_else(|| BoardError::Port { board: self.name.clone(), port: port.to_owned() })
     }
 
-    /// How many bits of a port have a pin.
+    /// The number of bits of a port that have a pin.
     pub fn bits(&self, port: &str) -> usize {
         self.wires.iter().filter(|wire| wire.port.split('[').next() == Some(port)).count()
     }
 }
 
 impl Part {
-    /// What ISE and Vivado call it: `xc3s400-ft256-4`, `xc7s25csga324-1`; as well the name of an iCE40 in its package.
+    /// The part's order name as ISE and Vivado use it: `xc3s400-ft256-4`, `xc7s25csga324-1`. For an
+    /// iCE40, its name and package.
     pub fn ordered(&self) -> String {
         let Self { name, package, speed, .. } = self;
         match speed {

@@ -1,4 +1,5 @@
-//! What the shipped gateware takes of each board: `data/measured.toml`, which `cargo xtask long boards` writes.
+//! The resources that the shipped gateware uses on each board, from `data/measured.toml`. The
+//! command `cargo xtask long boards` writes that file.
 
 use super::Board;
 use schemars::JsonSchema;
@@ -6,54 +7,55 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The file, seen from the root of the workspace.
+/// Path of the file, from the root of the workspace.
 pub const MEASURED_AT: &str = "crates/boards/data/measured.toml";
 
-/// What the shipped gateware takes of a board, on its first part with its first clock.
+/// Resources that the shipped gateware uses on the board's first part with its first clock.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Measured {
-    /// On the pins of an iCE40.
+    /// An iCE40, placed with all pins assigned.
     Placed(Placed),
-    /// A Spartan's: its own tools place it, which nobody here has done.
+    /// A Spartan, synthesised only. It was not placed with the tools of Xilinx.
     Mapped(Mapped),
 }
 
-/// By nextpnr and icetime.
+/// Figures of nextpnr and icetime.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Placed {
     /// Logic cells.
     pub logic_cells: u32,
-    /// Block RAMs.
+    /// Number of block RAMs.
     pub block_rams: u32,
-    /// The clock that it reaches, MHz, as nextpnr has it,
+    /// Greatest clock according to nextpnr, MHz.
     pub nextpnr_mhz: f64,
-    /// and as icetime has it.
+    /// Greatest clock according to icetime, MHz.
     pub icetime_mhz: f64,
-    /// The first of nextpnr's seeds that reaches the clock, or the best.
+    /// The first of nextpnr's seeds that reaches the clock; otherwise the best one.
     pub seed: u32,
 }
 
-/// By yosys.
+/// Figures of yosys.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mapped {
-    /// LUTs of all widths, inverters included, and those that are memory.
+    /// LUTs of all widths, with inverters and with LUTs used as memory.
     pub luts: u32,
     /// Flip-flops.
     pub flip_flops: u32,
-    /// Cells of the carry chain: a bit each up to Spartan-3E (`MUXCY`, `XORCY`), four bits each from Spartan-6 on (`CARRY4`).
+    /// Cells of the carry chain: `MUXCY` and `XORCY` of one bit each up to Spartan-3E, `CARRY4` of
+    /// four bits from Spartan-6 on.
     pub carries: u32,
     /// Block RAMs of all sizes.
     pub block_rams: u32,
 }
 
-/// By the names of the boards.
+/// Measurements by the name of the board.
 pub type AllMeasured = BTreeMap<String, Measured>;
 
 impl Board {
-    /// What the gateware takes of it; nothing is known of a board of one's own.
+    /// The resources that the gateware uses on this board; `None` for a board that is not shipped.
     pub fn measured(&self) -> Option<Measured> {
         static MEASURED: LazyLock<AllMeasured> = LazyLock::new(|| {
             let text = include_str!("../data/measured.toml");
@@ -68,7 +70,7 @@ mod tests {
     use crate::{Measured, boards};
 
     #[test]
-    fn every_board_was_measured_and_holds_it() {
+    fn every_board_was_measured_and_is_large_enough() {
         for board in boards() {
             let (rams, of) = match board.measured().expect(&board.name) {
                 Measured::Placed(placed) => {

@@ -1,26 +1,26 @@
-//! The ports of a board's top level: what each is for, and which way it goes.
+//! The ports of a board's top level: name, direction and purpose.
 
-/// Which way a port goes, seen from the FPGA.
+/// Direction of a port, seen from the FPGA.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Way {
-    /// Into the FPGA.
+    /// Input.
     In,
-    /// Into the FPGA; pulled up, so that an open wire is high.
+    /// Input with a pull-up, so that an open wire reads high.
     PulledUp,
-    /// Out of it.
+    /// Output.
     Out,
 }
 
-/// A port.
+/// A port of the top level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Port {
-    /// Its name.
+    /// Name of the port.
     pub name: &'static str,
-    /// Which way it goes.
+    /// Direction.
     pub way: Way,
-    /// A bit for each axis.
+    /// Whether the port has one bit for each axis.
     pub per_axis: bool,
-    /// What it is for.
+    /// Purpose of the port.
     pub what: &'static str,
 }
 
@@ -28,10 +28,10 @@ const fn port(name: &'static str, way: Way, per_axis: bool, what: &'static str) 
     Port { name, way, per_axis, what }
 }
 
-/// The oscillator's port.
+/// Name of the oscillator's port.
 pub const OSCILLATOR: &str = "oscillator";
 
-/// All ports that a board may have, but for [`OSCILLATOR`] and its ties.
+/// All ports that a board may have, except [`OSCILLATOR`] and its ties.
 pub const PORTS: [Port; 13] = [
     port("step", Way::Out, true, "STEP of the axis' driver"),
     port("dir", Way::Out, true, "DIR of the axis' driver; high is backward"),

@@ -1,4 +1,4 @@
-//! A board's file as it is written, and its checks.
+//! Reads a board's file and checks it.
 
 use super::configuration::{Mode, Package};
 use super::port::{PORTS, Port};
@@ -102,10 +102,10 @@ struct Reserved {
     why: String,
 }
 
-/// A table of ports.
+/// A table of ports and their pins.
 type Ports = BTreeMap<Spanned<String>, Spanned<Pins>>;
 
-/// Connectors, their labels, and the pins behind them.
+/// Connectors by name; each maps its labels to the package's pins.
 type Connectors = BTreeMap<String, BTreeMap<Spanned<String>, String>>;
 
 pub(super) fn read(source: &Source) -> Result<Board, InputError> {
@@ -116,7 +116,7 @@ pub(super) fn read(source: &Source) -> Result<Board, InputError> {
 /// The file, and the pins of the package that already have a use.
 struct Reader<'a> {
     source: &'a Source,
-    /// By pin: its use, and where that is written.
+    /// By pin: its use, and the bytes of the file that assign it.
     used: BTreeMap<String, (String, Range<usize>)>,
 }
 
@@ -184,7 +184,8 @@ impl Reader<'_> {
         Ok(board)
     }
 
-    /// Everything that stands in the file's head.
+    /// Checks the entries at the head of the file: name, sources, flash command, USB identity and
+    /// supplies.
     fn supply(&self, raw: &RawBoard, family: Family, io: IoStandard) -> Result<(), InputError> {
         let name = raw.name.as_ref();
         if name.is_empty() || !name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-') {
@@ -245,7 +246,7 @@ impl Reader<'_> {
         if parts.is_empty() { self.refuse(raw.family.span(), "a board without a [[part]]") } else { Ok(parts) }
     }
 
-    /// A pin of the package gets a use, its only one.
+    /// Assigns a use to a pin of the package; a second use is an error.
     fn take(&mut self, pin: &Spanned<String>, purpose: &str) -> Result<(), InputError> {
         if let Some((other, _)) = self.used.insert(pin.as_ref().clone(), (purpose.to_owned(), pin.span())) {
             return self.refuse(pin.span(), format!("pin {} is taken: {other}", pin.as_ref()));
@@ -253,7 +254,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The pins of all ports, in the order of [`PORTS`].
+    /// The wires of all ports, in the order of [`PORTS`].
     fn wires(&mut self, pins: Ports, onboard: Ports, connectors: &Connectors) -> Result<Vec<Wire>, InputError> {
         let mut wires: Vec<Wire> = Vec::new();
         let labelled = pins.into_iter().map(|row| (row, true));
@@ -295,7 +296,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The pin behind a label of a connector.
+    /// The pin behind a connector's label, and the place of the label.
     fn labelled(
         &self,
         label: &Spanned<String>,
@@ -314,7 +315,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Every axis is whole, and there is a way to the host.
+    /// Checks that every axis has STEP and DIR, and that the board has pins for a host and for the
+    /// e-stop.
     fn axes(&self, board: &Board) -> Result<(), InputError> {
         let (step, dir) = (board.bits("step"), board.bits("dir"));
         if step != dir || !(1..=MAX_AXES).contains(&step) {
@@ -338,7 +340,8 @@ impl Reader<'_> {
         }
     }
 
-    /// A clock that the board can make, in which the turns of all its axes fit a tick.
+    /// Checks a proposed clock: the board can make it, and the turns of all its axes fit into its
+    /// tick.
     fn clocking(&self, board: &Board, timebase: Spanned<RawTimebase>) -> Result<Clocking, InputError> {
         let span = timebase.span();
         let RawTimebase { clock_hz, tick_ns, phases, why } = timebase.into_inner();

@@ -1,4 +1,4 @@
-//! Whether a board's part is fast enough for a clock, before hours of placement show it.
+//! Checks whether a board's part is fast enough for a clock before a placement of hours is started.
 
 use super::{Board, BoardError, Clocking, Measured, Part, Placed};
 use carrystep_core::build::Timebase;
@@ -6,15 +6,18 @@ use carrystep_core::engine::check_schedule;
 use carrystep_core::tick::Ticks;
 use carrystep_core::tick::mhz;
 
-/// How far over the clock that was measured a placement of another gateware or by another seed may come, percent.
+/// Margin, percent, by which the placement of another gateware or with another seed may exceed the
+/// measured clock.
 const MARGIN_PERCENT: u64 = 10;
 
 impl Board {
-    /// Whether a clock, Hz, is one that placement of an engine of so many axes on this part may reach: up to 10 %
-    /// over what nextpnr was measured to reach on it. Of a part that nobody measured nothing is known.
+    /// Checks whether a placement of an engine of `axes` axes on this part may reach a clock, Hz:
+    /// up to 10 % above the clock that nextpnr was measured to reach. A part without a measurement
+    /// passes.
     ///
     /// # Errors
-    /// [`BoardError::Slow`] names what was measured, and the clocks and ticks that the board makes.
+    /// [`BoardError::Slow`] gives the measured clock, and the clocks and ticks that the board
+    /// makes.
     pub fn may_reach(&self, part: &Part, clock_hz: u64, axes: usize) -> Result<(), BoardError> {
         let Some(Measured::Placed(Placed { nextpnr_mhz, .. })) = self.measured() else { return Ok(()) };
         let measured_hz = (nextpnr_mhz * 1e6).round() as u64;
@@ -27,14 +30,15 @@ impl Board {
         Err(BoardError::Slow { board, wanted_hz: clock_hz, measured_hz, proposed: self.proposed(Some(axes)) })
     }
 
-    /// The clocks and ticks that it is proposed to run at; with so many axes, where ticks are to hold their turns.
+    /// The clocks and ticks at which the board is proposed to run. If `axes` is given, each tick is
+    /// long enough for the turns of that many axes.
     pub fn proposed(&self, axes: Option<usize>) -> String {
         let clocks: Vec<String> = self.clocks.iter().map(|clock| said(clock, axes)).collect();
         clocks.join(" or ")
     }
 }
 
-/// `37.5 MHz (ticks of 2560 ns in 16 phases)`.
+/// One clock in words: `37.5 MHz (ticks of 2560 ns in 16 phases)`.
 fn said(clock: &Clocking, axes: Option<usize>) -> String {
     let Clocking { clock_hz, tick_ns, phases, .. } = *clock;
     let fits = |axes| Timebase::new(clock_hz, tick_ns, phases).is_ok_and(|time| check_schedule(axes, &time).is_ok());
@@ -48,7 +52,7 @@ mod tests {
     use crate::{board, boards};
 
     #[test]
-    fn every_board_may_reach_its_own_clocks() {
+    fn every_board_passes_the_check_at_its_own_clocks() {
         for board in boards() {
             for clock in &board.clocks {
                 board.may_reach(&board.parts[0], clock.clock_hz, 6).unwrap();
@@ -57,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_is_far_too_fast_is_refused_with_those_that_the_board_makes() {
+    fn clock_far_too_fast_is_refused_with_the_clocks_of_the_board() {
         let icebreaker = board("icebreaker").unwrap();
         let refused = |axes| icebreaker.may_reach(&icebreaker.parts[0], 48_000_000, axes).unwrap_err().to_string();
         let said = refused(6);

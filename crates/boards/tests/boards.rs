@@ -1,4 +1,5 @@
-//! The boards' files: all are read, and each kind of mistake in one is refused at its place.
+//! Tests of the boards' files: all files are valid, and each kind of mistake is refused at its
+//! place.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
@@ -15,7 +16,7 @@ fn read(text: &str) -> Result<Board, InputError> {
 }
 
 #[test]
-fn all_boards_are_there_once() {
+fn every_board_is_listed_once() {
     let mut names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
     assert_eq!(names.len(), 14);
     assert!(names.iter().all(|name| board(name).unwrap().name == *name));
@@ -25,7 +26,7 @@ fn all_boards_are_there_once() {
 }
 
 #[test]
-fn every_board_carries_six_axes_at_every_clock_that_it_proposes() {
+fn every_board_carries_six_axes_at_each_proposed_clock() {
     for board in boards() {
         board.carries(6, Limits::Each).unwrap();
         for clock in &board.clocks {
@@ -36,7 +37,7 @@ fn every_board_carries_six_axes_at_every_clock_that_it_proposes() {
 }
 
 #[test]
-fn no_pin_is_used_twice_and_every_wire_is_a_port_s() {
+fn no_pin_is_used_twice_and_every_wire_belongs_to_a_port() {
     for board in boards() {
         let pins = board.wires.iter().map(|wire| &wire.pin).chain(board.ties.iter().map(|tie| &tie.pin));
         let mut pins: Vec<&String> = pins.chain([&board.oscillator.pin]).collect();
@@ -51,8 +52,8 @@ fn no_pin_is_used_twice_and_every_wire_is_a_port_s() {
     }
 }
 
-/// On a pin that configuration uses in a mode of the board there is a port with a reason, or none; no STEP, DIR or ENABLE is on
-/// one that has a function in every mode.
+/// A port on a pin that a configuration mode of the board uses has a reason. No STEP, DIR or ENABLE
+/// is on a pin that has a function in every mode.
 #[test]
 fn ports_on_configuration_pins_are_listed_with_the_reason() {
     let mut listed = 0;
@@ -79,9 +80,9 @@ fn ports_on_configuration_pins_are_listed_with_the_reason() {
     assert_eq!(on("icestick", "uart_tx"), None);
 }
 
-/// A package that carrystep has no table of: the board's own file brings one.
+/// If carrystep has no table of a package, the board's own file can contain one.
 #[test]
-fn a_board_s_file_may_bring_the_table_of_its_package() {
+fn board_file_may_contain_the_table_of_its_package() {
     let own = ICESTICK.replace("package = \"tq144\"", "package = \"own\"");
     assert!(read(&own).unwrap_err().message.contains("the configuration pins of hx1k in own are not known"));
     let table =
@@ -92,9 +93,10 @@ fn a_board_s_file_may_bring_the_table_of_its_package() {
     assert!(refused.message.contains("uart_tx is on 8, which is SS in configuration (SPI)"), "{refused}");
 }
 
-/// Each row: what stands there, what is written instead, the words of the refusal, and the text at its place.
+/// Columns of each row: the text in the file, its replacement, words of the error message, and the
+/// text at the error's place.
 #[test]
-fn a_mistake_is_refused_where_it_stands() {
+fn mistake_in_a_board_file_is_refused_at_its_place() {
     let rows = [
         (ICESTICK, "\"J1_4\",", "\"J1_3\",", "pin 112 is taken: step[0]", "\"J1_3\", \"J1_5\""),
         (ICESTICK, "uart_rx = \"9\"", "uart_rx = \"21\"", "pin 21 is taken: the oscillator", "\"21\"\nuart"),
@@ -162,7 +164,7 @@ fn a_mistake_is_refused_where_it_stands() {
 }
 
 #[test]
-fn an_axis_is_whole_and_there_is_a_host_and_an_e_stop() {
+fn board_needs_whole_axes_a_host_and_an_estop() {
     let rows = [
         ("\"J1_3\", ", "5 pins for `step` and 6 for `dir`"),
         ("uart_rx = \"9\"\n", "a host needs both pins of a UART, or all four of an SPI"),
@@ -176,7 +178,7 @@ fn an_axis_is_whole_and_there_is_a_host_and_an_e_stop() {
 }
 
 #[test]
-fn what_a_board_cannot_do_is_said_with_what_would_do() {
+fn request_that_a_board_cannot_satisfy_is_refused_with_alternatives() {
     let icestick = board("icestick").unwrap();
     let said = |error: &dyn std::error::Error| error.to_string();
     let unknown = said(&board("icestik").unwrap_err());
@@ -209,9 +211,9 @@ fn what_a_board_cannot_do_is_said_with_what_would_do() {
     );
 }
 
-/// 37.5 MHz make no 3 Mbaud within 2 %.
+/// 37.5 MHz cannot make 3 Mbaud within 2 %.
 #[test]
-fn a_board_s_default_baud_rate_is_the_fastest_that_its_clock_makes() {
+fn default_baud_rate_of_a_board_is_the_fastest_that_its_clock_makes() {
     let default = |name| {
         let board: &Board = board(name).unwrap();
         let uart = board.uart(board.clocks[0].clock_hz).unwrap();

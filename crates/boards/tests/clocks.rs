@@ -1,17 +1,18 @@
-//! The clock solver against icestorm's own, and by hand.
+//! Tests of the clock solver against icestorm's `icepll` and against settings computed by hand.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_boards::clock::{ClockManager, ClockManagers, Dcm, Ice40Pll, Mmcm};
 use std::process::Command;
 
-/// MHz of a golden line or of icepll, in Hz.
+/// Converts the MHz of a golden line, or of icepll's output, to Hz.
 fn hz(mhz: &str) -> u64 {
     let (whole, part) = mhz.split_once('.').unwrap_or((mhz, ""));
     format!("{whole}{part:0<6}").parse().unwrap()
 }
 
-/// Where icepll is exact so are we, by the same settings; where it is not, we refuse.
+/// If icepll finds an exact setting, the solver must find the same one; otherwise the solver must
+/// refuse the clock.
 fn compare(input: &str, output: &str, settings: [u8; 4]) {
     let [divr, divf, divq, filter_range] = settings;
     let found = ClockManagers::Ice40.solve(hz(input), hz(output));
@@ -27,7 +28,8 @@ fn compare(input: &str, output: &str, settings: [u8; 4]) {
             let (r, f) = (u64::from(divr) + 1, u64::from(divf) + 1);
             let (vco, divider) = (hz(input) * f, r << divq);
             assert_ne!(vco, hz(output) * divider, "{what}");
-            // icepll also answers with clocks that are no whole Hz, and with some outside of what the PLL does.
+            // icepll also returns clocks that are not whole Hz, and some outside of the PLL's
+            // output range.
             if vco.is_multiple_of(divider) && (16_000_000..=275_000_000).contains(&(vco / divider)) {
                 let off = |made: u64| made.abs_diff(hz(output));
                 assert_eq!(error.nearest_hz.map(off), Some(off(vco / divider)), "{what}");
@@ -37,7 +39,7 @@ fn compare(input: &str, output: &str, settings: [u8; 4]) {
 }
 
 #[test]
-fn the_pll_is_set_as_icepll_sets_it() {
+fn pll_settings_equal_those_of_icepll() {
     let mut lines = 0;
     for line in include_str!("icepll.txt").lines().filter(|line| !line.starts_with('#')) {
         let words: Vec<&str> = line.split(' ').collect();
@@ -48,9 +50,9 @@ fn the_pll_is_set_as_icepll_sets_it() {
     assert_eq!(lines, 210);
 }
 
-/// The golden lines are icepll's: read from it where it is installed.
+/// Compares the golden lines with the installed icepll, if there is one.
 #[test]
-fn the_golden_lines_are_icepll_s() {
+fn golden_lines_equal_the_output_of_icepll() {
     for line in include_str!("icepll.txt").lines().filter(|line| !line.starts_with('#')).step_by(7) {
         let words: Vec<&str> = line.split(' ').collect();
         let Ok(output) = Command::new("icepll").args(["-i", words[0], "-o", words[1]]).output() else { return };
@@ -65,22 +67,22 @@ fn the_golden_lines_are_icepll_s() {
 }
 
 #[test]
-fn spartans_by_hand() {
+fn spartan_settings_equal_those_computed_by_hand() {
     let spartan3 = carrystep_boards::Family::Spartan3.clock_managers();
     let dcm = |multiply, divide| Ok(ClockManager::Dcm(Dcm { multiply, divide }));
     assert_eq!(spartan3.solve(50_000_000, 80_000_000), dcm(8, 5));
     assert_eq!(spartan3.solve(32_000_000, 40_000_000), dcm(5, 4));
-    // 12 MHz x 2 / 3 would do, were it not under what the synthesiser makes.
+    // 12 MHz x 2 / 3 would give this clock, but it is below the range of the synthesiser.
     let refused = spartan3.solve(12_000_000, 8_000_000).unwrap_err();
     assert_eq!(refused.nearest_hz, Some(18_000_000));
-    // 720 MHz / 9 is the only VCO of 12 MHz that divides into 80 MHz, and the same for 40.
+    // 720 MHz / 9 is the only VCO clock of 12 MHz that divides to 80 MHz, and also to 40 MHz.
     let mmcm = |out_divide| Ok(ClockManager::Mmcm(Mmcm { multiply: 60, divide: 1, out_divide }));
     assert_eq!(ClockManagers::Mmcm.solve(12_000_000, 80_000_000), mmcm(9));
     assert_eq!(ClockManagers::Mmcm.solve(12_000_000, 40_000_000), mmcm(18));
 }
 
 #[test]
-fn no_clock_at_all_makes_no_panic() {
+fn extreme_frequencies_do_not_panic() {
     for managers in [ClockManagers::Ice40, ClockManagers::Mmcm, carrystep_boards::Family::Spartan6.clock_managers()] {
         for oscillator in [0, 1, 12_000_000, u64::MAX] {
             for wanted in [1, 48_000_000, u64::MAX - 1] {

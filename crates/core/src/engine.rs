@@ -1,6 +1,8 @@
-//! What the engine's two sides must agree on: its schedule, its ports, its queue.
+//! The definitions that the engine's gateware and its model share: schedule, ports and queue sizes.
 //!
-//! The engine works the axes off one after the other, a *turn* of [`TURN`] clocks each:
+//! The engine computes its axes one after the other. Each axis has one time slot of [`TURN`] clocks
+//! per tick, called its *turn*. The last clock of a tick, the strobe, commits the results of all
+//! turns:
 //!
 //! ```text
 //! tick     |<------------------------------ C clocks ------------------------------>|
@@ -21,52 +23,54 @@ pub use cause::{CAUSES, Cause};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
 
-/// Most axes of an engine.
+/// Greatest number of axes of an engine.
 pub const MAX_AXES: usize = 8;
 
-/// Clocks of one axis in each tick.
+/// Clocks in a turn, the time slot of one axis in each tick.
 pub const TURN: u32 = 13;
 
-/// The clock of a turn in which the axis looks at the `put` port.
+/// The clock within a turn, from 0, in which the axis samples the `put` port.
 pub const PUT_BEAT: u32 = 7;
 
-/// Segments that can wait for an axis, beside the one that runs.
+/// Segments that an axis' queue holds, not counting the one that runs.
 pub const QUEUE: usize = 7;
 
-/// Words that make a segment: ticks less one, then V, A and J, each low half first.
+/// Data words of a segment: ticks minus one, then V, A and J, each with its low half first.
 pub const SEGMENT_WORDS: u8 = 7;
 
-/// The word that commits: bit 0 of its data is `last`.
+/// Number of the word that commits a segment to the queue; bit 0 of its data is `last`.
 pub const COMMIT: u8 = 7;
 
-/// Most ticks of a round.
+/// Greatest length of a round, in ticks. The guard samples limits and counts time in rounds.
 pub const MAX_ROUND: u32 = 1024;
 
-/// Most of any figure of the guard that is counted in rounds.
+/// Greatest time, in rounds, that the guard's counters hold.
 pub const MAX_ROUNDS: u32 = (1 << 12) - 1;
 
-/// Most looks at a limit until it is believed.
+/// Greatest number of consecutive samples (looks) that the debounce of a limit can require.
 pub const MAX_LOOKS: u32 = 127;
 
-/// Clocks that the turns of so many axes take, and the one that closes the tick.
+/// Clocks of the turns of this number of axes, plus the clock that closes the tick.
 pub const fn clocks_of_turns(axes: usize) -> u32 {
     axes as u32 * TURN + 1
 }
 
-/// Fewest clocks of a tick for so many axes in so many phases: the turns fit, and events between the phases.
+/// Fewest clocks of a tick: enough for the turns of all axes and for the events of all phases.
 pub const fn least_clocks(axes: usize, phases: u32) -> u32 {
     let (turns, events) = (clocks_of_turns(axes), phases * MIN_CLOCKS_PER_PHASE);
     if turns > events { turns } else { events }
 }
 
-/// Fewest clocks of a phase: in one its events are read, in the others more are written.
+/// Fewest clocks of a phase. In one clock its events are read; in the others new events are
+/// written.
 pub const MIN_CLOCKS_PER_PHASE: u32 = 2;
 
-/// Whether the turns of all axes fit into a tick, and events between its phases.
+/// Checks that the turns of all axes fit into a tick, and that each phase has room for its events.
 ///
 /// # Errors
-/// [`EngineError::Schedule`] says what is needed, what there is, and the least clock that would do;
-/// [`EngineError::ShortPhase`] that phases are too many.
+/// [`EngineError::Schedule`] if the turns do not fit; it gives the clocks needed, the clocks
+/// available and the slowest clock that suffices. [`EngineError::ShortPhase`] if there are too many
+/// phases.
 pub fn check_schedule(axes: usize, timebase: &Timebase) -> Result<(), EngineError> {
     let needed = clocks_of_turns(axes);
     let (clocks, phases) = (timebase.clocks_per_tick(), timebase.phases());
@@ -78,16 +82,16 @@ pub fn check_schedule(axes: usize, timebase: &Timebase) -> Result<(), EngineErro
             _ => Err(EngineError::ShortPhase { phases, clocks, least_tick_ns }),
         };
     }
-    // As few clocks as hold the turns and divide into phases.
+    // The fewest clocks that hold the turns and divide into phases.
     let least = u64::from(needed.next_multiple_of(timebase.phases()));
     let least_hz = (least * 1_000_000_000).div_ceil(tick_ns);
     Err(EngineError::Schedule { axes, needed, clocks, tick_ns, clock_hz, least_tick_ns, least_hz })
 }
 
-/// Whether the timers can count what the drivers of all axes ask for.
+/// Checks that the pin timers can count the times of all axes, 1 to [`MAX_CLOCKS`] clocks.
 ///
 /// # Errors
-/// [`EngineError::PinTiming`] names the first that they cannot.
+/// [`EngineError::PinTiming`] names the first time that they cannot.
 pub fn check_pins(pins: &[PinTiming]) -> Result<(), EngineError> {
     for (axis, &PinTiming { width, gap, setup, hold }) in pins.iter().enumerate() {
         for (name, clocks) in [("width", width), ("gap", gap), ("setup", setup), ("hold", hold)] {
@@ -99,74 +103,77 @@ pub fn check_pins(pins: &[PinTiming]) -> Result<(), EngineError> {
     Ok(())
 }
 
-/// One word of a segment on its way into the queue.
+/// One word of a segment on its way into an axis' queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Put {
-    /// For this axis.
+    /// Number of the axis.
     pub axis: u8,
-    /// Which word, or [`COMMIT`].
+    /// Number of the word, 0 to 6, or [`COMMIT`].
     pub word: u8,
-    /// The word.
+    /// Value of the word.
     pub data: u32,
 }
 
-/// What the host and the machine drive in one clock cycle.
+/// Input values of the engine in one clock cycle, from the host's link and from the machine's pins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct EngineInputs {
-    /// A word is offered; it stays until it is taken.
+    /// The word that the host offers, held until the engine accepts it.
     pub put: Option<Put>,
-    /// The axis whose room is asked for while nothing is put.
+    /// The axis whose free queue space is requested while no word is offered.
     pub room_of: u8,
-    /// A start of these axes is offered; it stays until it is taken.
+    /// Mask of the axes whose start is offered, held until the engine accepts it.
     pub start: Option<u8>,
     /// Resume after a stop.
     pub clear: bool,
-    /// The host's controlled stop.
+    /// The host requests a controlled stop.
     pub stop: bool,
-    /// The host has broken the segment protocol.
+    /// The host has violated the segment protocol.
     pub broken: bool,
-    /// The host says anew which axes wait for their limit.
+    /// New mask of the axes that wait for their limit, if the host writes one.
     pub home: Option<u8>,
-    /// The host was heard of.
+    /// The host has sent a valid request; this restarts the watchdog.
     pub kick: bool,
-    /// The host wants the drivers to be powered.
+    /// The host requests power for the drivers.
     pub enable: bool,
-    /// The e-stop pin, as it is wired.
+    /// Level of the e-stop pin.
     pub estop: bool,
-    /// The limit pins at the low ends, as they are wired.
+    /// Levels of the limit pins at the low ends; bit i is axis i.
     pub limit_min: u8,
-    /// The limit pins at the high ends, as they are wired.
+    /// Levels of the limit pins at the high ends; bit i is axis i.
     pub limit_max: u8,
 }
 
-/// What the engine shows in one clock cycle.
+/// Output values of the engine in one clock cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EngineOutputs {
-    /// The offered word is taken in this cycle.
+    /// The engine accepts the offered word in this cycle.
     pub put_ready: bool,
-    /// An offered start is taken in this cycle.
+    /// The engine accepts an offered start in this cycle.
     pub start_ready: bool,
-    /// STEP pins, bit i is axis i.
+    /// Levels of the STEP pins; bit i is axis i.
     pub step: u8,
-    /// DIR pins, 1 is backward.
+    /// Levels of the DIR pins; bit i is axis i, 1 is backward.
     pub dir: u8,
-    /// The drivers are to be powered.
+    /// Level of the ENABLE output: the drivers are to have power.
     pub enabled: bool,
-    /// All axes are done and no start is armed.
+    /// All axes have finished and no start is armed.
     pub idle: bool,
-    /// Why all axes stop, where they do, and the axes that it came from.
+    /// The latched stop cause and the mask of the axes that caused it; `None` while no stop is in
+    /// force.
     pub fault: Option<(Cause, u8)>,
-    /// No axis moves any more.
+    /// The stop is over: no axis moves any more.
     pub halted: bool,
     /// A start is armed.
     pub armed: bool,
-    /// The drivers have had power for long enough, and shall have it.
+    /// The drivers have had power for the guard's `enable` time, and the host still requests it.
     pub ready: bool,
-    /// The axes that wait for their limit.
+    /// Mask of the axes that wait for their limit.
     pub homing: u8,
-    /// The axis that says its position because it waits for its limit.
+    /// The axis whose position is latched in this cycle, because the limit that it waits for was
+    /// reached.
     pub latch: Option<u8>,
-    /// Segments that the axis of `put` (or of `room_of`) has room for, where it says so.
+    /// Free queue space, in segments, of the axis of `put` (or of `room_of`), in the cycles in
+    /// which that axis reports it.
     pub room: Option<u8>,
     /// Axes start at the end of this cycle.
     pub started: bool,
@@ -178,7 +185,7 @@ mod tests {
     use alloc::string::ToString as _;
 
     #[test]
-    fn a_tick_that_is_too_short_is_refused_with_the_arithmetic() {
+    fn tick_too_short_for_the_turns_is_refused_with_the_arithmetic() {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         assert_eq!(
             check_schedule(6, &timebase).unwrap_err().to_string(),
@@ -190,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn a_phase_of_one_clock_is_refused() {
+    fn phase_of_one_clock_is_refused() {
         let timebase = |phases| Timebase::new(16_000_000, 1000, phases).unwrap();
         assert_eq!(
             check_schedule(1, &timebase(16)).unwrap_err().to_string(),

@@ -1,23 +1,25 @@
-//! The faults that the gateware latches, and their names.
+//! The faults that the six-axis core latches, and their names.
 
 use crate::build::AXES;
 use core::fmt;
 
-/// Latched faults; any of them freezes all axes until an explicit clear.
+/// Latched faults of the six-axis core. Any of them freezes all axes until the host asserts
+/// `clear`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Faults {
-    /// Bit i: a second step was owed on axis i (promise 6).
+    /// Bit i: a second step arrived on axis i while one was held back for its pin timing (promise
+    /// 6).
     pub overrun: u8,
     /// Bit i: V of axis i would have left (-2^63, 2^63).
     pub overspeed: u8,
-    /// Bit i: the queue of axis i was dry after a segment not marked LAST.
+    /// Bit i: the queue of axis i was empty after a segment not marked LAST.
     pub underrun: u8,
-    /// The host broke the segment protocol.
+    /// The host violated the segment protocol.
     pub protocol: bool,
 }
 
 impl Faults {
-    /// Whether anything is latched.
+    /// Whether any fault is latched.
     pub const fn any(self) -> bool {
         self.overrun != 0 || self.overspeed != 0 || self.underrun != 0 || self.protocol
     }

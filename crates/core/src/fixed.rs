@@ -1,26 +1,28 @@
-//! Number formats of the arithmetic contract: one unit is 2^-64 step, time is counted in ticks.
+//! Number formats of the arithmetic contract. One unit of distance is 2^-64 step; time is counted
+//! in ticks.
 //!
-//! Everything that counts or lands is one of these integers; a float never decides either.
+//! Every value that is counted or that decides where an edge falls is one of these integers. No
+//! float does either.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Bits behind the point of a position: one step is 2^64 units.
+/// Fractional bits of a position: one step is 2^64 units.
 pub const FRACTION_BITS: u32 = 64;
 
 /// One step in units of 2^-64 step.
 pub const ONE_STEP: i128 = 1 << FRACTION_BITS;
 
-/// Width of a segment's tick count.
+/// Width of a segment's tick count, bits.
 pub const TICKS_BITS: u32 = 32;
 
-/// Width of the position register, two's complement.
+/// Width of the position register, bits, two's complement.
 pub const POSITION_BITS: u32 = 32;
 
-/// Where in a step a move starts and ends.
+/// Phase of a step in which a move starts and ends.
 ///
-/// `Half` puts every pulse of a move in the middle of a step, so that the last pulse of a move which
-/// ends at rest is well conditioned. `Zero` is Table 1 of Ranade (2009).
+/// `Half` puts every pulse of a move in the middle of a step, so that the last pulse of a move
+/// which ends at rest is well conditioned. `Zero` is Table 1 of Ranade (2009).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StartPhase {
@@ -32,7 +34,7 @@ pub enum StartPhase {
 }
 
 impl StartPhase {
-    /// The value of P before the first move and after every move, in units of 2^-64 step.
+    /// Value of P before the first move and after every move, in units of 2^-64 step.
     pub const fn start_value(self) -> u64 {
         match self {
             Self::Half => 1 << 63,

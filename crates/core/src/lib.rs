@@ -1,7 +1,7 @@
-//! The single source of carrystep's facts: number formats, segments, build parameters, faults,
-//! stop causes, registers and the link's program. It needs no standard library.
+//! The definitions that the crates of carrystep share: number formats, segments, build parameters,
+//! faults, stop causes, registers and the link's program. It needs no standard library.
 //!
-//! Nothing here computes motion. Everything that two crates must agree on stands here once.
+//! This crate computes no motion. Each fact that two crates must agree on is defined here, once.
 
 #![no_std]
 

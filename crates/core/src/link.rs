@@ -1,10 +1,15 @@
-//! What the host and the gateware's link must agree on: frames, registers, the build id (docs/protocol.md).
+//! The definitions that the host and the gateware's link share: frames, registers and the build id
+//! (docs/protocol.md).
 //!
 //! ```text
 //! line      END, then the frame with END and ESC escaped, then END         RFC 1055
 //! request   sequence 1 | address 1 | words, 4 each, low byte first | CRC 4
-//! answer    sequence 1 | address 1 | next 1 | state 1 | free 1 | culprits 1 | homing 1 | data 4 | CRC 4
+//! answer    sequence 1 | address 1 | next 1 | state 1 | free 1 | culprits 1 | homing 1 | data 4 |
+//!           CRC 4
 //! ```
+//!
+//! The numbers are lengths in bytes. A change of the register map or of a build parameter changes
+//! the build id, so that a driver refuses the gateware that it was not made for.
 
 mod assembler;
 mod build_id;
@@ -26,25 +31,25 @@ pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CL
 
 use crate::engine::{CAUSES, Cause};
 
-/// A number that both sides must know; generated into the clients' languages.
+/// A number that both sides of the link use; it is generated into the clients' languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Constant {
-    /// Its name.
+    /// Name of the constant.
     pub name: &'static str,
-    /// Its type, in Rust's words: `u8`, `u32` or `usize`.
+    /// Its type in Rust: `u8`, `u32` or `usize`.
     pub kind: &'static str,
-    /// What it is.
+    /// Its value.
     pub value: u64,
-    /// What it means.
+    /// Its meaning.
     pub what: &'static str,
 }
 
-/// Declares each constant once: itself, and its row of the table.
+/// Declares each constant once, together with its row of the table.
 macro_rules! constants {
     ($($name:ident: $kind:ident = $value:expr, $what:literal;)*) => {
         $(#[doc = $what] pub const $name: $kind = $value;)*
 
-        /// The constants above, for the generator.
+        /// The constants above as a table, for the generator.
         pub const CONSTANTS: &[$crate::link::Constant] = &[$($crate::link::Constant {
             name: stringify!($name),
             kind: stringify!($kind),
@@ -72,18 +77,18 @@ constants! {
     WINDOW: u8 = 127, "Frames by which a repeated one may lie behind the next; so many may be on their way.";
 }
 
-/// A place in a byte of an answer.
+/// A field in the bytes of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Field {
-    /// Its name, in the documentation and in C.
+    /// Name of the field, in the documentation and in C.
     pub name: &'static str,
-    /// Byte of the answer.
+    /// Number of the byte in the answer, from 0.
     pub byte: usize,
-    /// Lowest bit.
+    /// Lowest bit of the field.
     pub bit: u8,
-    /// How many bits.
+    /// Number of bits.
     pub bits: u8,
-    /// What it says.
+    /// Meaning of the field.
     pub what: &'static str,
 }
 
@@ -91,7 +96,7 @@ const fn field(name: &'static str, byte: usize, bit: u8, bits: u8, what: &'stati
     Field { name, byte, bit, bits, what }
 }
 
-/// The answer, byte by byte; data (low byte first) and CRC follow.
+/// The fields of an answer, byte by byte. The data (low byte first) and the CRC follow them.
 pub const ANSWER: [Field; 13] = [
     field("sequence", 0, 0, 8, "the request's sequence number"),
     field("address", 1, 0, 8, "the request's address"),
@@ -108,7 +113,7 @@ pub const ANSWER: [Field; 13] = [
     field("homing", 6, 0, 8, "axes that still wait for their limit"),
 ];
 
-/// The name of a cause, in documentation and messages, by its number.
+/// The names of the causes, in documentation and messages, by number.
 ///
 /// ```
 /// use crate::engine::Cause;

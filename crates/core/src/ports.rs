@@ -1,11 +1,11 @@
-//! The ports of the six-axis core, once: benches, drivers of simulations and documentation come from
-//! this table (meaning of each port: docs/clock-by-clock.md).
+//! The ports of the six-axis core. Benches, simulation drivers and the documentation are made from
+//! this table; docs/clock-by-clock.md says what each port means.
 
 use crate::build::AXES;
 use crate::fault::Faults;
 use crate::segment::Segment;
 
-/// Whether a port goes into or out of the core.
+/// Direction of a port, seen from the core.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// Into the core.
@@ -14,14 +14,14 @@ pub enum Direction {
     Output,
 }
 
-/// One port.
+/// A port of the core.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Port {
-    /// Its name in every level.
+    /// The port's name, the same in every simulation level.
     pub name: &'static str,
-    /// Which way it goes.
+    /// Its direction.
     pub direction: Direction,
-    /// Bits.
+    /// Width in bits.
     pub width: u32,
 }
 
@@ -61,35 +61,35 @@ pub const SIX_AXIS_PORTS: [Port; 24] = [
     output("started", 1),
 ];
 
-/// What a host drives in one clock cycle.
+/// Input values of the core in one clock cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Inputs {
-    /// A segment is offered to this axis (0 to 7; 6 and 7 do not exist).
+    /// The axis (0 to 7; 6 and 7 do not exist) and the segment that the host offers, if any.
     pub segment: Option<(u8, Segment)>,
-    /// A start of these axes is offered.
+    /// Mask of the axes whose start the host offers, if any.
     pub start: Option<u8>,
     /// Resume after a fault.
     pub clear: bool,
 }
 
-/// What the core shows in one clock cycle.
+/// Output values of the core in one clock cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Outputs {
-    /// The offered segment is taken in this cycle.
+    /// The core accepts the offered segment in this cycle.
     pub seg_ready: bool,
-    /// The offered start is taken in this cycle.
+    /// The core accepts the offered start in this cycle.
     pub start_ready: bool,
-    /// STEP pins, bit i is axis i.
+    /// Levels of the STEP pins; bit i is axis i.
     pub step: u8,
-    /// DIR pins, 1 is backward.
+    /// Levels of the DIR pins; bit i is axis i, 1 is backward.
     pub dir: u8,
-    /// Position registers, steps.
+    /// Position registers, in steps.
     pub position: [i32; AXES],
-    /// Steps that a freeze discarded.
+    /// Number of steps per axis that a freeze discarded.
     pub discarded: [u32; AXES],
-    /// All axes are done and no start is armed.
+    /// All axes have finished and no start is armed.
     pub idle: bool,
-    /// What is latched.
+    /// Latched faults.
     pub faults: Faults,
     /// Axes start at the end of this cycle.
     pub started: bool,

@@ -1,46 +1,46 @@
-//! What the host hands to the gateware: segments, and the commands that carry them.
+//! What the host sends to the gateware: segments, and the commands that carry them.
 
 use alloc::vec::Vec;
 
-/// A stretch of whole ticks over which one axis follows a cubic.
+/// A run of whole ticks during which one axis follows a cubic.
 ///
-/// When it starts, V, A and J are loaded and P carries on. After n ticks the axis has moved by
-/// `n V + n(n-1)/2 A + n(n-1)(n-2)/6 J` units of 2^-64 step, exactly.
+/// When the segment starts, the axis loads V, A and J and keeps its position P. After n ticks the
+/// axis has moved by exactly `n V + n(n-1)/2 A + n(n-1)(n-2)/6 J` units of 2^-64 step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Segment {
     /// Length in ticks, at least 1.
     pub ticks: u32,
-    /// Speed in 2^-64 step per tick, always above -2^63.
+    /// Speed in 2^-64 step per tick, always greater than -2^63.
     pub v: i64,
     /// Acceleration in 2^-64 step per tick^2.
     pub a: i64,
     /// Jerk in 2^-64 step per tick^3.
     pub j: i64,
-    /// The axis stops (V = A = J = 0) when this segment is over.
+    /// Whether the axis stops (V = A = J = 0) at the end of this segment.
     pub last: bool,
 }
 
-/// One thing that a host does, in order (docs/clock-by-clock.md, "host").
+/// One action of a host; a [`Program`] lists them in order (docs/clock-by-clock.md, "host").
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Command {
-    /// Offer a segment to an axis until it is taken.
+    /// Offer a segment to an axis until the gateware accepts it.
     Segment {
         /// Axis number, from 0.
         axis: u8,
         /// The segment.
         segment: Segment,
     },
-    /// Start the axes of this mask (bit i is axis i) on one tick.
+    /// Start the axes of this mask on the same tick.
     Start {
         /// Bit i starts axis i.
         mask: u8,
     },
-    /// Offer nothing for this many clocks, at least 1.
+    /// Offer nothing for this number of clocks.
     Wait {
-        /// Clock cycles.
+        /// Clock cycles, at least 1.
         clocks: u32,
     },
-    /// Resume after a fault.
+    /// Resume after a fault (the `clear` input).
     Clear,
 }
 

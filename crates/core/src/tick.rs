@@ -1,7 +1,8 @@
-//! Which ticks a clock can have: a whole number of ns, of clocks, and of clocks in each phase.
+//! The tick lengths that a clock allows. A tick must be a whole number of ns and of clocks, and
+//! each of its phases must be a whole number of clocks.
 //!
-//! The machine file gives the tick in whole ns, so that all ticks of a clock are multiples of one grain:
-//! `lcm(phases, clock_hz / gcd(clock_hz, 10^9))` clocks.
+//! A machine file gives the tick in whole ns. All ticks of a clock are therefore multiples of one
+//! smallest tick, the grain, of `lcm(phases, clock_hz / gcd(clock_hz, 10^9))` clocks.
 
 use crate::build::{MAX_CLOCK_HZ, MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
 use crate::engine;
@@ -10,19 +11,21 @@ use alloc::format;
 use alloc::string::String;
 use core::fmt;
 
-/// A machine file without `tick_ns` has this tick, ns, at [`FIXED_CLOCK_HZ`].
+/// Tick, in ns, of a machine file without `tick_ns` whose clock is [`FIXED_CLOCK_HZ`].
 const FIXED_TICK_NS: u64 = 1000;
 
-/// The default clock, Hz. Its default tick is fixed, and not the shortest that an engine takes.
+/// The default clock, Hz. Its default tick is fixed; it is not the shortest tick that an engine
+/// allows.
 pub const FIXED_CLOCK_HZ: u64 = 48_000_000;
 
-/// A tick that is chosen and longer than this, ns, comes with a proposal of fewer phases, where they shorten it.
+/// If a chosen tick is longer than this, in ns, and fewer phases would shorten it, they are
+/// proposed.
 const LONG_NS: u64 = 4000;
 
-/// Phases that are proposed for a tick that is too long.
+/// Number of phases that is proposed where the tick is too long.
 const FEWER_PHASES: u32 = 4;
 
-/// All ticks of a clock.
+/// The set of ticks that a clock allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ticks {
     grain_clocks: u64,
@@ -30,8 +33,9 @@ pub struct Ticks {
 }
 
 impl Ticks {
-    /// The ticks of a clock, Hz, that divide into so many phases; `None` where even the shortest has more
-    /// clocks than a tick can have.
+    /// The ticks of a clock (Hz) that divide into this number of phases. `None` if even the
+    /// shortest of them has more than [`MAX_CLOCKS`] clocks, or if the clock is not from 1 Hz to
+    /// [`MAX_CLOCK_HZ`].
     pub fn of(clock_hz: u64, phases: u32) -> Option<Self> {
         const NS: u64 = 1_000_000_000;
         if !(1..=MAX_CLOCK_HZ).contains(&clock_hz) {
@@ -46,19 +50,19 @@ impl Ticks {
         Some(Self { grain_clocks, grain_ns: grain_clocks * NS / clock_hz })
     }
 
-    /// All ticks are multiples of this, ns.
+    /// The smallest tick, ns; every tick of this clock is a multiple of it.
     pub const fn grain_ns(&self) -> u64 {
         self.grain_ns
     }
 
-    /// The shortest tick of at least so many clocks, and no fewer than any tick has, ns; `None` where that is over the most
-    /// that there can be.
+    /// The shortest tick, ns, that has at least `clocks` clocks and at least
+    /// [`MIN_CLOCKS_PER_TICK`]. `None` if that tick would have more than [`MAX_CLOCKS`].
     pub fn shortest(&self, clocks: u32) -> Option<u64> {
         let grains = u64::from(clocks.max(MIN_CLOCKS_PER_TICK)).div_ceil(self.grain_clocks);
         (grains <= self.most()).then_some(grains * self.grain_ns)
     }
 
-    /// The nearest ticks that are shorter and longer than this one, ns, both of at least so many clocks.
+    /// The nearest ticks, ns, below and above `tick_ns` that have at least `clocks` clocks.
     pub fn beside(&self, tick_ns: u64, clocks: u32) -> (Option<u64>, Option<u64>) {
         let Some(shortest) = self.shortest(clocks) else { return (None, None) };
         let longest = self.most() * self.grain_ns;
@@ -67,37 +71,37 @@ impl Ticks {
         ((below >= shortest).then_some(below), (above <= longest).then_some(above))
     }
 
-    /// Grains of the longest tick.
+    /// Length of the longest tick, in grains.
     fn most(&self) -> u64 {
         u64::from(MAX_CLOCKS) / self.grain_clocks
     }
 
-    /// The shortest tick that an engine of so many axes takes, ns.
+    /// The shortest tick, ns, that an engine of this number of axes supports.
     pub fn for_engine(clock_hz: u64, phases: u32, axes: usize) -> Option<u64> {
         Self::of(clock_hz, phases)?.shortest(engine::least_clocks(axes, phases))
     }
 }
 
-/// The tick of a machine file that gives none, in ns, or what is said where there is none.
+/// The tick that carrystep chooses for a machine file without `tick_ns`.
 ///
-/// It is the shortest that an engine of its axes takes, which the parallel core takes too: one machine has one tick,
-/// whichever core it runs on.
+/// It is the shortest tick that an engine of the machine's axes supports. The parallel core
+/// supports that tick too, so that a machine has the same tick on either core.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChosenTick {
-    /// Hz.
+    /// Clock, Hz.
     pub clock_hz: u64,
-    /// ns.
+    /// Chosen tick, ns.
     pub tick_ns: u64,
-    /// 1, 4 or 16.
+    /// Phases of a tick: 1, 4 or 16.
     pub phases: u32,
-    /// Axes of the machine.
+    /// Number of axes of the machine.
     pub axes: usize,
-    /// The tick that fewer phases would allow, ns, where this one is long and that one is shorter.
+    /// The tick, ns, that fewer phases would allow, if this tick is long and that one is shorter.
     pub fewer_phases_ns: Option<u64>,
 }
 
 impl ChosenTick {
-    /// The shortest tick for an engine; `None` where the clock has none.
+    /// Chooses the shortest tick for an engine; `None` if the clock allows no tick.
     pub fn new(clock_hz: u64, phases: u32, axes: usize) -> Option<Self> {
         let tick_ns = Ticks::for_engine(clock_hz, phases, axes)?;
         let fewer = (tick_ns > LONG_NS && phases > FEWER_PHASES)
@@ -107,7 +111,7 @@ impl ChosenTick {
         Some(Self { clock_hz, tick_ns, phases, axes, fewer_phases_ns })
     }
 
-    /// What fewer phases would do, where that is proposed.
+    /// A sentence that proposes fewer phases, if they would shorten a long tick.
     pub fn proposal(&self) -> Option<String> {
         let Self { fewer_phases_ns, tick_ns, .. } = self;
         fewer_phases_ns
@@ -124,7 +128,8 @@ impl fmt::Display for ChosenTick {
     }
 }
 
-/// The tick of a clock whose machine file gives none: fixed at the default clock, otherwise the one that is chosen.
+/// The tick, ns, of a machine file without `tick_ns`: fixed at the default clock, chosen at any
+/// other one.
 pub fn default_tick(clock_hz: u64, phases: u32, axes: usize) -> Option<(u64, Option<ChosenTick>)> {
     if clock_hz == FIXED_CLOCK_HZ {
         return Some((FIXED_TICK_NS, None));
@@ -132,7 +137,8 @@ pub fn default_tick(clock_hz: u64, phases: u32, axes: usize) -> Option<(u64, Opt
     ChosenTick::new(clock_hz, phases, axes).map(|chosen| (chosen.tick_ns, Some(chosen)))
 }
 
-/// The ticks beside one that cannot be, and what an engine takes: a help line.
+/// A help line for a tick that the clock does not allow: the nearest ticks, and the shortest for an
+/// engine.
 pub fn nearest_ticks(clock_hz: u64, tick_ns: u64, phases: u32, axes: usize) -> String {
     let at = format!("at {} MHz in {phases} phases", mhz(clock_hz));
     let Some(ticks) = Ticks::of(clock_hz, phases) else {
@@ -154,12 +160,12 @@ pub fn nearest_ticks(clock_hz: u64, tick_ns: u64, phases: u32, axes: usize) -> S
     format!("{at}, {nearest}{engine}{finer}")
 }
 
-/// `1 axis`, `6 axes`.
+/// The number of axes in words: `1 axis`, `6 axes`.
 fn counted(axes: usize) -> String {
     if axes == 1 { "1 axis".to_owned() } else { format!("{axes} axes") }
 }
 
-/// MHz as exactly as Hz are.
+/// A frequency in MHz, with as many decimals as it needs to be exact.
 pub fn mhz(hz: u64) -> String {
     let digits = format!("{}.{:06}", hz / 1_000_000, hz % 1_000_000);
     digits.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -176,7 +182,7 @@ mod tests {
     use alloc::string::ToString as _;
 
     #[test]
-    fn common_clocks_have_the_shortest_tick_that_six_axes_take() {
+    fn shortest_tick_of_common_clocks_for_six_axes() {
         let chosen = |mhz: u64| ChosenTick::new(mhz * 1_000_000, 16, 6).unwrap();
         let ticks = [25, 27, 50, 80, 100, 125].map(|mhz| chosen(mhz).tick_ns);
         assert_eq!(ticks, [3200, 16_000, 1600, 1000, 800, 640]);
@@ -190,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn the_chosen_tick_is_the_shortest_of_all_that_fit() {
+    fn chosen_tick_is_the_shortest_that_passes_all_checks() {
         for clock_hz in
             [1_000_000, 12_000_000, 12_288_000, 25_000_000, 27_000_000, 33_300_000, 125_000_000, 999_000_000]
         {
@@ -208,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn ticks_beside_another_fit_and_none_is_nearer() {
+    fn neighbouring_ticks_are_valid_and_the_nearest() {
         let fits = |hz, ns: u64| Timebase::new(hz, ns, 16).is_ok();
         for hz in [25_000_000, 27_000_000, 48_000_000, 100_000_000] {
             let ticks = Ticks::of(hz, 16).unwrap();
@@ -223,13 +229,13 @@ mod tests {
     }
 
     #[test]
-    fn megahertz_are_as_exact_as_hertz() {
+    fn megahertz_are_shown_exactly() {
         let shown = [48_000_000, 37_500_000, 1, 100_000_001].map(mhz);
         assert_eq!(shown, ["48", "37.5", "0.000001", "100.000001"]);
     }
 
     #[test]
-    fn a_clock_without_ticks_says_so() {
+    fn clock_without_ticks_is_reported() {
         assert_eq!([33_333_333, 0, u64::MAX].map(|hz| Ticks::of(hz, 16)), [None; 3]);
         assert_eq!(Ticks::of(48_000_000, u32::MAX), None);
         assert!(nearest_ticks(33_333_333, 1000, 16, 6).contains("no tick of whole ns"));

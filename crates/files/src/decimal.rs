@@ -1,12 +1,13 @@
-//! Numbers as the file writes them: exact decimals, so that ten times 0.1 is one.
+//! Numbers of input files as exact decimals: the sum of ten times 0.1 is exactly 1.
 
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
 use std::str::FromStr;
 
-/// Most digits, before and behind the point together, that a number in a file may need.
+/// Greatest number of digits of a number in a file, before and behind the point together.
 const MAX_DIGITS: i64 = 60;
 
-/// The exact value of a TOML number literal: sign, underscores and exponent allowed.
+/// The exact value of a TOML number literal. Sign, underscores, exponent and the prefixes 0x, 0o
+/// and 0b are allowed.
 ///
 /// `None` if it is not a finite decimal number or needs more than 60 digits.
 pub fn parse(literal: &str) -> Option<BigDecimal> {
@@ -25,12 +26,12 @@ pub fn parse(literal: &str) -> Option<BigDecimal> {
     (digits <= MAX_DIGITS && scale.checked_abs()? <= MAX_DIGITS).then_some(value)
 }
 
-/// The nearest whole number, half away from zero; `None` outside i64.
+/// The nearest whole number; halves are rounded away from zero. `None` outside i64.
 pub fn round_half_away(value: &BigDecimal) -> Option<i64> {
     value.with_scale_round(0, RoundingMode::HalfUp).to_i64()
 }
 
-/// The nearest float.
+/// The nearest float; NaN if the number has none.
 pub fn to_f64(value: &BigDecimal) -> f64 {
     value.to_f64().unwrap_or(f64::NAN)
 }
@@ -40,21 +41,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ten_tenths_are_one() {
+    fn ten_tenths_make_one() {
         let tenth = parse("0.1").unwrap();
         let sum: BigDecimal = std::iter::repeat_n(tenth, 10).sum();
         assert_eq!(sum, BigDecimal::from(1));
     }
 
     #[test]
-    fn halves_go_away_from_zero() {
+    fn halves_are_rounded_away_from_zero() {
         for (text, whole) in [("0.5", 1), ("-0.5", -1), ("1.5", 2), ("2.5", 3), ("-2.5", -3), ("0.4999999", 0)] {
             assert_eq!(round_half_away(&parse(text).unwrap()), Some(whole), "{text}");
         }
     }
 
     #[test]
-    fn absurd_literals_are_refused_not_expanded() {
+    fn literals_of_too_many_digits_are_refused() {
         for text in ["1e999999999", "1e-999999999", "nan", "inf", "", "1e", "--1"] {
             assert_eq!(parse(text), None, "{text}");
         }

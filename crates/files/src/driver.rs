@@ -1,4 +1,4 @@
-//! Timing presets of stepper drivers, from `data/drivers.toml`.
+//! Timing presets of stepper drivers, from `data/drivers.toml`. A new preset is a new table there.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -6,23 +6,23 @@ use std::sync::LazyLock;
 
 const DATA: &str = include_str!("../data/drivers.toml");
 
-/// What one driver asks of its STEP and DIR inputs, in ns.
+/// Minimum times that a stepper driver requires at its STEP and DIR inputs, in ns.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Driver {
-    /// STEP high, ns.
+    /// STEP high time, ns.
     pub step_ns: u64,
-    /// STEP low, ns.
+    /// STEP low time, ns.
     pub gap_ns: u64,
-    /// DIR stable before a rising STEP, ns.
+    /// Set-up time: DIR is stable before a rising edge of STEP, ns.
     pub setup_ns: u64,
-    /// DIR stable after a rising STEP, ns.
+    /// Hold time: DIR is stable after a rising edge of STEP, ns.
     pub hold_ns: u64,
-    /// What the figures rest on.
+    /// The source of the figures, or how they were measured.
     pub evidence: String,
 }
 
-/// All presets by lower-case name.
+/// All presets, by lower-case name.
 pub fn drivers() -> &'static BTreeMap<String, Driver> {
     static DRIVERS: LazyLock<BTreeMap<String, Driver>> =
         LazyLock::new(|| toml::from_str(DATA).unwrap_or_else(|error| unreachable!("data/drivers.toml: {error}")));
@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_preset_is_usable() {
+    fn every_preset_has_lower_case_name_and_positive_times() {
         assert_eq!(drivers().len(), 8);
         for (name, driver) in drivers() {
             assert_eq!(name, &name.to_lowercase());

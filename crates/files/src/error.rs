@@ -1,4 +1,4 @@
-//! What is wrong with an input file, and where.
+//! Errors of input files, with the place of each in its file.
 
 use crate::{nearest, read_text};
 
@@ -7,45 +7,45 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A text file that was read, kept so that an error can show the line.
+/// A text file that was read. Its text is kept so that an error can quote the line.
 #[derive(Debug, Clone)]
 pub struct Source {
-    /// Where it came from, as the user named it.
+    /// Path of the file, as the user gave it.
     pub path: PathBuf,
     /// Its whole text.
     pub text: Arc<str>,
 }
 
-/// An input that cannot be used: what, where, and what to do.
+/// An input that cannot be used: the mistake, its place, and the remedy.
 #[derive(Debug, Clone)]
 pub struct InputError {
-    /// What is wrong.
+    /// The mistake.
     pub message: String,
-    /// What to do about it.
+    /// The remedy, if there is one.
     pub help: Option<String>,
-    /// The file, and the bytes in it that are wrong.
+    /// The file and the range of bytes in it that is wrong, if the error belongs to one.
     pub place: Option<(Source, Range<usize>)>,
 }
 
 impl InputError {
-    /// An error without a place.
+    /// Makes an error without a place.
     pub fn new(message: impl Into<String>) -> Self {
         Self { message: bounded(message.into()), help: None, place: None }
     }
 
-    /// An error at a span of bytes in a file.
+    /// Makes an error at a range of bytes in a file.
     pub fn at(source: &Source, span: Range<usize>, message: impl Into<String>) -> Self {
         Self { place: Some((source.clone(), span)), ..Self::new(message) }
     }
 
-    /// The same error with advice.
+    /// Adds a remedy to the error.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(bounded(help.into()));
         self
     }
 
-    /// Line and column, both from 1, of the place.
+    /// Line and column of the place, both from 1.
     pub fn line_column(&self) -> Option<(usize, usize)> {
         let (source, span) = self.place.as_ref()?;
         Some(line_column(source.text.get(..span.start)?))
@@ -68,10 +68,11 @@ impl fmt::Display for InputError {
 impl std::error::Error for InputError {}
 
 impl Source {
-    /// Reads a text file. No output of this process can replace it from then on.
+    /// Reads a text file, and registers it as an input, so that no later output of this process
+    /// replaces it.
     ///
     /// # Errors
-    /// The file cannot be read, is no regular file, is too long, or is not UTF-8.
+    /// The file cannot be read, is not a regular file, is too long, or is not UTF-8.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let shown = path.display();
         let bytes = read_text(path).map_err(|error| InputError::new(error.to_string()))?;
@@ -83,10 +84,11 @@ impl Source {
         Ok(Self { path: path.to_owned(), text: text.into() })
     }
 
-    /// Parses TOML, with the place of what is wrong.
+    /// Parses the text as TOML.
     ///
     /// # Errors
-    /// Syntax errors, unknown keys, missing fields, wrong types.
+    /// [`InputError`] at the place of a syntax error, an unknown key, a missing field or a wrong
+    /// type.
     pub fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, InputError> {
         toml::from_str(&self.text).map_err(|error| {
             let message = error.message();
@@ -99,22 +101,22 @@ impl Source {
     }
 }
 
-/// Line and column, both from 1, right behind a text.
+/// Line and column, both from 1, of the character that follows the text.
 fn line_column(before: &str) -> (usize, usize) {
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
     (line, column)
 }
 
-/// The known key or value that was meant, where the parser's message names one that is unknown and those that
-/// it knows: "unknown field `a`, expected one of `b`, `c`".
+/// The known key or value that is most like the unknown one, from a message of the parser such as
+/// "unknown field `a`, expected one of `b`, `c`".
 fn meant(message: &str) -> Option<&str> {
     let (wrong, known) = message.strip_prefix("unknown ")?.split_once("`, expected ")?;
     let (_, wrong) = wrong.split_once('`')?;
     nearest(wrong, known.split('`').skip(1).step_by(2))
 }
 
-/// A message that quotes a file stays readable, whatever stands in the file.
+/// Shortens a message that quotes a long text of a file: its first and last 400 characters remain.
 fn bounded(message: String) -> String {
     const MOST: usize = 1000;
     const KEPT: usize = 400;
@@ -126,7 +128,7 @@ fn bounded(message: String) -> String {
     if tail <= head { message } else { format!("{} ... {}", &message[..head], &message[tail..]) }
 }
 
-/// A text of a file as messages quote it: its beginning, where it is long.
+/// A text of a file as messages quote it: at most its first 40 characters.
 pub(crate) fn quoted(text: &str) -> String {
     const MOST: usize = 40;
     match text.char_indices().nth(MOST) {
@@ -135,7 +137,7 @@ pub(crate) fn quoted(text: &str) -> String {
     }
 }
 
-/// What the parser says in the words of its language, for who writes the file.
+/// Replaces the parser's terms for Rust types by terms for the author of the file.
 fn in_plain_words(message: &str) -> String {
     const WORDS: [(&str, &str); 8] = [
         ("wanted string or table", "expected a word in quotes"),

@@ -1,4 +1,4 @@
-//! Inputs: regular files only, and texts up to a limit.
+//! Opens and reads inputs: regular files only, and texts up to a limit.
 
 use crate::registry;
 use std::fs::{File, Metadata};
@@ -6,51 +6,54 @@ use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Greatest size of a text that is read whole (machine, move, sweep and board files, reports), bytes.
+/// Greatest size in bytes of a text that is read as a whole (machine, move, sweep and board files,
+/// reports).
 pub const MAX_TEXT_BYTES: u64 = 4 << 20;
 
 /// Why an input cannot be read.
 #[derive(Debug, Error)]
 #[error("cannot read {}: {why}", .path.display())]
 pub struct InputFailure {
-    /// The file as the user named it.
+    /// Path of the file, as the user gave it.
     pub path: PathBuf,
-    /// What is wrong with it.
+    /// The reason.
     pub why: InputFault,
 }
 
-/// What is wrong with an input.
+/// A reason why an input cannot be read.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum InputFault {
-    /// The system refuses.
+    /// The operating system reports an error.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// It is there, and it is no regular file.
+    /// The file exists but is not a regular file.
     #[error("it is a {0}, and an input must be a regular file")]
     Kind(&'static str),
-    /// It is longer than a text may be.
+    /// The file is longer than [`MAX_TEXT_BYTES`].
     #[error("it has {size} bytes, and an input may have at most {MAX_TEXT_BYTES} ({} MiB)", MAX_TEXT_BYTES >> 20)]
     Size {
-        /// How long it is, as far as that is known.
+        /// Its length, as far as it is known.
         size: String,
     },
-    /// The same process is about to replace it.
+    /// This process is about to replace the file by an output.
     #[error("it is also the output {}", .0.display())]
     Output(PathBuf),
 }
 
-/// Opens an input of any size: a regular file, or a link to one. From here on no output of this process
-/// can replace it.
+/// Opens an input of any size: a regular file, or a symbolic link to one. From then on, no output
+/// of this process can replace it.
 ///
 /// # Errors
-/// [`InputFailure`]: the file is missing, may not be read, is no regular file, or is an output of this process.
+/// [`InputFailure`] if the file is missing, may not be read, is not a regular file, or is an output
+/// of this process.
 pub fn open(path: &Path) -> Result<File, InputFailure> {
     let failed = |why: InputFault| InputFailure { path: path.to_owned(), why };
-    // To open a device can have an effect, and to open a pipe can block: the kind is looked at first,
+    // Opening a device can have an effect, and opening a pipe can block, so the kind of the file is
+    // checked first.
     regular(&std::fs::metadata(path).map_err(|error| failed(error.into()))?).map_err(failed)?;
     let file = without_waiting(path).map_err(|error| failed(error.into()))?;
-    // and again, because the name may by now be of another file.
+    // The kind is checked again, because the name may meanwhile belong to another file.
     let there = file.metadata().map_err(|error| failed(error.into()))?;
     regular(&there).map_err(failed)?;
     registry::add_input(path).map_err(|output| failed(InputFault::Output(output)))?;
@@ -60,7 +63,7 @@ pub fn open(path: &Path) -> Result<File, InputFailure> {
 /// Reads a whole text of at most [`MAX_TEXT_BYTES`].
 ///
 /// # Errors
-/// As [`open`]; or the file is too long, or an error of the disk.
+/// As [`open`]; also if the file is too long, or if reading fails.
 pub fn read_text(path: &Path) -> Result<Vec<u8>, InputFailure> {
     let failed = |why: InputFault| InputFailure { path: path.to_owned(), why };
     let file = open(path)?;
@@ -69,7 +72,8 @@ pub fn read_text(path: &Path) -> Result<Vec<u8>, InputFailure> {
         return Err(failed(InputFault::Size { size: size.to_string() }));
     }
     let mut bytes = Vec::new();
-    // A file of the kernel says that it is empty, and a log grows while it is read.
+    // The reported size is not sufficient: files of the kernel report 0, and a log grows while it
+    // is read.
     file.take(MAX_TEXT_BYTES + 1).read_to_end(&mut bytes).map_err(|error| failed(error.into()))?;
     if bytes.len() as u64 > MAX_TEXT_BYTES {
         return Err(failed(InputFault::Size { size: format!("more than {MAX_TEXT_BYTES}") }));
@@ -81,7 +85,7 @@ fn regular(there: &Metadata) -> Result<(), InputFault> {
     if there.is_file() { Ok(()) } else { Err(InputFault::Kind(kind(there))) }
 }
 
-/// What a file that is not regular is called.
+/// The name of this kind of file.
 fn kind(there: &Metadata) -> &'static str {
     #[cfg(unix)]
     {
@@ -100,7 +104,7 @@ fn kind(there: &Metadata) -> &'static str {
     if there.is_dir() { "folder" } else { "special file" }
 }
 
-/// Opens a file for reading; should it have become a pipe, nobody waits for its writer.
+/// Opens a file for reading without waiting, even if it has become a pipe.
 fn without_waiting(path: &Path) -> io::Result<File> {
     let mut options = File::options();
     options.read(true);

@@ -1,13 +1,14 @@
-//! Files of the user: machine and move files with their units, ranges and errors, and outputs.
+//! Reads and writes the user's files safely: machine and move files, and outputs.
 //!
 //! A machine file is read into a [`Machine`], a move file into a [`MoveFile`]. What is wrong in one
 //! is an [`InputError`] with the line and column where it stands.
 //!
-//! - An input is a regular file ([`read_text`], [`open`]): a device or a pipe could block or never end.
-//! - An output ([`NewFile`]) appears under its name when it is whole, and not at all otherwise.
-//! - No output replaces a file that the same process reads, and no two outputs are one file. Both are
-//!   found by what the file is (device and inode), not by its name. Every input and every output of the
-//!   process is registered when it is opened here, so no command can forget to compare them.
+//! - An input must be a regular file ([`read_text`], [`open`]), because a device or a pipe could
+//!   block or never end.
+//! - An output ([`NewFile`]) appears under its name when it is complete, and otherwise not at all.
+//! - No output replaces a file that the same process reads, and no two outputs are the same file.
+//!   Files are compared by device and inode and not by name. This crate registers every input and
+//!   every output when it is opened, so that no command can omit the comparison.
 
 pub mod decimal;
 pub mod driver;

@@ -1,6 +1,6 @@
-//! The machine file: clock, tick, phases, and for each axis its units, limits and driver.
+//! The machine file: clock, tick and phases, and for each axis its units, limits and driver.
 //!
-//! Raw structures mirror the TOML; [`Machine`] is what is left after every value has been checked.
+//! Raw structures mirror the TOML. A [`Machine`] holds the values after all checks.
 
 use crate::error::{InputError, Source};
 use crate::unit::Unit;
@@ -30,89 +30,92 @@ mod units;
 
 pub use home::{End, Home, overrun};
 
-/// A machine whose every value has been checked.
+/// A machine whose values have all been checked.
 #[derive(Debug, Clone)]
 pub struct Machine {
     /// Clock, tick and phases.
     pub timebase: Timebase,
-    /// How the tick came about, where the file gives none and the clock is not the default.
+    /// How the tick was chosen; `None` if the file gives it or the clock is the default.
     pub chosen_tick: Option<ChosenTick>,
-    /// Where in a step moves start.
+    /// Phase of a step in which moves start.
     pub phase: StartPhase,
-    /// One to eight axes.
+    /// The axes, one to eight.
     pub axes: Vec<Axis>,
-    /// What stops them, where an engine drives them.
+    /// Settings of the engine's guard.
     pub guard: Guard,
-    /// The axes that home, by their numbers: groups, one after the other; the axes of a group together.
+    /// Homing order, as numbers of axes: the groups home one after the other, the axes of a group
+    /// together.
     pub home_order: Vec<Vec<usize>>,
-    /// Baud rate of the host link; checked against the clock where the file names it.
+    /// Baud rate of the host link, bits per second. If the file gives it, the clock can make it.
     pub baud: u32,
-    /// The host link is an SPI, and no UART.
+    /// Whether the host link is an SPI; otherwise it is a UART.
     pub spi: bool,
 }
 
-/// A machine that the parallel axes cannot drive.
+/// Error: the six-axis core cannot drive this machine, because it has more than six axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("{0} axes: the parallel gateware drives at most {AXES}; an engine may have up to {MAX_AXES}")]
 pub struct TooManyAxes(pub usize);
 
-/// One axis; speeds and accelerations are exact products of the file's numbers.
+/// One axis. Its speeds and accelerations are exact products of the file's numbers.
 #[derive(Debug, Clone)]
 pub struct Axis {
-    /// Its name in move files and waveforms.
+    /// Name in move files and waveforms.
     pub name: String,
-    /// Steps in a unit of length; a quotient that is no finite decimal is rounded up in its 60th place.
+    /// Steps per unit of length. A quotient that is not a finite decimal is rounded up at its 60th
+    /// decimal.
     pub steps_per_unit: BigDecimal,
-    /// The unit that people read.
+    /// The unit for display.
     pub unit: Unit,
-    /// Speed the motor takes from rest, steps/s; 0 or more.
+    /// Greatest speed at which the motor starts from rest, steps/s; 0 or more.
     pub start_speed: BigDecimal,
     /// Greatest speed, steps/s.
     pub speed_limit: BigDecimal,
     /// Greatest acceleration, steps/s^2.
     pub accel_limit: BigDecimal,
-    /// Greatest jerk, steps/s^3, where the file gives one.
+    /// Greatest jerk, steps/s^3, if the file gives one.
     pub jerk_limit: Option<BigDecimal>,
-    /// How fast the engine's guard ramps it down, 2^-64 step per tick^2, from 1 to 2^62.
+    /// Acceleration with which the engine's guard ramps the axis down, 2^-64 step per tick^2, from
+    /// 1 to 2^62.
     pub stop: u64,
-    /// What the driver asks of the pins, ns: width, gap, set-up, hold.
+    /// Minimum times of the driver, ns: STEP width, gap, set-up, hold.
     pub pins_ns: [u64; 4],
-    /// The same in clocks.
+    /// The same times in clocks, rounded up.
     pub pins: PinTiming,
-    /// Lowest and highest machine coordinate, steps, where the file gives them.
+    /// Lowest and highest machine coordinate, steps, if the file gives them.
     pub travel: Option<[i64; 2]>,
-    /// How it homes, where it does.
+    /// Homing parameters, if the axis homes.
     pub home: Option<Home>,
 }
 
 impl Machine {
-    /// The engine of this machine, with as many axes.
+    /// The engine of this machine, with the machine's number of axes.
     pub fn engine(&self) -> EngineBuild {
         let pins = self.axes.iter().map(|axis| axis.pins).collect();
         EngineBuild { timebase: self.timebase, phase: self.phase, pins, guard: self.guard.clone() }
     }
 
-    /// Reads a machine file: a `[machine]` table.
+    /// Reads a machine file, which has a `[machine]` table.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and column.
+    /// [`InputError`] with file, line and column of the first mistake.
     pub fn load(path: &Path) -> Result<Self, InputError> {
         Self::from_source(&Source::read(path)?)
     }
 
-    /// Checks a machine file whose text is already there.
+    /// Checks the text of a machine file.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and column.
+    /// [`InputError`] with file, line and column of the first mistake.
     pub fn from_source(source: &Source) -> Result<Self, InputError> {
         let file: RawMachineFile = source.parse()?;
         file.machine.check(source)
     }
 
-    /// The build parameters of this machine's parallel gateware.
+    /// The parameters of this machine's build of the six-axis core.
     ///
     /// # Errors
-    /// [`TooManyAxes`]: the machine has more than six.
+    /// [`TooManyAxes`] if the machine has more than six axes.
     pub fn build(&self) -> Result<Build, TooManyAxes> {
         if self.axes.len() > AXES {
             return Err(TooManyAxes(self.axes.len()));
@@ -127,17 +130,17 @@ impl Machine {
     /// The line of the host link.
     ///
     /// # Errors
-    /// [`BaudError`]: the file names no baud rate, and its clock does not make the default.
+    /// [`BaudError`] if the file gives no baud rate and its clock cannot make the default.
     pub fn line(&self) -> Result<Line, BaudError> {
         if self.spi { Ok(Line::Spi) } else { Uart::new(self.timebase.clock_hz(), self.baud).map(Line::Uart) }
     }
 
-    /// The number of the axis of this name.
+    /// The number of the axis of this name, from 0.
     pub fn axis_index(&self, name: &str) -> Option<usize> {
         self.axes.iter().position(|axis| axis.name == name)
     }
 
-    /// The axis names in one line, for messages.
+    /// The names of all axes, separated by commas, for messages.
     pub fn axis_names(&self) -> String {
         let names: Vec<&str> = self.axes.iter().map(|axis| axis.name.as_str()).collect();
         names.join(", ")
@@ -150,7 +153,7 @@ struct RawMachineFile {
     machine: RawMachine,
 }
 
-/// `[machine]` as the file has it.
+/// The `[machine]` table as it is written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a [machine] table")]
 pub(crate) struct RawMachine {
@@ -168,7 +171,7 @@ pub(crate) struct RawMachine {
 }
 
 impl RawMachine {
-    /// Where the first axis stands that a parallel core has no place for.
+    /// The place of the first axis that the six-axis core cannot hold.
     pub(crate) fn seventh(&self) -> Option<Range<usize>> {
         self.axis.as_ref().get(AXES).map(Spanned::span)
     }
@@ -207,19 +210,21 @@ impl RawMachine {
         Ok(Machine { timebase, chosen_tick, phase: self.phase, axes, guard, home_order, baud, spi })
     }
 
-    /// Clock, tick and phases; where the file gives no tick, also how it was chosen.
+    /// Clock, tick and phases. If the file gives no tick, also how the tick was chosen.
     fn timebase(&self, source: &Source) -> Result<(Timebase, Option<ChosenTick>), InputError> {
         let clock_hz = self.clock_hz.as_ref().map_or(FIXED_CLOCK_HZ, |v| *v.as_ref());
         let phases = self.phases.as_ref().map_or(16, |v| *v.as_ref());
         let axes = self.axis.as_ref().len().clamp(1, MAX_AXES);
         let given = self.tick_ns.as_ref().map(|v| (*v.as_ref(), None));
-        // Of a clock without ticks any one is refused, and so is what is no clock.
+        // If the clock allows no tick, the tick of 1 ns makes the check below fail with the
+        // matching error.
         let (tick_ns, chosen) = given.or_else(|| default_tick(clock_hz, phases, axes)).unwrap_or((1, None));
         let timebase = Timebase::new(clock_hz, tick_ns, phases).map_err(|error| {
             let tick = self.tick_ns.as_ref().map(Spanned::span);
             let clock = self.clock_hz.as_ref().map(Spanned::span);
             let phase_span = self.phases.as_ref().map(Spanned::span);
-            // The value that is wrong, or else one that has a part in it: the others are defaults.
+            // Points at the value that is wrong. If that value is a default, points at another
+            // value that contributes to the error.
             let span = match error {
                 TimebaseError::Clock(_) => clock,
                 TimebaseError::Phases(_) => phase_span,
@@ -240,7 +245,8 @@ impl RawMachine {
     }
 }
 
-/// An error about an axis, where fewer phases would make the tick that was chosen shorter, says so.
+/// Adds the proposal of fewer phases to an error of an axis, if they would shorten the tick that
+/// was chosen.
 fn with_proposal(mut error: InputError, chosen: Option<&ChosenTick>) -> InputError {
     if let (Some(help), Some(proposal)) = (&mut error.help, chosen.and_then(ChosenTick::proposal)) {
         *help = format!("{help}; {proposal}");

@@ -1,7 +1,7 @@
-//! The move file: which machine, and one move after the other.
+//! The move file: the machine, and a list of moves.
 //!
-//! Targets add up as exact decimals; a move is the difference of two targets rounded to steps, so
-//! that rounding never accumulates.
+//! Distances are added up as exact decimals. A move is the difference of two absolute targets, each
+//! rounded to steps, so that rounding errors do not accumulate.
 
 use crate::decimal;
 use crate::did_you_mean;
@@ -18,21 +18,21 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
-/// The speed profiles of the literature that a move can ask for.
+/// The speed profiles that a move file can name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ProfileKind {
-    /// Ranade (2009): triangle whenever possible, else trapezoid at the speed limit.
+    /// Ranade (2009): a triangle if possible, otherwise a trapezoid at the speed limit.
     Ranade,
     /// From rest to rest at the acceleration limit.
     Trapezoid,
-    /// Seven segments: limits on speed, acceleration and jerk.
+    /// Seven segments within limits of speed, acceleration and jerk.
     Scurve,
-    /// Along a logistic curve: gentle at both ends, never quite at rest.
+    /// Along a logistic curve, with small accelerations at both ends; never quite at rest.
     Logistic,
-    /// Acceleration as 1 - cos: jerk continuous too.
+    /// Acceleration proportional to 1 - cos, so that the jerk is continuous too.
     Sine,
-    /// One speed, at most the start speed.
+    /// One constant speed, at most the start speed.
     Constant,
 }
 
@@ -41,7 +41,8 @@ impl ProfileKind {
     pub const ALL: [Self; 6] =
         [Self::Ranade, Self::Trapezoid, Self::Scurve, Self::Logistic, Self::Sine, Self::Constant];
 
-    /// Whether cubic segments can only come close to it; the others they follow exactly.
+    /// Whether cubic segments can only approximate this profile. They follow the other profiles
+    /// exactly.
     pub const fn is_fitted(self) -> bool {
         matches!(self, Self::Logistic | Self::Sine)
     }
@@ -60,45 +61,45 @@ impl fmt::Display for ProfileKind {
     }
 }
 
-/// Which way a move of several axes takes.
+/// How the axes of a move are combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PathKind {
-    /// Each axis as its own limits allow, in the common time.
+    /// Each axis moves within its own limits; all take the same time.
     #[default]
     Free,
-    /// All along one straight line: one profile, scaled for each axis.
+    /// All axes move along one straight line: one profile, scaled for each axis.
     Straight,
 }
 
 /// A checked move file.
 #[derive(Debug, Clone)]
 pub struct MoveFile {
-    /// The machine, inline or from its own file.
+    /// The machine, from the move file itself or from its own file.
     pub machine: Machine,
-    /// The moves in order.
+    /// The moves, in order.
     pub moves: Vec<Move>,
-    /// The move file's text, for errors that are found later.
+    /// Text of the move file, for errors that are found later.
     pub source: Source,
 }
 
 /// One move of all axes.
 #[derive(Debug, Clone)]
 pub struct Move {
-    /// Its speed profile.
+    /// Speed profile of the move.
     pub profile: ProfileKind,
-    /// The way that its axes take together.
+    /// How the axes move together.
     pub path: PathKind,
-    /// Seconds available; `None`: as fast as the limits allow.
+    /// Duration in s; `None` means as fast as the limits allow.
     pub time: Option<BigDecimal>,
-    /// How far an edge may be from a profile that has to be fitted, ns, at least 1; one tick where the file
-    /// does not say.
+    /// Greatest deviation in ns of an edge from a profile that has to be fitted, at least 1; one
+    /// tick if the file gives none.
     pub fit_ns: u64,
-    /// Steps of each axis of the machine, either sign.
+    /// Steps of each axis, positive or negative.
     pub steps: Vec<i64>,
-    /// What rounding to steps left over so far, per axis, in steps: exact target less rounded target.
+    /// Accumulated rounding of each axis in steps: exact target minus rounded target.
     pub rounding: Vec<f64>,
-    /// Its place in the move file.
+    /// Place of the move in the move file.
     pub span: Range<usize>,
 }
 
@@ -130,19 +131,19 @@ struct RawMove {
 }
 
 impl MoveFile {
-    /// Reads a move file, and the machine file that it names (relative to it).
+    /// Reads a move file, and the machine file that it names by a path relative to itself.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and column.
+    /// [`InputError`] with file, line and column of the first mistake.
     pub fn load(path: &Path) -> Result<Self, InputError> {
         Self::from_source(Source::read(path)?)
     }
 
-    /// Checks a move file whose text is already there; `source.path` is where a relative
-    /// `machine_file` starts from.
+    /// Checks the text of a move file. A relative `machine_file` is resolved from the directory of
+    /// `source.path`.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and column.
+    /// [`InputError`] with file, line and column of the first mistake.
     pub fn from_source(source: Source) -> Result<Self, InputError> {
         let raw: RawMoveFile = source.parse()?;
         let machine_file = raw.machine_file.as_ref().map(Spanned::span);
@@ -158,7 +159,8 @@ impl MoveFile {
                     )
                     .help("the path is relative to the move file"));
                 }
-                // What cannot be read at all is wrong where it is named.
+                // If the machine file cannot be read, the error points at its name in the move
+                // file.
                 let named = |error: InputError| InputError::at(&source, file.span(), error.message);
                 Machine::from_source(&Source::read(&path).map_err(named)?)?
             }
@@ -175,10 +177,10 @@ impl MoveFile {
         Self::on(machine, source, raw.moves, too_many)
     }
 
-    /// Checks moves for a machine that is known already: a move file without its machine.
+    /// Checks moves for a machine that is already known; the move file has no machine of its own.
     ///
     /// # Errors
-    /// [`InputError`] with line and column.
+    /// [`InputError`] with line and column of the first mistake.
     pub fn of_moves(machine: Machine, source: Source) -> Result<Self, InputError> {
         let raw: RawMoves = source.parse()?;
         Self::on(machine, source, raw.moves, None)
@@ -201,7 +203,7 @@ impl MoveFile {
         Ok(Self { machine, moves, source })
     }
 
-    /// An error about one of the moves, with its place in the file.
+    /// Makes an error about a move, with the place of the move in the file.
     pub fn move_error(&self, index: usize, message: impl Into<String>) -> InputError {
         match self.moves.get(index) {
             Some(found) => InputError::at(&self.source, found.span.clone(), message),
@@ -245,7 +247,8 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
         let rounding = targets.iter().zip(&machine.axes).zip(&positions);
         let rounding = rounding.map(|((target, axis), &steps)| {
             let left = decimal::to_f64(&(target * &axis.steps_per_unit - BigDecimal::from(steps)));
-            // A quotient's 60th place is no rounding of a target.
+            // A remainder below 2^-64 step comes from the 60th decimal of `steps_per_unit` and is
+            // not a rounding of the target.
             if left.abs() < 2_f64.powi(-64) { 0.0 } else { left }
         });
         moves.push(Move {
@@ -261,7 +264,7 @@ fn check_moves(source: &Source, machine: &Machine, raw: Vec<Spanned<RawMove>>) -
     Ok(moves)
 }
 
-/// Over zero, and short enough for every count of clocks.
+/// Checks a duration: greater than zero, and short enough to be counted in clocks.
 fn check_time(source: &Source, value: &Spanned<f64>) -> Result<BigDecimal, InputError> {
     let time = positive(source, value, "time")?;
     if time <= 1_000_000 {
@@ -280,7 +283,7 @@ fn check_fit(source: &Source, value: &Spanned<u64>) -> Result<u64, InputError> {
         .help("give the greatest error of an edge in ns, from 1 up"))
 }
 
-/// The nearest whole step, where the position register can hold it and its negative.
+/// The nearest whole step, if the position register can hold it and its negative.
 fn register(target: &BigDecimal) -> Option<i64> {
     decimal::round_half_away(target).filter(|steps| steps.unsigned_abs() <= u64::from(i32::MAX.unsigned_abs()))
 }

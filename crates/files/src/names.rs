@@ -1,6 +1,6 @@
-//! Names that are nearly right.
+//! Finds names that are similar to a misspelt one.
 
-/// The known name that a misspelt one most likely means: few letters differ, capitals do not count.
+/// The known name that a misspelt one most likely means: only few letters differ. Case is ignored.
 pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     const MOST_CHARS: usize = 64;
     if wrong.chars().nth(MOST_CHARS).is_some() {
@@ -9,12 +9,13 @@ pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     let wrong = wrong.to_lowercase();
     let most = (wrong.chars().count() / 3).max(1);
     let apart = |name: &'a str| (strsim::damerau_levenshtein(&wrong, &name.to_lowercase()), name);
-    // A name of one letter is one letter away from every other one.
+    // A name must differ in fewer letters than it has; otherwise every name of one letter would
+    // match.
     let close = |(distance, name): &(usize, &str)| *distance <= most && *distance < name.chars().count();
     known.into_iter().map(apart).filter(close).min_by_key(|&(distance, _)| distance).map(|(_, name)| name)
 }
 
-/// " (did you mean 'x'?)" where a known name is near, and nothing otherwise.
+/// The text " (did you mean 'x'?)" if a known name is similar, otherwise an empty text.
 pub fn did_you_mean<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     nearest(wrong, known).map_or_else(String::new, |name| format!(" (did you mean '{name}'?)"))
 }
@@ -26,7 +27,7 @@ mod tests {
     const DRIVERS: [&str; 4] = ["a4988", "drv8825", "tmc2209", "tmc2130"];
 
     #[test]
-    fn a_name_with_a_slip_is_found() {
+    fn similar_name_is_found() {
         for (wrong, name) in [("a4989", "a4988"), ("A4988", "a4988"), ("drv8285", "drv8825"), ("tmc220", "tmc2209")] {
             assert_eq!(nearest(wrong, DRIVERS), Some(name), "{wrong}");
         }
@@ -34,7 +35,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_of_something_else_is_not() {
+    fn unrelated_name_is_not_found() {
         for wrong in ["", "uln2003", "x", &"a".repeat(1_000_000)] {
             assert_eq!(nearest(wrong, DRIVERS), None);
         }

@@ -1,11 +1,12 @@
-//! Numbers of a file, exact, each refused where it stands.
+//! Exact numbers of input files. Each check reports the place of the number that it rejects.
 
 use crate::decimal;
 use crate::error::{InputError, Source, quoted};
 use bigdecimal::{BigDecimal, Signed};
 use toml::Spanned;
 
-/// The exact value of a number in the file, which must be finite.
+/// The exact value of a number in the file. Numbers that are not finite, are 10^30 or more in
+/// magnitude, or need more than 60 digits are errors.
 pub(crate) fn exact(source: &Source, value: &Spanned<f64>, key: &str) -> Result<BigDecimal, InputError> {
     const GREATEST: f64 = 1e30;
     let literal = source.text.get(value.span()).unwrap_or("");
@@ -22,7 +23,7 @@ pub(crate) fn exact(source: &Source, value: &Spanned<f64>, key: &str) -> Result<
     decimal::parse(literal).ok_or_else(|| refused("needs more than 60 digits before or behind its point", "round it"))
 }
 
-/// A number over zero.
+/// A number greater than zero.
 pub(crate) fn positive(source: &Source, value: &Spanned<f64>, key: &str) -> Result<BigDecimal, InputError> {
     let exact = exact(source, value, key)?;
     if exact.is_positive() {
@@ -31,7 +32,7 @@ pub(crate) fn positive(source: &Source, value: &Spanned<f64>, key: &str) -> Resu
     Err(InputError::at(source, value.span(), format!("{key} = {exact}: must be over zero")))
 }
 
-/// Zero or a number over it.
+/// A number that is zero or greater.
 pub(crate) fn not_negative(source: &Source, value: &Spanned<f64>, key: &str) -> Result<BigDecimal, InputError> {
     let exact = exact(source, value, key)?;
     if exact.is_negative() {

@@ -1,9 +1,12 @@
-//! Outputs: files that appear whole or not at all.
+//! Writes outputs: files that appear completely or not at all.
 //!
-//! Until it is whole, an output has no name where the system allows that (`O_TMPFILE` of Linux): whatever ends the
-//! process, SIGKILL included, nothing stays behind. Elsewhere it is a temporary file beside its place, which a
-//! process that is killed leaves there. On Linux a name is given to the file by a link. A link cannot replace a
-//! file: where one is already there, the new file gets a temporary name and is renamed at once. A process that is
+//! If the system supports it (`O_TMPFILE` of Linux), an output has no name until it is complete.
+//! However the process ends, even by SIGKILL, no file remains. Otherwise the output is a temporary
+//! file in the same directory, which a killed process leaves behind.
+//!
+//! On Linux the file receives its name by a link, which cannot replace a file. If a file of that
+//! name exists, the new file first receives a temporary name and is then renamed. A process that is
+//! killed between these two system calls leaves the temporary name behind.
 //! killed between these two system calls leaves that name.
 
 use crate::place::{End, Identity, folder, follow};
@@ -18,38 +21,41 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[error("cannot write {}: {source}", .path.display())]
 pub struct OutputFailure {
-    /// The file as the user named it.
+    /// Path of the file, as the user gave it.
     pub path: PathBuf,
-    /// What is wrong.
+    /// The error.
     #[source]
     pub source: io::Error,
 }
 
-/// The right to write a path: it leads to no input and to no other output. Nothing is made yet.
+/// A claim on a path: it leads to no input and to no other output of this process. The file does
+/// not exist yet.
 #[derive(Debug)]
 pub struct Claim {
     shown: PathBuf,
     at: At,
-    /// In the registry; a device has none, because two outputs may go there.
+    /// Number in the registry. A device has none, because several outputs may go to it.
     number: Option<u64>,
 }
 
-/// Where the bytes go.
+/// Destination of the bytes.
 #[derive(Debug)]
 enum At {
-    /// To a file of this name, which replaces one that is there.
+    /// A file of this name, which replaces an existing one.
     Name(PathBuf),
-    /// Into what is there: a pipe or a device. To rename a file over it would destroy it.
+    /// An existing pipe or device. Renaming a file to this path would destroy it.
     Itself(PathBuf),
-    /// Into our own standard output, behind whatever else is written there.
+    /// The standard output of this process, together with anything else that is written to it.
     Stdout,
 }
 
 impl Claim {
-    /// Looks where a path leads. Links are followed: what they lead to is replaced, or made, and the links stay.
+    /// Resolves a path. Symbolic links are followed: their target is replaced or created, and the
+    /// links remain.
     ///
     /// # Errors
-    /// The path leads to an input or another output of this process, or to a folder, or nowhere.
+    /// The path leads to an input or another output of this process, or to a directory, or cannot
+    /// be resolved.
     pub fn new(path: &Path) -> Result<Self, OutputFailure> {
         Self::look(path).map_err(|source| OutputFailure { path: path.to_owned(), source })
     }
@@ -91,7 +97,8 @@ impl Claim {
         Ok(Self { shown, at, number: Some(number) })
     }
 
-    /// What is our own standard output is written there; a file to which it was sent is not replaced.
+    /// Detects a path to the standard output of this process, so that a file to which it is
+    /// redirected is not replaced.
     #[cfg(unix)]
     fn stdout(at: At, identity: &Identity) -> io::Result<At> {
         if Identity::of_stdout().as_ref() != Some(identity) {
@@ -108,10 +115,10 @@ impl Claim {
         Ok(at)
     }
 
-    /// Makes the file, without its name yet, and its folder if need be.
+    /// Creates the file without its name, and its directory if necessary.
     ///
     /// # Errors
-    /// The system refuses.
+    /// The operating system reports an error.
     pub fn begin(self, executable: bool) -> Result<NewFile, OutputFailure> {
         match self.place(executable) {
             Ok(place) => Ok(NewFile { claim: self, place }),
@@ -146,7 +153,7 @@ impl Drop for Claim {
     }
 }
 
-/// An output that is there under its name only once [`NewFile::appear`] has succeeded.
+/// An output that has its name only after [`NewFile::appear`] has succeeded.
 #[derive(Debug)]
 pub struct NewFile {
     claim: Claim,
@@ -157,14 +164,14 @@ pub struct NewFile {
 enum Place {
     /// A file without a name.
     Nameless(File),
-    /// A file with a temporary name, removed with this value.
+    /// A file with a temporary name, which is removed when this value is dropped.
     Beside(NamedTempFile),
-    /// A pipe, a device or standard output.
+    /// A pipe, a device or the standard output.
     Itself(File),
 }
 
 impl NewFile {
-    /// Claims a path and makes the file.
+    /// Claims a path and creates the file.
     ///
     /// # Errors
     /// As [`Claim::new`] and [`Claim::begin`].
@@ -172,15 +179,15 @@ impl NewFile {
         Claim::new(path)?.begin(false)
     }
 
-    /// The file as the user named it.
+    /// Path of the file, as the user gave it.
     pub fn path(&self) -> &Path {
         &self.claim.shown
     }
 
-    /// Gives the file its name, in place of a file that had it.
+    /// Gives the file its name; a file that had the name is replaced.
     ///
     /// # Errors
-    /// The system refuses; nothing has appeared then.
+    /// The operating system reports an error; no file has appeared.
     pub fn appear(self) -> Result<PathBuf, OutputFailure> {
         let Self { claim, place } = self;
         let appeared = match (place, &claim.at) {
@@ -215,24 +222,25 @@ impl Seek for NewFile {
     }
 }
 
-/// Permissions of any other new file, before the user's mask.
+/// Permissions of a new file before the umask is applied.
 const fn mode(executable: bool) -> u32 {
     if executable { 0o777 } else { 0o666 }
 }
 
-/// A file without a name in this folder; `None` where the system has none.
+/// Creates a file without a name in this directory; `None` if the system does not support it.
 #[cfg(target_os = "linux")]
 fn nameless(folder: &Path, executable: bool) -> io::Result<Option<File>> {
     use rustix::fs::{Mode, OFlags, open};
     use rustix::io::Errno;
-    // Its name is given by way of this folder.
+    // The name is given by way of this directory.
     if !Path::new("/proc/self/fd").is_dir() {
         return Ok(None);
     }
     let flags = OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC;
     match open(folder, flags, Mode::from_raw_mode(mode(executable))) {
         Ok(file) => Ok(Some(file.into())),
-        // Which of these a file system says that cannot do it depends on its age and the kernel's.
+        // Which of these errors a file system without this function reports depends on its age and
+        // on the kernel's.
         Err(Errno::OPNOTSUPP | Errno::ISDIR | Errno::NOENT | Errno::INVAL | Errno::NOSYS) => Ok(None),
         Err(error) => Err(error.into()),
     }
@@ -243,7 +251,7 @@ fn nameless(_: &Path, _: bool) -> io::Result<Option<File>> {
     Ok(None)
 }
 
-/// A file with a temporary name in this folder.
+/// Creates a file with a temporary name in this directory.
 fn beside(folder: &Path, executable: bool) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
@@ -252,7 +260,7 @@ fn beside(folder: &Path, executable: bool) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// Gives a file without a name this one.
+/// Gives a file without a name this name.
 #[cfg(target_os = "linux")]
 fn name(file: File, target: &Path) -> io::Result<()> {
     use rustix::fs::{AtFlags, CWD, linkat};
@@ -270,7 +278,7 @@ fn name(file: File, target: &Path) -> io::Result<()> {
         match link(&temporary) {
             Ok(()) => {
                 return fs::rename(&temporary, target).inspect_err(|_| {
-                    // What is left to say is why the file could not be renamed.
+                    // The error of the rename is reported, so an error here is ignored.
                     let _ = fs::remove_file(&temporary);
                 });
             }
@@ -286,7 +294,8 @@ fn name(file: File, target: &Path) -> io::Result<()> {
     copied(file, target)
 }
 
-/// The same where the file system has files without a name, and no link to one.
+/// Copies the file to a temporary file and renames that, for file systems that support files
+/// without a name but no link to one.
 fn copied(mut file: File, target: &Path) -> io::Result<()> {
     #[cfg(unix)]
     let executable = std::os::unix::fs::PermissionsExt::mode(&file.metadata()?.permissions()) & 0o100 != 0;

@@ -1,22 +1,22 @@
-//! Where a path leads: links followed, and what makes two paths one file.
+//! Resolves paths: follows links, and decides whether two paths are the same file.
 
 use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// Links in a row that are followed, as many as Linux does.
+/// Greatest number of consecutive links that are followed, as in Linux.
 const MOST_LINKS: u32 = 40;
 
-/// What a file is, whatever it is called.
+/// Identity of a file, independent of its names: device and inode.
 #[cfg(unix)]
 type Number = (u64, u64);
-/// What a file is, where files have no numbers: its one path without links.
+/// Identity of a file on systems without inodes: its canonical path.
 #[cfg(not(unix))]
 type Number = PathBuf;
 
-/// What makes two paths one file: the file itself, or, where it does not exist yet, the nearest folder above it
-/// that does and the rest of the path.
+/// Identity of a path: the file itself, or, if it does not exist yet, the nearest existing
+/// directory above it and the rest of the path.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Identity {
     existing: Number,
@@ -24,7 +24,7 @@ pub(crate) struct Identity {
 }
 
 impl Identity {
-    /// The identity of what a path leads to.
+    /// The identity of the target of a path.
     pub(crate) fn of(path: &Path) -> io::Result<Self> {
         let path = std::path::absolute(path)?;
         for folder in path.ancestors() {
@@ -40,7 +40,7 @@ impl Identity {
         Err(ErrorKind::NotFound.into())
     }
 
-    /// The identity of standard output.
+    /// The identity of the standard output.
     #[cfg(unix)]
     pub(crate) fn of_stdout() -> Option<Self> {
         use std::os::fd::AsFd as _;
@@ -61,15 +61,16 @@ fn number(path: &Path) -> io::Result<Number> {
     fs::canonicalize(path)
 }
 
-/// Where a path ends.
+/// The end of a path.
 pub(crate) enum End {
-    /// At a name that is no link: of a file, or of nothing yet.
+    /// A name that is not a link: of a file, or of nothing yet.
     Name(PathBuf),
-    /// At an open file of a process (/dev/stdout, /dev/fd/3): a link only in appearance.
+    /// An open file of a process (/dev/stdout, /dev/fd/3), which only looks like a link.
     OpenFile,
 }
 
-/// Follows the links at the end of a path. A link to nothing leads to the name of what it wants.
+/// Follows the links at the end of a path. For a link without a target, the result is the name of
+/// the missing target.
 pub(crate) fn follow(path: &Path) -> io::Result<End> {
     let mut at = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -88,12 +89,12 @@ pub(crate) fn follow(path: &Path) -> io::Result<End> {
     Err(io::Error::other("too many symbolic links, one leading to the other"))
 }
 
-/// The folder that a path is in.
+/// The directory that contains a path.
 pub(crate) fn folder(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Whether a folder is /proc/PROCESS/fd.
+/// Whether a directory is /proc/PROCESS/fd.
 fn is_open_files(folder: &Path) -> bool {
     let real = fs::canonicalize(folder);
     real.is_ok_and(|real| real.starts_with("/proc") && real.file_name() == Some(OsStr::new("fd")))

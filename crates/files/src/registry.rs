@@ -1,4 +1,4 @@
-//! All inputs and all unfinished outputs of this process.
+//! The registry of all inputs and of all unfinished outputs of this process.
 
 use crate::place::Identity;
 use std::path::{Path, PathBuf};
@@ -12,8 +12,8 @@ struct Registry {
     next: u64,
 }
 
-/// A file that was read. What it is, is looked up when it is compared: a number of a file that was removed may
-/// by then belong to another one.
+/// A file that was read. Its identity is looked up at each comparison, because the inode number of
+/// a removed file may be given to another file.
 struct Input {
     shown: PathBuf,
     absolute: PathBuf,
@@ -26,11 +26,11 @@ struct Output {
     identity: Identity,
 }
 
-/// With what an output collides.
+/// The file with which an output collides.
 pub(crate) enum Collision {
-    /// It is a file that was read.
+    /// A file that was read.
     Input(PathBuf),
-    /// It is another output.
+    /// Another output.
     Output(PathBuf),
 }
 
@@ -38,9 +38,10 @@ fn registry() -> MutexGuard<'static, Registry> {
     REGISTRY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Registers an input; an error names the unfinished output that is the same file.
+/// Registers an input. The error is the path of an unfinished output that is the same file.
 pub(crate) fn add_input(path: &Path) -> Result<(), PathBuf> {
-    // A file that has just been opened has an identity; one that has lost it again cannot be replaced.
+    // A file that has just been opened has an identity. If it has lost it meanwhile, it cannot be
+    // replaced.
     let (Ok(identity), Ok(absolute)) = (Identity::of(path), std::path::absolute(path)) else { return Ok(()) };
     let mut registry = registry();
     if let Some(output) = registry.outputs.iter().find(|output| output.identity == identity) {
@@ -52,7 +53,7 @@ pub(crate) fn add_input(path: &Path) -> Result<(), PathBuf> {
     Ok(())
 }
 
-/// Registers an output under a number.
+/// Registers an output, and returns its number.
 pub(crate) fn add_output(shown: &Path, identity: Identity) -> Result<u64, Collision> {
     let mut registry = registry();
     let same = |input: &&Input| Identity::of(&input.absolute).is_ok_and(|read| read == identity);
@@ -68,7 +69,7 @@ pub(crate) fn add_output(shown: &Path, identity: Identity) -> Result<u64, Collis
     Ok(number)
 }
 
-/// The output of this number is finished, or given up.
+/// Removes the output of this number, because it is finished or abandoned.
 pub(crate) fn drop_output(number: u64) {
     registry().outputs.retain(|output| output.number != number);
 }

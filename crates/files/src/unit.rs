@@ -1,48 +1,52 @@
-//! Lengths, speeds and accelerations as people read them: in the axis' own unit, and in steps beside it.
+//! Formats lengths, speeds and accelerations for people: in the axis' own unit, and in steps beside
+//! it.
 
 use serde::Serialize;
 
-/// What an axis without a `unit` is shown in.
+/// Unit name of an axis that has more than one step per unit and no `unit` in its file.
 const UNNAMED: &str = "units";
 
-/// What an axis is shown in whose unit is the step.
+/// Unit name of an axis whose unit is the step.
 const STEPS: &str = "steps";
 
-/// Significant digits that are shown.
+/// Number of significant digits shown.
 const DIGITS: i32 = 6;
 
-/// The unit of an axis, for people: floats, of which nothing is computed that moves a motor.
+/// The unit of an axis. It serves display only: no motion is computed from its floats.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Unit {
-    /// Its name, as in the machine file's `unit`.
+    /// Name of the unit, as in the machine file's `unit`.
     pub name: String,
-    /// Steps in one.
+    /// Steps per unit.
     pub steps: f64,
 }
 
 impl Unit {
-    /// The unit of this name; without one, `steps` where there is one step in a unit, otherwise `units`.
+    /// The unit of this name. Without a name it is called `steps` if there is one step per unit,
+    /// otherwise `units`.
     pub fn new(name: Option<&str>, steps: f64) -> Self {
         let unnamed = if steps == 1.0 { STEPS } else { UNNAMED };
         Self { name: name.unwrap_or(unnamed).to_owned(), steps }
     }
 
-    /// `mm`, `mm/s`, `mm/s^2`, `mm/s^3`: the unit per so many seconds.
+    /// The unit divided by a power of seconds: `mm`, `mm/s`, `mm/s^2`, `mm/s^3`.
     pub fn per(&self, seconds: u32) -> String {
         per(&self.name, seconds)
     }
 
-    /// `95 mm/s` of a figure in steps/s: a length, speed, acceleration or jerk by the power of seconds.
+    /// Converts a figure in steps/s^`seconds` and appends the unit: `95 mm/s`. The power of seconds
+    /// is 0 for a length, 1 for a speed, 2 for an acceleration, 3 for a jerk.
     pub fn own(&self, steps: f64, seconds: u32) -> String {
         format!("{} {}", digits(steps / self.steps), self.per(seconds))
     }
 
-    /// `95 mm/s (7600 steps/s)`; steps alone where they are the unit.
+    /// The figure in both units, `95 mm/s (7600 steps/s)`, or in steps alone if they are the axis'
+    /// unit.
     pub fn both(&self, steps: f64, seconds: u32) -> String {
         self.with_steps(self.own(steps, seconds), &digits(steps), seconds)
     }
 
-    /// As [`Unit::both`], but both figures rounded down: what a limit may be at most.
+    /// As [`Unit::both`], with both figures rounded down, so that neither exceeds an upper limit.
     pub fn at_most(&self, steps: f64, seconds: u32) -> String {
         let own = format!("{} {}", digits_below(steps / self.steps), self.per(seconds));
         self.with_steps(own, &digits_below(steps), seconds)
@@ -52,7 +56,7 @@ impl Unit {
         if self.is_step() { own } else { format!("{own} ({steps} {})", per(STEPS, seconds)) }
     }
 
-    /// Whether a unit is a step, so that nothing need be said twice.
+    /// Whether the unit is the step itself, so that figures are shown once only.
     pub fn is_step(&self) -> bool {
         self.steps == 1.0 && self.name == STEPS
     }
@@ -66,14 +70,16 @@ fn per(name: &str, seconds: u32) -> String {
     }
 }
 
-/// Six digits, more where they stand before the point: `0.95`, `2061.86`, `1234567`, `1.5e-9`.
+/// Formats a number with six significant digits, and with all digits of its whole part: `0.95`,
+/// `2061.86`, `1234567`, `1.5e-9`.
 pub fn digits(value: f64) -> String {
     shown(value, |scaled| scaled)
 }
 
-/// The same, rounded down.
+/// As [`digits`], rounded down.
 pub fn digits_below(value: f64) -> String {
-    // A figure that is whole but for the rounding of floats is not pushed under itself.
+    // The factor keeps a whole number that is low by a float's rounding from being rounded down by
+    // one.
     shown(value, |scaled| (scaled * (1.0 + 1e-12)).floor())
 }
 
@@ -101,14 +107,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn figures_have_six_digits_and_no_more_zeros_than_they_need() {
+    fn figures_have_six_digits_and_no_trailing_zeros() {
         let shown = [0.0, 0.95, 2_061.855_67, 1_234_567.0, 12.5, -0.05, 320_000_000.0, 1e-9, 1e30].map(digits);
         assert_eq!(shown, ["0", "0.95", "2061.86", "1234567", "12.5", "-0.05", "320000000", "1e-9", "1e30"]);
         assert_eq!([2061.859, 500.0, 499.999_999_999_999_9, 0.3].map(digits_below), ["2061.85", "500", "500", "0.3"]);
     }
 
     #[test]
-    fn steps_are_said_once() {
+    fn figures_in_steps_are_shown_once() {
         assert_eq!(Unit::new(Some("mm"), 80.0).both(7600.0, 1), "95 mm/s (7600 steps/s)");
         assert_eq!(Unit::new(None, 80.0).both(76.0, 0), "0.95 units (76 steps)");
         assert_eq!(Unit::new(None, 1.0).both(76.0, 2), "76 steps/s^2");

@@ -1,4 +1,5 @@
-//! `[machine.guard]` and `stop_accel`: what they come to in the gateware, and every way in which they can be wrong.
+//! Tests of `[machine.guard]` and `stop_accel`: the values in the gateware, and every kind of
+//! mistake.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
@@ -21,8 +22,9 @@ fn with_tick(tick_ns: u64, keys: &str) -> Guard {
 }
 
 #[test]
-fn what_is_left_out_has_its_default() {
-    // 100 ms of 32 ticks are 3125 rounds, and 500 us are 15.6; of 16 ticks they would be over 4095.
+fn missing_keys_have_their_defaults() {
+    // 100 ms are 3125 rounds of 32 ticks, and 500 us are 15.6 rounds. With 16 ticks there would be
+    // more than 4095 rounds.
     let expected = Guard {
         round: 32,
         watchdog: 3126,
@@ -41,11 +43,11 @@ fn what_is_left_out_has_its_default() {
 }
 
 #[test]
-fn what_is_given_counts() {
+fn given_times_are_counted_in_rounds() {
     let keys = "watchdog_ms = 8\nenable_ms = 0.25\ndebounce_us = 100\nestop = \"low\"\nlimits = \"each\"\n\
         limit_level = \"low\"\nlimit_stop = \"freeze\"";
     let found = guard(keys);
-    // 8 ms of 2 ticks are 4000 rounds, and 100 us are 50.
+    // 8 ms are 4000 rounds of 2 ticks, and 100 us are 50 rounds.
     assert_eq!((found.round, found.watchdog, found.enable, found.debounce), (2, 4001, 126, 51));
     assert_eq!(
         (found.estop_low, found.limits, found.limits_low, found.limit_freezes),
@@ -58,20 +60,20 @@ fn what_is_given_counts() {
 }
 
 #[test]
-fn none_is_none() {
+fn zero_times_turn_the_functions_off() {
     let found = guard("watchdog_ms = 0\nenable_ms = 0.0\ndebounce_us = 0");
     assert_eq!((found.round, found.watchdog, found.enable, found.debounce), (2, 0, 0, 1));
 }
 
 #[test]
-fn times_are_rounded_up_and_the_round_is_the_shortest_that_counts_them() {
+fn times_are_rounded_up_and_the_shortest_round_is_chosen() {
     let times = ["0.001", "0.0010001", "1", "7.77", "8.188", "8.1880001", "1e2", "333.333", "1000", "4192.256"];
     for (tick_ns, tick) in [(1000, 1e-3), (2000, 2e-3), (62_000, 62e-3)] {
         for ms in times {
             let found = with_tick(tick_ns, &format!("watchdog_ms = {ms}"));
             let (asked, round) = (ms.parse::<f64>().unwrap(), tick * f64::from(found.round));
             let whole = f64::from(found.watchdog - 1);
-            // Only the exact products, at the very edge, may disagree with a float.
+            // Only exact products at the very boundary may differ from a float.
             assert!(whole * round >= asked * (1.0 - 1e-12), "{ms} ms of {tick_ns} ns: {found:?}");
             assert!((whole - 1.0) * round < asked * (1.0 - 1e-12), "{ms} ms of {tick_ns} ns: {found:?}");
             assert!(found.watchdog <= MAX_ROUNDS && found.debounce <= MAX_LOOKS);
@@ -81,14 +83,15 @@ fn times_are_rounded_up_and_the_round_is_the_shortest_that_counts_them() {
             assert!(found.round == 2 || !all, "{ms} ms of {tick_ns} ns: a shorter round would do: {found:?}");
         }
     }
-    // Decimals are exact: a tenth of a round over, in the last digit that a float of it would lose.
+    // Decimals are exact: this time exceeds whole rounds in its last digit, which a float would
+    // lose.
     let exact = |ms: &str| guard(&format!("debounce_us = 0\nwatchdog_ms = {ms}"));
     assert_eq!((exact("8.188").round, exact("8.188").watchdog), (2, 4095));
     assert_eq!(exact("8.1880000000000000000000000000001").round, 4);
 }
 
 #[test]
-fn figures_say_what_is_counted() {
+fn figures_are_the_counted_times() {
     let machine = read(&format!("[machine]\n[machine.guard]\nwatchdog_ms = 99.99\nenable_ms = 0\n{AXIS}")).unwrap();
     let figures = machine.engine().guard_figures();
     assert!((figures.round_us - 32.0).abs() < 1e-9);
@@ -99,10 +102,10 @@ fn figures_say_what_is_counted() {
 }
 
 #[test]
-fn a_stop_acceleration_of_its_own() {
+fn stop_accel_sets_the_ramp() {
     let stop = |line: &str| read(&format!("[machine]\n{AXIS}{line}\n")).map(|machine| machine.axes[0].stop);
     assert_eq!(stop("stop_accel = 10_000").unwrap(), 922_337_203_685);
-    // A quarter of a step per tick^2 is 5e10 units/s^2 here.
+    // A quarter of a step per tick^2 is 5e10 units/s^2 in this machine.
     assert_eq!(stop("stop_accel = 5e10").unwrap(), 1 << 62);
     let refused = |line: &str| stop(line).unwrap_err();
     let error = refused("stop_accel = 5.0000001e10");
@@ -113,13 +116,14 @@ fn a_stop_acceleration_of_its_own() {
     for (value, says) in [("0", "must be over zero"), ("-3", "must be over zero"), ("nan", "not a usable number")] {
         assert!(refused(&format!("stop_accel = {value}")).message.contains(says), "{value}");
     }
-    // A limit of up to half a step is fine for planning; a ramp takes a quarter at most.
+    // An acceleration limit of up to half a step is valid for planning; a ramp uses a quarter at
+    // most.
     let limit = AXIS.replace("5000", "9e10");
     assert_eq!(read(&format!("[machine]\n{limit}")).unwrap().guard.stop, [1 << 62]);
 }
 
 #[test]
-fn what_cannot_be_is_refused_where_it_stands() {
+fn mistake_in_the_guard_is_refused_at_its_place() {
     let rows = [
         (
             "watchdog_ms = 4192.2561",
@@ -160,17 +164,17 @@ fn what_cannot_be_is_refused_where_it_stands() {
 }
 
 #[test]
-fn a_short_tick_makes_a_default_shorter_but_never_refuses_it() {
+fn default_that_cannot_be_counted_is_shortened() {
     let text = format!("[machine]\nclock_hz = 1_000_000_000\ntick_ns = 16\n{AXIS}");
     let machine = read(&text).unwrap();
     let figures = machine.engine().guard_figures();
-    // 4094 rounds of 1024 ticks
+    // 4094 rounds of 1024 ticks.
     assert!((figures.watchdog_ms.unwrap().least - 67.076_096).abs() < 1e-9);
     assert_eq!(machine.guard.round, 1024);
 }
 
 #[test]
-fn machines_have_up_to_eight_axes() {
+fn machine_has_at_most_eight_axes() {
     let axes = |count: usize| (0..count).map(|i| AXIS.replace("\"x\"", &format!("\"x{i}\""))).collect::<String>();
     for count in 1..=8 {
         let machine = read(&format!("[machine]\n{}", axes(count))).unwrap();

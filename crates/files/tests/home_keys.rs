@@ -1,4 +1,5 @@
-//! `travel`, `home` and `home_order`: what they come to in steps and ticks, and every way in which they can be wrong.
+//! Tests of `travel`, `home` and `home_order`: the values in steps and ticks, and every kind of
+//! mistake.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
@@ -7,7 +8,8 @@ use carrystep_files::{InputError, Machine, Source};
 
 const HOME: &str = "home = { toward = \"min\", seek_speed = 20, slow_speed = 2, move_off = 5, max_travel = 330, pull_off = 2, position = 0 }";
 
-/// Lines 1 to 3 are of the machine, 4 to 11 of the axis x, whose travel and home are lines 10 and 11.
+/// Lines 1 to 3 describe the machine and lines 4 to 11 the axis x; travel and home are lines 10 and
+/// 11.
 fn text(order: &str, travel: &str, home: &str) -> String {
     format!(
         "[machine]\n{order}\n\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 80\nspeed_limit = 100\naccel_limit = 1000\n\
@@ -20,7 +22,7 @@ fn read(text: &str) -> Result<Machine, InputError> {
 }
 
 #[test]
-fn what_is_given_counts_and_what_is_not_follows_from_the_travel() {
+fn missing_home_keys_follow_from_the_travel() {
     let machine = read(&text("", "travel = [-1, 300]", HOME)).unwrap();
     let home = machine.axes[0].home.unwrap();
     assert_eq!(machine.axes[0].travel, Some([-80, 24_000]));
@@ -32,15 +34,16 @@ fn what_is_given_counts_and_what_is_not_follows_from_the_travel() {
     let short = HOME.replace("move_off = 5, max_travel = 330, ", "");
     let machine = read(&text("", "travel = [-1, 300]", &short)).unwrap();
     let home = machine.axes[0].home.unwrap();
-    // 8000 steps/s stop within 400 steps; 17 rounds of 32 us and 4 us are 4.4; a hundredth of 24080 is 241.
+    // 8000 steps/s stop within 400 steps. 17 rounds of 32 us and 4 us more are 4.4 steps. A
+    // hundredth of 24080 is 241.
     assert_eq!((home.move_off, home.max_travel), (405 + 241, 24_080 + 2 * 646));
     assert_eq!(overrun(home.seek, machine.axes[0].stop, &machine.guard), 17);
-    // The gateware knows nothing of it.
+    // Homing parameters are not part of the gateware's build.
     assert_eq!(machine.engine(), read(&text("", "", "")).unwrap().engine());
 }
 
 #[test]
-fn z_homes_first_unless_the_file_says_otherwise() {
+fn z_homes_first_by_default() {
     let axis = |name: &str, home: &str| {
         text("", "", home).split_once("\n\n").unwrap().1.replace("\"x\"", &format!("\"{name}\""))
     };
@@ -67,9 +70,10 @@ fn z_homes_first_unless_the_file_says_otherwise() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_where_it_stands() {
+fn mistake_in_homing_is_refused_at_its_place() {
     let rows = [
-        // a part of the home table, what stands there instead with `^` where the error must point, what must be said
+        // Columns: a part of the home table; its replacement, with `^` where the error must point;
+        // words of the message.
         ("toward = \"min\"", "toward = ^\"low\"", "unknown variant `low`, expected `min` or `max`"),
         ("seek_speed = 20", "seek_speed = ^101", "seek_speed is over speed_limit"),
         ("seek_speed = 20", "seek_speed = ^0", "must be over zero"),
@@ -133,13 +137,14 @@ fn what_cannot_be_is_refused_where_it_stands() {
 }
 
 #[test]
-fn homing_needs_limits_that_are_looked_at_often_enough() {
+fn approach_is_at_most_a_step_per_sample_of_the_limit() {
     let with = |guard: &str| read(&format!("{}[machine.guard]\n{guard}\n", text("", "", HOME)));
     let error = with("limits = \"none\"").unwrap_err();
     assert!(error.message.contains("axis 'x' has no limit switch to home with"), "{error}");
     assert_eq!(error.line_column(), Some((11, 8)));
     assert!(with("limits = \"one\"").is_ok());
-    // 160 steps/s make a step in 6.25 ms; a watchdog of 4 s has rounds of 1024 us, and there is no longer one.
+    // 160 steps/s make a step in 6.25 ms. A watchdog of 4 s needs rounds of 1024 us, the longest
+    // possible.
     assert!(with("watchdog_ms = 4000").is_ok());
     let fast = HOME.replace("slow_speed = 2", "slow_speed = 15");
     let slow_looks = format!("{}[machine.guard]\nwatchdog_ms = 4000\n", text("", "", &fast));

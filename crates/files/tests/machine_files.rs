@@ -1,4 +1,4 @@
-//! What a good machine file comes to.
+//! Tests of valid machine files.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
@@ -16,7 +16,7 @@ fn number(text: &str) -> BigDecimal {
 }
 
 #[test]
-fn what_is_left_out_has_its_default() {
+fn missing_keys_have_their_defaults() {
     let machine = machine(&format!("[machine]\n{AXIS}driver = \"a4988\"\n"));
     let timebase = machine.timebase;
     assert_eq!((timebase.clock_hz(), timebase.tick_ns(), timebase.phases()), (48_000_000, 1000, 16));
@@ -28,7 +28,7 @@ fn what_is_left_out_has_its_default() {
 }
 
 #[test]
-fn what_is_given_counts() {
+fn given_values_replace_the_defaults() {
     let head = "[machine]\nclock_hz = 16_000_000\ntick_ns = 2000\nphases = 4\nphase = \"zero\"\n";
     let machine = machine(&format!("{head}{AXIS}start_speed = 0.5\njerk_limit = 1e6\ndriver = \"a4988\"\n"));
     let timebase = machine.timebase;
@@ -48,7 +48,7 @@ fn limits_are_exact_products() {
 }
 
 #[test]
-fn a_driver_is_a_preset_that_single_values_override() {
+fn single_pin_times_override_the_driver_preset() {
     let pins = |lines: &str| machine(&format!("[machine]\n{AXIS}{lines}")).axes[0].pins_ns;
     assert_eq!(pins("driver = \"a4988\"\n"), [1000, 1000, 200, 200]);
     assert_eq!(pins("driver = \"a4988\"\nhold_ns = 500\n"), [1000, 1000, 200, 500]);
@@ -56,14 +56,14 @@ fn a_driver_is_a_preset_that_single_values_override() {
 }
 
 #[test]
-fn pin_timings_are_rounded_up_to_clocks_and_never_none() {
+fn pin_timings_are_rounded_up_to_at_least_one_clock() {
     let axis = machine(&format!("[machine]\n{AXIS}driver = \"drv8825\"\nhold_ns = 0\n")).axes.remove(0);
-    // 1900 ns are 91.2 clocks of 48 MHz, 650 ns are 31.2
+    // 1900 ns are 91.2 clocks of 48 MHz; 650 ns are 31.2 clocks.
     assert_eq!(axis.pins, PinTiming { width: 92, gap: 92, setup: 32, hold: 1 });
 }
 
 #[test]
-fn a_build_has_six_axes_whatever_the_machine_has() {
+fn build_of_the_core_always_has_six_axes() {
     let two = format!("[machine]\n{AXIS}driver = \"a4988\"\n{}driver = \"tmc2209\"\n", AXIS.replace("\"x\"", "\"y\""));
     let machine = machine(&two);
     assert_eq!((machine.axis_index("y"), machine.axis_index("q")), (Some(1), None));
@@ -75,8 +75,8 @@ fn a_build_has_six_axes_whatever_the_machine_has() {
 }
 
 #[test]
-fn the_fastest_speed_that_the_driver_allows_is_allowed() {
-    // 48 + 48 clocks and a phase of 3: 48 MHz / 99
+fn fastest_speed_of_the_driver_is_accepted() {
+    // 48 + 48 clocks and a phase of 3 clocks: 48 MHz / 99.
     let axis = |speed: &str| format!("[machine]\n{AXIS}driver = \"a4988\"\n").replace("1000", speed);
     let refused = |text: String| Machine::from_source(&Source { path: "m".into(), text: text.into() }).is_err();
     assert!(!refused(axis("96969.69")));

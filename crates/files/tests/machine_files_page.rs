@@ -1,4 +1,5 @@
-//! docs/machine-files.md against the reader: the same keys in each table, the same defaults, and examples that are read.
+//! Tests of docs/machine-files.md: the page lists the keys and defaults of the reader, and its
+//! examples are valid.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
@@ -18,7 +19,7 @@ fn machine(text: &str) -> Machine {
     Machine::from_source(&source(text)).unwrap()
 }
 
-/// Rows of the table under a heading: its cells, the first one being the key.
+/// Rows of the table under a heading; the first cell of a row is its key.
 fn rows(heading: &str) -> Vec<Vec<&'static str>> {
     let (_, section) = PAGE.split_once(&format!("\n{heading}\n")).unwrap();
     let section = section.split("\n#").next().unwrap();
@@ -26,12 +27,13 @@ fn rows(heading: &str) -> Vec<Vec<&'static str>> {
     lines.map(|line| line.trim_matches('|').split('|').map(str::trim).collect()).collect()
 }
 
-/// What stands in backticks first.
+/// The first text in backticks.
 fn quoted(text: &str) -> &str {
     text.split('`').nth(1).unwrap()
 }
 
-/// The keys that the reader knows where `colour` stands: it names them where it refuses that one.
+/// The keys that the reader knows in the table that contains `colour`: its error for this unknown
+/// key lists them.
 fn known(text: &str) -> Vec<String> {
     let error = MoveFile::from_source(source(text)).unwrap_err().message;
     let (_, keys) = error.split_once("expected ").unwrap_or_else(|| panic!("{error}"));
@@ -39,7 +41,7 @@ fn known(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_page_has_the_keys_that_are_read() {
+fn page_lists_the_keys_of_the_reader() {
     let tables = [
         ("## `[machine]`", format!("{MOVE}[machine]\ncolour = 1\n{AXIS}")),
         ("## `[[machine.axis]]`", format!("{MOVE}[machine]\n{AXIS}colour = 1\n")),
@@ -59,8 +61,8 @@ fn the_page_has_the_keys_that_are_read() {
 }
 
 #[test]
-fn defaults_are_those_of_the_page() {
-    // A default in backticks alone is a literal.
+fn page_gives_the_defaults_of_the_reader() {
+    // A default in backticks alone is a literal value.
     let given = |heading| {
         let literal = |cell: &str| cell.starts_with('`') && cell.ends_with('`') && cell.matches('`').count() == 2;
         let rows = rows(heading).into_iter().filter(|row| row.len() > 2 && literal(row[2]));
@@ -85,7 +87,7 @@ fn defaults_are_those_of_the_page() {
 }
 
 #[test]
-fn the_page_s_ticks_are_those_that_are_chosen() {
+fn page_gives_the_ticks_that_are_chosen() {
     let rows = PAGE.lines().filter_map(|line| line.strip_prefix("| ")?.split_once(" MHz | "));
     let mut seen = 0;
     for (mhz, rest) in rows {
@@ -102,7 +104,7 @@ fn the_page_s_ticks_are_those_that_are_chosen() {
 }
 
 #[test]
-fn every_word_of_the_page_is_read() {
+fn every_value_named_by_the_page_is_valid() {
     for row in rows("## `[machine.guard]`").into_iter().filter(|row| row[3].starts_with("`\"")) {
         for word in row[3].split(", ") {
             machine(&format!("[machine.guard]\n{} = {}\n{AXIS}", quoted(row[0]), quoted(word)));
@@ -115,7 +117,7 @@ fn every_word_of_the_page_is_read() {
 }
 
 #[test]
-fn the_page_s_ranges_of_the_guard_are_the_reader_s() {
+fn page_gives_the_ranges_of_the_guard() {
     for row in rows("## `[machine.guard]`").into_iter().filter(|row| row[3].starts_with("0 to ")) {
         let most = row[3].trim_start_matches("0 to ").split(' ').next().unwrap();
         let read = |more: &str| {
@@ -128,7 +130,7 @@ fn the_page_s_ranges_of_the_guard_are_the_reader_s() {
 }
 
 #[test]
-fn the_examples_are_read_and_the_first_one_has_every_key() {
+fn examples_are_valid_and_the_first_has_every_key() {
     let blocks: Vec<&str> = PAGE.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
     machine(blocks[0]);
     for heading in ["## `[machine]`", "## `[[machine.axis]]`", "## `[machine.guard]`", "## `[machine.link]`"] {

@@ -1,4 +1,4 @@
-//! What a good move file comes to: exact decimals, and steps that never drift from them.
+//! Tests of valid move files: distances are exact decimals, and the steps follow their sum.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
@@ -13,7 +13,7 @@ fn file(moves: &str) -> MoveFile {
     MoveFile::from_source(Source { path: "move.toml".into(), text: text.into() }).unwrap()
 }
 
-/// Moves of x alone, one a distance.
+/// A file of moves of the axis x alone, one for each distance.
 fn along_x(distances: &[&str]) -> MoveFile {
     let to = |distance: &&str| format!("[[move]]\nprofile = \"ranade\"\nto = {{ x = {distance} }}\n");
     file(&distances.iter().map(to).collect::<String>())
@@ -24,9 +24,9 @@ fn steps(file: &MoveFile) -> Vec<i64> {
 }
 
 #[test]
-fn ten_tenths_of_five_steps_are_five_steps() {
+fn ten_moves_of_half_a_step_are_five_steps() {
     let file = along_x(&["0.1"; 10]);
-    // targets 0.5, 1, 1.5 ... 5 steps: a half goes away from zero
+    // Targets 0.5, 1, 1.5 ... 5 steps; halves are rounded away from zero.
     assert_eq!(steps(&file), [1, 0, 1, 0, 1, 0, 1, 0, 1, 0]);
     let rounding: Vec<f64> = file.moves.iter().map(|m| m.rounding[0]).collect();
     assert_eq!(rounding, [-0.5, 0.0].repeat(5));
@@ -34,8 +34,8 @@ fn ten_tenths_of_five_steps_are_five_steps() {
 }
 
 #[test]
-fn rounding_is_of_the_target_and_never_adds_up() {
-    let file = along_x(&["0.07"; 100]); // 0.35 steps each, 35 in all
+fn rounding_of_targets_does_not_accumulate() {
+    let file = along_x(&["0.07"; 100]); // 0.35 steps each, 35 steps in total
     assert_eq!(steps(&file).iter().sum::<i64>(), 35);
     assert!(file.moves.iter().all(|m| m.rounding[0].abs() <= 0.5));
     assert_eq!(file.moves[99].rounding[0], 0.0);
@@ -44,7 +44,7 @@ fn rounding_is_of_the_target_and_never_adds_up() {
 }
 
 #[test]
-fn an_axis_that_is_not_named_stays() {
+fn axis_without_a_distance_does_not_move() {
     let file = file(
         "[[move]]\nprofile = \"constant\"\ntime = 0.5\nto = { y = -3 }\n[[move]]\nprofile = \"trapezoid\"\nto = {}\n",
     );
@@ -56,18 +56,18 @@ fn an_axis_that_is_not_named_stays() {
 }
 
 #[test]
-fn numbers_may_be_written_in_any_way_that_toml_has() {
+fn all_number_forms_of_toml_are_accepted() {
     assert_eq!(steps(&along_x(&["1_0.0", "+1e1", "0x0a", "0b1010", "1.0E+1"])), [50; 5]);
 }
 
 #[test]
-fn the_whole_position_register_can_be_used() {
+fn whole_range_of_the_position_register_can_be_used() {
     let file = along_x(&["429496729.4", "-858993458.8", "429496729.4"]);
     assert_eq!(steps(&file), [2_147_483_647, -4_294_967_294, 2_147_483_647]);
 }
 
 #[test]
-fn a_machine_file_is_found_beside_the_move_file() {
+fn machine_file_is_resolved_from_the_move_file() {
     let folder = tempfile::tempdir().unwrap();
     let here = |name: &str| folder.path().join(name);
     std::fs::create_dir(here("machines")).unwrap();
@@ -80,7 +80,7 @@ fn a_machine_file_is_found_beside_the_move_file() {
 }
 
 #[test]
-fn an_error_about_a_move_points_at_it() {
+fn error_of_a_move_points_at_the_move() {
     let file = along_x(&["1", "2"]);
     let error = file.move_error(1, "too far");
     assert_eq!(error.line_column(), Some((17, 1)));

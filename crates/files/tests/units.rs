@@ -1,11 +1,12 @@
-//! An axis in the words of its mechanics: units, turns of the motor, speeds per minute. What is built is the same.
+//! Tests of axes described by their mechanics: units, turns of the motor, speeds per minute. The
+//! build equals that of the same axis in steps and seconds.
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_core::link::{BuildId, Line};
 use carrystep_files::{BigDecimal, InputError, Machine, MoveFile, Source};
 
-/// A machine of one axis with these lines.
+/// A machine with one axis that has these lines.
 fn read(lines: &str) -> Result<Machine, InputError> {
     let text = format!("[machine]\n[[machine.axis]]\nname = \"x\"\naccel_limit = 4000\ndriver = \"tmc2209\"\n{lines}");
     Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() })
@@ -22,7 +23,7 @@ fn number(text: &str) -> BigDecimal {
 const PLAIN: &str = "steps_per_unit = 80\nspeed_limit = 100\nstart_speed = 5\n";
 
 #[test]
-fn the_mechanics_come_to_the_same_build_as_steps_and_seconds() {
+fn mechanics_give_the_same_build_as_steps_and_seconds() {
     let plain = read(PLAIN).unwrap();
     assert_eq!(plain.axes[0].unit.name, "units");
     for lines in [
@@ -41,8 +42,9 @@ fn the_mechanics_come_to_the_same_build_as_steps_and_seconds() {
 }
 
 #[test]
-fn a_turn_that_is_no_finite_decimal_of_steps_lands_as_the_fraction_does() {
-    // 3200 / 360 steps a degree: 0.05625 degrees are half a step, which goes away from zero.
+fn periodic_steps_per_unit_round_as_the_fraction_does() {
+    // With 3200 / 360 steps per degree, 0.05625 degrees are half a step, which is rounded away from
+    // zero.
     let axis = "unit = \"deg\"\nlead = 360\nsteps_per_rev = 200\nmicrosteps = 16\nspeed_limit_per_min = 1000\n";
     let text = |to: &str| {
         format!(
@@ -60,13 +62,13 @@ fn a_turn_that_is_no_finite_decimal_of_steps_lands_as_the_fraction_does() {
     assert_eq!(moved("-0.05625"), (-1, 0.5));
     assert_eq!(moved("0.05624"), (0, 0.499_911_111_111_111_1));
     let machine = read(axis).unwrap();
-    // 1000 / 60 x 3200 / 360 = 148.148148...
+    // 1000 / 60 x 3200 / 360 = 148.148148... steps/s.
     let speed = &machine.axes[0].speed_limit;
     assert!(*speed > number("148.148148148148148148148148148") && *speed < number("148.148148148148148148148148149"));
 }
 
 #[test]
-fn what_is_said_twice_or_by_halves_is_refused_where_it_stands() {
+fn contradictory_or_incomplete_mechanics_are_refused_at_their_place() {
     let rows = [
         ("steps_per_unit = 80\nlead = 40\nspeed_limit = 1\n", 7, "both steps_per_unit and lead are given"),
         ("steps_per_unit = 80\nmicrosteps = 4\nspeed_limit = 1\n", 7, "both steps_per_unit and microsteps are given"),
@@ -98,7 +100,7 @@ fn what_is_said_twice_or_by_halves_is_refused_where_it_stands() {
 }
 
 #[test]
-fn errors_speak_in_the_axis_unit_and_in_steps() {
+fn errors_give_the_axis_unit_and_steps() {
     let fast = read("unit = \"mm\"\nsteps_per_unit = 80\nspeed_limit_per_min = 600_000\n").unwrap_err();
     assert_eq!(fast.message, "speed_limit is 10000 mm/s (800000 steps/s): half a step per tick or more");
     assert_eq!(fast.help.unwrap(), "with ticks of 1000 ns stay under 6250 mm/s (500000 steps/s)");
@@ -107,7 +109,7 @@ fn errors_speak_in_the_axis_unit_and_in_steps() {
 }
 
 #[test]
-fn the_proposal_of_fewer_phases_stands_where_the_long_tick_forbids_a_speed() {
+fn fewer_phases_are_proposed_where_a_long_tick_forbids_a_speed() {
     let text = "[machine]\nclock_hz = 27_000_000\n[[machine.axis]]\nname = \"x\"\nunit = \"mm\"\nsteps_per_unit = 80\n\
                 speed_limit = 500\naccel_limit = 100\ndriver = \"tmc2209\"\n";
     let at = |text: &str| Machine::from_source(&Source { path: "m".into(), text: text.into() });
@@ -118,7 +120,7 @@ fn the_proposal_of_fewer_phases_stands_where_the_long_tick_forbids_a_speed() {
 }
 
 #[test]
-fn a_tick_is_chosen_where_none_is_given_and_not_at_the_default_clock() {
+fn tick_is_chosen_only_without_tick_ns_at_other_clocks() {
     let at = |head: &str, axes: usize| {
         let axis = |i| {
             format!(
@@ -133,7 +135,7 @@ fn a_tick_is_chosen_where_none_is_given_and_not_at_the_default_clock() {
         assert_eq!(machine.timebase.tick_ns(), tick_ns, "{mhz} MHz");
         machine.engine().check().unwrap();
         assert_eq!(machine.chosen_tick.map(|chosen| chosen.tick_ns), Some(tick_ns));
-        // Given, it is the same machine, and nothing was chosen.
+        // With the same tick given explicitly the machine is equal, and no tick was chosen.
         let given = at(&format!("clock_hz = {mhz}_000_000\ntick_ns = {tick_ns}"), 6).unwrap();
         assert_eq!((given.timebase, given.chosen_tick), (machine.timebase, None));
     }

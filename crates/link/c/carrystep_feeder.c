@@ -24,7 +24,8 @@ static void look_ahead(carrystep_feeder *feeder, uint8_t axes)
     }
 }
 
-/* Of the axes that have room, the one that is supplied for the shortest time; -1 where there is none. */
+/* The axis to supply next: of the axes with a segment and a free queue place, the one whose sent
+ * segments last for the shortest time. -1 if there is none. */
 static int hungriest(const carrystep_session *session, const carrystep_feeder *feeder)
 {
     int found = -1;
@@ -49,7 +50,7 @@ static bool hand_over(carrystep_session *session, carrystep_feeder *feeder, int 
 
 typedef enum { NOT_YET, STARTED, WRONG, UNPOWERED } started;
 
-/* A start is sent when each of its axes has the first segment of its move. */
+/* Sends a start if each of its axes has the first segment of its move. */
 static started start(carrystep_session *session, carrystep_feeder *feeder)
 {
     for (int axis = 0; axis < (int)CARRYSTEP_MOST_AXES; axis++) {
@@ -72,7 +73,7 @@ static started start(carrystep_session *session, carrystep_feeder *feeder)
     return carrystep_write(session, CARRYSTEP_START, feeder->start) ? STARTED : WRONG;
 }
 
-/* Axes without room are asked how they are, where no segment of theirs will tell. */
+/* Reads the state of each axis without room, if no acknowledgement of a segment will report it. */
 static void ask(carrystep_session *session, const carrystep_feeder *feeder)
 {
     for (uint8_t axis = 0; axis < session->axes; axis++) {

@@ -1,6 +1,7 @@
-/* The segments of a program as the queues have room, and each start as soon as it may be sent.
+/* The feeder: sends the segments of a program in the order in which the queues need them, and each
+ * start as early as possible.
  *
- * C99; no allocation, no floating point. */
+ * C99, without allocation and floating point. */
 #ifndef CARRYSTEP_FEEDER_H
 #define CARRYSTEP_FEEDER_H
 
@@ -10,23 +11,24 @@
 extern "C" {
 #endif
 
-/* Where segments come from. Each is asked for once; false means that there are no more. */
+/* A source of segments and starts. Each of them is requested once; false means that there are no
+ * more. */
 typedef struct {
     bool (*segment)(void *context, uint8_t axis, carrystep_segment *segment);
     bool (*start)(void *context, uint8_t *mask);
     void *context;
 } carrystep_source;
 
-/* A program on its way into the queues; carrystep_load makes one. */
+/* A program that is being sent; initialised by carrystep_load. */
 typedef struct {
     carrystep_source source;
     struct {
-        carrystep_segment ahead; /* the next one, where `has` */
+        carrystep_segment ahead; /* the next segment, if `has` is set */
         bool has;
-        bool dry;         /* the source has no more */
-        bool open;        /* in the middle of a move */
-        uint32_t waiting; /* moves that were begun and not started */
-        uint64_t ticks;   /* of all segments that were sent */
+        bool dry;         /* the source has no more segments */
+        bool open;        /* the last segment sent was not the last of its move */
+        uint32_t waiting; /* moves whose first segment was sent and whose start was not */
+        uint64_t ticks;   /* sum of the ticks of all segments sent */
     } axes[CARRYSTEP_MOST_AXES];
     uint8_t start;
     bool has_start;
@@ -34,16 +36,18 @@ typedef struct {
 } carrystep_feeder;
 
 typedef enum {
-    CARRYSTEP_FEEDING,    /* there is more */
-    CARRYSTEP_FED,        /* all was handed over */
-    CARRYSTEP_BAD_SOURCE, /* a segment of no ticks, or a start without a move: what was queued will run dry, so stop */
-    CARRYSTEP_NO_POWER    /* a start is due and the drivers have no power: write CONTROL = 1, wait for `ready`, go on */
+    CARRYSTEP_FEEDING,    /* a part of the program was not queued yet */
+    CARRYSTEP_FED,        /* the whole program was queued */
+    CARRYSTEP_BAD_SOURCE, /* a segment of 0 ticks, or a start without a move. Stop the axes: the
+                             queues will run empty. */
+    CARRYSTEP_NO_POWER    /* a start is due, but the drivers have no power: write CONTROL = 1, wait
+                             for `ready`, and continue */
 } carrystep_fed;
 
-/* A program from its beginning. */
+/* Begins to send a program from its beginning. */
 void carrystep_load(carrystep_feeder *feeder, carrystep_source source);
 
-/* Hands over as much of the program as there is room for. */
+/* Queues as much of the program as there is room for. */
 carrystep_fed carrystep_feed(carrystep_session *session, carrystep_feeder *feeder);
 
 #ifdef __cplusplus

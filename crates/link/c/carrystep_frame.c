@@ -82,7 +82,7 @@ size_t carrystep_encode(uint8_t *line, uint8_t sequence, const carrystep_request
     return out;
 }
 
-/* The answer that a whole frame is. */
+/* Decodes an answer from a complete frame. */
 static bool take(const uint8_t *frame, uint8_t length, carrystep_answer *answer)
 {
     const size_t content = CARRYSTEP_ANSWER_BYTES - CARRYSTEP_CRC_BYTES;

@@ -1,6 +1,6 @@
-/* Requests to the gateware and its answers as bytes on the line (docs/protocol.md).
+/* Requests to the gateware and its answers, as bytes on the line (docs/protocol.md).
  *
- * C99; no allocation, no floating point, no division. */
+ * C99, without allocation, floating point and division. */
 #ifndef CARRYSTEP_FRAME_H
 #define CARRYSTEP_FRAME_H
 
@@ -14,10 +14,10 @@
 extern "C" {
 #endif
 
-/* Most bytes of a request on the line, END and ESC included. */
+/* Greatest number of bytes of a request on the line, with END and ESC. */
 #define CARRYSTEP_LINE_BYTES (2u * CARRYSTEP_LONGEST_REQUEST + 2u)
 
-/* A stretch of whole ticks over which one axis follows a cubic. */
+/* A run of whole ticks during which one axis follows a cubic. */
 typedef struct {
     uint32_t ticks; /* 1 or more */
     int64_t v;      /* 2^-64 step per tick */
@@ -26,15 +26,15 @@ typedef struct {
     bool last;      /* the axis stops when it is over */
 } carrystep_segment;
 
-/* What is asked of the gateware: a read (address below CARRYSTEP_WRITE), a write of one word, or a segment
- * (address CARRYSTEP_WRITE | CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis)). */
+/* A request: a read (address below CARRYSTEP_WRITE), a write of one word, or a segment (address
+ * CARRYSTEP_WRITE | CARRYSTEP_OF_AXIS(CARRYSTEP_SEGMENT, axis)). */
 typedef struct {
     uint8_t address;
     uint32_t word;             /* of a write */
     carrystep_segment segment; /* of a segment */
 } carrystep_request;
 
-/* What the gateware says to a request; meanings in carrystep_registers.h. */
+/* The gateware's answer to a request; carrystep_registers.h gives the meaning of the fields. */
 typedef struct {
     uint8_t sequence;
     uint8_t address;
@@ -52,7 +52,7 @@ typedef struct {
     uint32_t data;
 } carrystep_answer;
 
-/* Takes answers from the line. Zeros are a fresh one. */
+/* Decodes answers from the line. A decoder of all zeros is in its initial state. */
 typedef struct {
     uint8_t bytes[CARRYSTEP_ANSWER_BYTES];
     uint8_t length;
@@ -66,18 +66,19 @@ typedef enum {
     CARRYSTEP_BROKEN /* a damaged frame: nothing was taken from it */
 } carrystep_received;
 
-/* CRC-32 of Ethernet, zip and zlib. */
+/* The CRC-32 of Ethernet, zip and zlib. */
 uint32_t carrystep_crc(const uint8_t *bytes, size_t length);
 
-/* Whether this address writes a segment; whether it names an axis, and which. */
+/* Whether this address writes a segment; whether it belongs to an axis, and to which. */
 bool carrystep_is_segment(uint8_t address);
 bool carrystep_names_axis(uint8_t address);
 uint8_t carrystep_axis_of(uint8_t address);
 
-/* Puts a request on `line` (CARRYSTEP_LINE_BYTES): how many bytes it takes there. */
+/* Encodes a request to `line`, which has CARRYSTEP_LINE_BYTES bytes. Returns the number of bytes
+ * used. */
 size_t carrystep_encode(uint8_t *line, uint8_t sequence, const carrystep_request *request);
 
-/* The next byte from the line; *answer is set where it completes one. */
+/* Processes the next byte from the line. If it completes an answer, *answer is set. */
 carrystep_received carrystep_decode(carrystep_decoder *decoder, uint8_t byte, carrystep_answer *answer);
 
 #ifdef __cplusplus

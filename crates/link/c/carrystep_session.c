@@ -48,7 +48,7 @@ static uint8_t slot(const carrystep_session *session, uint8_t index)
     return (uint8_t)(place < CARRYSTEP_SLOTS ? place : place - CARRYSTEP_SLOTS);
 }
 
-/* A write is no longer on its way. */
+/* Updates the counts when a write is acknowledged or withdrawn. */
 static void settle(carrystep_session *session, const carrystep_request *request)
 {
     if (carrystep_is_segment(request->address)) {
@@ -139,8 +139,8 @@ static size_t send_write(carrystep_session *session, uint32_t now, uint8_t *line
     return carrystep_encode(line, sequence, &session->slots[slot(session, (uint8_t)(session->sent - 1u))]);
 }
 
-/* Everything behind a missing write is refused, so one loss brings many refusals: they come with rising numbers, and
- * only the first of them begins a new round. */
+/* Processes a refusal. The gateware refuses every write behind a missing one, so one loss causes
+ * many refusals with rising numbers. Only the first of them begins a new round. */
 static void refusal(carrystep_session *session, uint8_t behind, uint32_t now)
 {
     if (!session->has_refused || behind <= session->refused) {
@@ -152,8 +152,8 @@ static void refusal(carrystep_session *session, uint8_t behind, uint32_t now)
     session->refused = behind;
 }
 
-/* Whether this answers a write that was sent from here, as far as that can be known: of writes that were executed
- * already only the number is left, so a late answer to one of them is believed. */
+/* Whether this answers a write of this host, as far as that can be known. Of acknowledged writes
+ * only the number is left, so a late answer to one of them is accepted. */
 static bool own(const carrystep_session *session, const carrystep_answer *answer)
 {
     uint8_t behind = (uint8_t)(answer->sequence - session->first);
@@ -163,7 +163,7 @@ static bool own(const carrystep_session *session, const carrystep_answer *answer
     return behind < session->reached && session->slots[slot(session, behind)].address == answer->address;
 }
 
-/* Takes what an answer says of the writes before `next`. */
+/* Processes the acknowledgement in an answer: all writes before `next` were executed. */
 static bool count(carrystep_session *session, const carrystep_answer *answer, uint32_t now)
 {
     uint8_t advance = (uint8_t)(answer->next - session->first);
@@ -189,7 +189,7 @@ static bool count(carrystep_session *session, const carrystep_answer *answer, ui
     return true;
 }
 
-/* ---- questions ---- */
+/* ---- reads ---- */
 
 bool carrystep_read(carrystep_session *session, uint8_t address)
 {

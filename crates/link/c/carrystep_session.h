@@ -1,10 +1,10 @@
-/* One host's talk with one gateware: writes that are executed once and in order, questions that are asked again. Bytes
- * and milliseconds come from outside:
+/* The dialogue of one host with one gateware. Writes are executed in order, each exactly once;
+ * reads without an answer are sent again. The caller passes the bytes and the time in milliseconds:
  *
  *     static carrystep_session link;
  *     static carrystep_feeder program;
  *     carrystep_begin(&link, 40, 2);
- *     carrystep_read(&link, CARRYSTEP_IDENTITY); ...       then carrystep_check() and carrystep_adopt()
+ *     carrystep_read(&link, CARRYSTEP_IDENTITY); ...    then carrystep_check() and carrystep_adopt()
  *     for (;;) {
  *         uint8_t line[CARRYSTEP_LINE_BYTES];
  *         carrystep_feed(&link, &program);
@@ -12,7 +12,8 @@
  *         ... each byte that comes: carrystep_receive(&link, byte, now(), &answer)
  *     }
  *
- * Over SPI the bytes go both ways at once; send CARRYSTEP_END while there is nothing to say. */
+ * SPI transfers bytes in both directions at once; send CARRYSTEP_END while there is nothing else to
+ * send. */
 #ifndef CARRYSTEP_SESSION_H
 #define CARRYSTEP_SESSION_H
 
@@ -22,12 +23,13 @@
 extern "C" {
 #endif
 
-/* Writes that may be on their way, 1 to CARRYSTEP_WINDOW; about 48 bytes of memory each. */
+/* Greatest number of unacknowledged writes, 1 to CARRYSTEP_WINDOW; each needs about 48 bytes of
+ * memory. */
 #ifndef CARRYSTEP_SLOTS
 #define CARRYSTEP_SLOTS 16
 #endif
 
-/* All fields belong to the functions below. */
+/* The state of a session. Only the functions below may change its fields. */
 typedef struct {
     carrystep_decoder decoder;
     uint32_t resend;
@@ -43,7 +45,7 @@ typedef struct {
     uint8_t refused;
     bool has_refused;
     bool busy;
-    /* questions */
+    /* reads */
     struct {
         uint8_t address;
         uint8_t sequence;
@@ -63,54 +65,62 @@ typedef struct {
 } carrystep_session;
 
 typedef enum {
-    CARRYSTEP_QUIET,      /* no answer has ended */
-    CARRYSTEP_HEARD,      /* *answer is one */
-    CARRYSTEP_DAMAGED,    /* a damaged frame: it will be asked for again */
-    CARRYSTEP_OUT_OF_STEP /* the gateware was restarted, or another host writes to it or is answered: begin anew */
+    CARRYSTEP_QUIET,      /* the byte completes no answer */
+    CARRYSTEP_HEARD,      /* the byte completes an answer, and *answer is set */
+    CARRYSTEP_DAMAGED,    /* the byte ends a damaged frame; the request will be sent again */
+    CARRYSTEP_OUT_OF_STEP /* the gateware was restarted, or another host uses it: connect again */
 } carrystep_event;
 
 typedef enum {
     CARRYSTEP_FINE,
-    CARRYSTEP_OTHER_DEVICE,   /* it is not carrystep */
-    CARRYSTEP_OTHER_PROTOCOL, /* another version */
-    CARRYSTEP_OTHER_BUILD     /* gateware of another machine */
+    CARRYSTEP_OTHER_DEVICE,   /* the device is not carrystep */
+    CARRYSTEP_OTHER_PROTOCOL, /* the gateware has another version of the protocol */
+    CARRYSTEP_OTHER_BUILD     /* the gateware was built for another machine */
 } carrystep_verdict;
 
-/* Whether gateware whose registers say this may be driven by a host made for build `wanted`. */
+/* Checks that a host made for build `wanted` may drive the gateware with these register values. */
 carrystep_verdict carrystep_check(uint32_t identity, uint32_t protocol, uint64_t build, uint64_t wanted);
 
-/* A fresh session: registers may be read, nothing may be written. `resend`: ms to wait for an answer before the request
- * is sent again, more than the line ever takes; `pause`: ms to wait where the gateware is busy. */
+/* Begins a session, in which registers may be read, but not written. `resend`: time without an
+ * answer, ms, until a request is sent again; it must exceed the delay of the line. `pause`: time
+ * until a request that was refused as busy is sent again, ms. */
 void carrystep_begin(carrystep_session *session, uint32_t resend, uint32_t pause);
 
-/* From here on writes are numbered from `next`, which the last answer gave; the build has so many axes. */
+/* Numbers the following writes from `next`, which the last answer reported, for a build with this
+ * number of axes. */
 void carrystep_adopt(carrystep_session *session, uint8_t next, uint8_t axes);
 
-/* Reads a register: its answer comes out of carrystep_receive. False: eight are being read already. */
+/* Starts to read a register; carrystep_receive returns the answer. False if eight are being read.
+ */
 bool carrystep_read(carrystep_session *session, uint8_t address);
 
-/* Whether a START is taken, at once or after a while. False: the drivers have no power, and the gateware would refuse the
- * START, and all that is behind it, for as long as they have none: write CONTROL = 1 and wait for `ready`. */
+/* Whether the gateware will accept a START, at once or after a while. False if the drivers have no
+ * power: the gateware would refuse the START, and all writes behind it, as long as they have none.
+ * Write CONTROL = 1 first and wait for `ready`. */
 bool carrystep_may_start(const carrystep_session *session);
 
-/* Writes a register. False: no room, not adopted yet, or a START where carrystep_may_start says no. */
+/* Queues a write of a register. False if there is no room, if carrystep_adopt was not called, or
+ * for a START if carrystep_may_start returns false. */
 bool carrystep_write(carrystep_session *session, uint8_t address, uint32_t word);
 
-/* Puts a segment into the queue of an axis; mind session->room. False: no room on the way, no such axis, no ticks, or not
- * adopted yet. carrystep_feed does it for whole programs. */
+/* Queues a segment for an axis. The caller must observe session->room. False if there is no room
+ * for a write, no such axis, no tick in the segment, or if carrystep_adopt was not called.
+ * carrystep_feed calls this for whole programs. */
 bool carrystep_put(carrystep_session *session, uint8_t axis, const carrystep_segment *segment);
 
-/* Whether an answer is still to come; whether writes were not seen executed yet. */
+/* Whether any answer is outstanding; whether any write is unacknowledged. */
 bool carrystep_waiting(const carrystep_session *session);
 bool carrystep_writing(const carrystep_session *session);
 
-/* Takes back the writes that were never sent, so that the next one, a stop, goes out at once. */
+/* Removes the writes that were never sent, so that the next one, such as a stop, is sent at once.
+ */
 void carrystep_withdraw(carrystep_session *session);
 
-/* Puts the next request on `line` (CARRYSTEP_LINE_BYTES): how many bytes, 0 where there is nothing to send now. */
+/* Encodes the next request to `line` (CARRYSTEP_LINE_BYTES). Returns the number of bytes, 0 if
+ * there is nothing to send at the time `now`, ms. */
 size_t carrystep_transmit(carrystep_session *session, uint32_t now, uint8_t *line);
 
-/* A byte from the line. */
+/* Processes a byte received at the time `now`, ms. */
 carrystep_event carrystep_receive(carrystep_session *session, uint8_t byte, uint32_t now, carrystep_answer *answer);
 
 #ifdef __cplusplus

@@ -1,35 +1,36 @@
-//! What a host wants done: segments and starts, and a program of them that is checked before anything is sent.
+//! The commands of a program for the gateware: segments and starts. A program is checked as a whole
+//! before anything is sent.
 
 use crate::feeder::Source;
 use crate::registers::MOST_AXES;
 use thiserror::Error;
 
-/// A stretch of whole ticks over which one axis follows a cubic.
+/// A run of whole ticks during which one axis follows a cubic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Segment {
     /// Length in ticks, at least 1.
     pub ticks: u32,
-    /// Speed, 2^-64 step per tick.
+    /// Speed at the first tick, 2^-64 step per tick.
     pub v: i64,
     /// Acceleration, 2^-64 step per tick^2.
     pub a: i64,
     /// Jerk, 2^-64 step per tick^3.
     pub j: i64,
-    /// The axis stops when this segment is over.
+    /// Whether the axis stops at the end of this segment.
     pub last: bool,
 }
 
-/// One step of a program.
+/// One command of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Command {
     /// A segment for an axis.
     Segment {
-        /// Axis, from 0.
+        /// Number of the axis, from 0.
         axis: u8,
         /// The segment.
         segment: Segment,
     },
-    /// Starts axes together, a bit each.
+    /// Starts axes on the same tick.
     Start {
         /// Bit i starts axis i.
         mask: u8,
@@ -39,46 +40,47 @@ pub enum Command {
 /// Why a program cannot be sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum ProgramError {
-    /// An axis that this build does not have.
+    /// The program uses an axis that this build does not have.
     #[error("the program moves axis {axis}, and this build has {axes} (from 0)")]
     Axis {
-        /// The axis.
+        /// Number of the axis, from 0.
         axis: u8,
-        /// How many there are.
+        /// Number of axes of the build.
         axes: u8,
     },
-    /// A segment of no ticks.
+    /// A segment has 0 ticks.
     #[error("a segment of no ticks for axis {axis}: 1 or more are needed")]
     NoTicks {
-        /// The axis.
+        /// Number of the axis, from 0.
         axis: u8,
     },
-    /// A start for an axis that has no segments for it.
+    /// A start includes an axis that has no move waiting for it.
     #[error("start of axes {mask:#04x}: axis {axis} has no move for it")]
     NoMove {
-        /// The axis.
+        /// Number of the axis, from 0.
         axis: u8,
-        /// The start's axes.
+        /// Mask of the start.
         mask: u8,
     },
-    /// The segments of an axis end without one that is the last of its move.
+    /// The last segment of an axis is not marked `last`.
     #[error("the segments of axis {axis} end without a last one: its queue would run dry")]
     NoEnd {
-        /// The axis.
+        /// Number of the axis, from 0.
         axis: u8,
     },
-    /// Segments that no start starts.
+    /// Segments of an axis remain after the last start.
     #[error("axis {axis} has a move that no start starts")]
     NoStart {
-        /// The axis.
+        /// Number of the axis, from 0.
         axis: u8,
     },
-    /// A start while the drivers have no power: the gateware would refuse it for as long as they have none.
+    /// A start while the drivers have no power. The gateware would refuse it as long as they have
+    /// none.
     #[error("the drivers have no power: write CONTROL = 1 and wait for `ready` before the first START")]
     NoPower,
 }
 
-/// Segments and starts in order, as a [`Source`]: each axis takes its own.
+/// Segments and starts in order, as a [`Source`] that gives each axis its own segments.
 #[derive(Debug, Clone)]
 pub struct Program<'a> {
     commands: &'a [Command],
@@ -87,10 +89,10 @@ pub struct Program<'a> {
 }
 
 impl<'a> Program<'a> {
-    /// A program for a build of so many axes.
+    /// Checks a program for a build with this number of axes.
     ///
     /// # Errors
-    /// [`ProgramError`] names the axis and what is wrong: nothing of it has been sent yet.
+    /// [`ProgramError`] names the axis and the mistake. Nothing has been sent.
     pub fn new(commands: &'a [Command], axes: u8) -> Result<Self, ProgramError> {
         for axis in 0..MOST_AXES {
             let (mut begun, mut started, mut open) = (0_usize, 0, false);
@@ -168,7 +170,8 @@ mod from_core {
     }
 
     impl Command {
-        /// A planned command, where the link has it: a wait or a clear is no part of a program here.
+        /// Converts a planned command; `None` for a wait or a clear, which the link's programs do
+        /// not contain.
         pub fn of(command: &planned::Command) -> Option<Self> {
             match *command {
                 planned::Command::Segment { axis, segment } => Some(Self::Segment { axis, segment: segment.into() }),

@@ -1,60 +1,63 @@
-//! What a gateware says of itself, and whether this host was made for it.
+//! The facts that a gateware reports about its build, and the check whether this host was made for
+//! it.
 
 use crate::registers::{IDENTITY_VALUE, PROTOCOL_VERSION};
 use thiserror::Error;
 
-/// The facts of a build, as its registers give them.
+/// The facts of a build, as its registers report them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Facts {
-    /// Who it is; carrystep says [`IDENTITY_VALUE`].
+    /// Identity of the device; carrystep reports [`IDENTITY_VALUE`].
     pub identity: u32,
-    /// The version of its protocol.
+    /// Version of the protocol.
     pub protocol: u32,
-    /// Hash of its register map and of all its build parameters.
+    /// Build id: a hash of the register map and of all build parameters.
     pub build: u64,
-    /// Its axes.
+    /// Number of axes.
     pub axes: u32,
-    /// Its clock, Hz.
+    /// Clock, Hz.
     pub clock_hz: u32,
-    /// Its tick, ns.
+    /// Tick, ns.
     pub tick_ns: u32,
-    /// Phases of a tick.
+    /// Number of phases per tick.
     pub phases: u32,
-    /// Ticks of silence after which it stops; 0: never.
+    /// Time without a valid request after which the watchdog stops all axes, in ticks; 0 if it is
+    /// off.
     pub watchdog_ticks: u32,
 }
 
-/// Why a host does not drive this gateware.
+/// Why a host refuses to drive this gateware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Refusal {
-    /// It answers in frames, but as someone else.
+    /// The device answers in frames, but its identity is not carrystep's.
     #[error("what answers is not carrystep: identity {0:#010x}")]
     Identity(u32),
-    /// Another protocol.
+    /// The gateware has another version of the protocol.
     #[error(
         "the gateware speaks protocol {found}, this driver {PROTOCOL_VERSION}: use the driver of the gateware's release, or flash its gateware"
     )]
     Protocol {
-        /// The gateware's version.
+        /// Version of the gateware.
         found: u32,
     },
-    /// Another build.
+    /// The gateware has another build id.
     #[error(
         "the gateware is build {found:016x}, this machine needs build {wanted:016x}: flash the gateware made from this machine file, or use the machine file that it was made from"
     )]
     Build {
-        /// The gateware's build id.
+        /// Build id of the gateware.
         found: u64,
-        /// The one that was expected.
+        /// Build id that this host was made for.
         wanted: u64,
     },
 }
 
 impl Facts {
-    /// Whether a host that was made for build `wanted`, or for any, may drive this.
+    /// Checks that a host may drive this gateware. `wanted` is the build id that the host was made
+    /// for, or `None` for any.
     ///
     /// # Errors
-    /// [`Refusal`] says which it found and which it wanted.
+    /// [`Refusal`] gives the found and the wanted value.
     pub fn check(&self, wanted: Option<u64>) -> Result<(), Refusal> {
         if self.identity != IDENTITY_VALUE {
             return Err(Refusal::Identity(self.identity));

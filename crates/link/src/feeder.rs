@@ -1,33 +1,35 @@
-//! The segments of a program in the order in which the queues have room, and each start as soon as it may be sent.
+//! The feeder: sends the segments of a program in the order in which the queues need them, and each
+//! start as early as possible.
 
 use crate::command::{ProgramError, Segment};
 use crate::frame::Body;
 use crate::registers::{MOST_AXES, START};
 
-/// Where segments come from: memory, a file, a planner that runs along.
+/// A source of segments: memory, a file, or a planner that runs at the same time.
 pub trait Source {
-    /// The next segment of an axis; none when there are no more.
+    /// The next segment of an axis; `None` when there are no more.
     fn segment(&mut self, axis: u8) -> Option<Segment>;
-    /// The axes of the next start; none when there are no more.
+    /// Mask of the next start; `None` when there are no more.
     fn start(&mut self) -> Option<u8>;
 }
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Axis {
-    /// The next segment, taken from the source already.
+    /// The next segment, already read from the source.
     ahead: Option<Segment>,
-    /// The source has no more.
+    /// Whether the source has no more segments.
     dry: bool,
-    /// In the middle of a move.
+    /// Whether the last segment that was sent was not the last of its move.
     open: bool,
-    /// Moves whose first segment was sent, less those that were started.
+    /// Number of moves whose first segment was sent and whose start was not.
     waiting: u32,
-    /// Ticks of all segments that were sent.
+    /// Sum of the ticks of all segments that were sent.
     ticks: u64,
 }
 
-/// Sends a program: of the axes that have room, the one that is supplied for the shortest time comes first; a start
-/// comes when each of its axes has its first segment, no other start waits, and no segment could be sent instead.
+/// Chooses what to send next. Of the axes with a free queue place, the one whose sent segments last
+/// for the shortest time comes first. A start is sent when each of its axes has its first segment,
+/// no other start is pending, and no segment can be sent instead.
 #[derive(Debug, Clone)]
 pub struct Feeder<S> {
     source: S,
@@ -37,12 +39,12 @@ pub struct Feeder<S> {
 }
 
 impl<S: Source> Feeder<S> {
-    /// Nothing sent yet.
+    /// A feeder that has sent nothing yet.
     pub fn new(source: S) -> Self {
         Self { source, axes: [Axis::default(); MOST_AXES as usize], start: None, last_start: false }
     }
 
-    /// Takes the next segment of each axis, and the next start, from the source.
+    /// Reads the next segment of each axis, and the next start, from the source.
     fn look_ahead(&mut self, axes: u8) {
         for (number, axis) in (0..axes).zip(&mut self.axes) {
             if axis.ahead.is_none() && !axis.dry {
@@ -56,10 +58,11 @@ impl<S: Source> Feeder<S> {
         }
     }
 
-    /// What to send next to a build of so many axes, where the queue of each has this much room.
+    /// The next request for a build of `axes` axes. `room` is the number of free queue places of
+    /// each axis; a start is returned only if `may_start` is true.
     ///
     /// # Errors
-    /// [`ProgramError`] where the source gives what no gateware takes.
+    /// [`ProgramError`] if the source returns a segment or a start that no gateware accepts.
     pub fn next(&mut self, axes: u8, room: &[u8], may_start: bool) -> Result<Option<Body>, ProgramError> {
         self.look_ahead(axes);
         let able = |(axis, room): &(&mut Axis, &u8)| axis.ahead.is_some() && **room > 0;
@@ -87,10 +90,11 @@ impl<S: Source> Feeder<S> {
         }
     }
 
-    /// Whether the first segments of all axes of the next start were handed over, so that only the gateware keeps it
-    /// back.
+    /// Whether the first segments of all axes of the next start were sent, so that only the
+    /// gateware's state can delay the start.
     ///
     /// # Errors
+    /// [`ProgramError`] if the start can never be sent.
     /// [`ProgramError`] where the start can never be sent.
     pub fn start_is_due(&self, axes: u8) -> Result<bool, ProgramError> {
         let Some(mask) = self.start else { return Ok(false) };
@@ -105,17 +109,17 @@ impl<S: Source> Feeder<S> {
         Ok(true)
     }
 
-    /// Whether an axis has a segment that could not be sent yet.
+    /// Whether a segment of this axis is waiting to be sent.
     pub fn wants(&self, axis: u8) -> bool {
         self.axes.get(usize::from(axis)).is_some_and(|axis| axis.ahead.is_some())
     }
 
-    /// Whether a start is still to be sent.
+    /// Whether a start is waiting to be sent.
     pub const fn wants_start(&self) -> bool {
         self.start.is_some()
     }
 
-    /// Whether everything was handed over.
+    /// Whether the whole program was sent.
     pub fn is_done(&self, axes: u8) -> bool {
         self.last_start && self.start.is_none() && self.axes.iter().take(axes.into()).all(|axis| axis.dry)
     }

@@ -1,4 +1,4 @@
-//! Requests and answers, and the bytes that they are between END and END.
+//! Requests and answers, and their conversion to and from the bytes of a frame.
 
 use crate::command::Segment;
 use crate::registers::{self as map, ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, LONGEST_REQUEST, REQUEST_HEAD, WRITE};
@@ -6,49 +6,49 @@ use crate::registers::{AXES_AT, MOST_AXES, PER_AXIS, SEGMENT, SEGMENT_FRAME_WORD
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use thiserror::Error;
 
-/// The small table: 16 words, for a microcontroller's sake.
+/// CRC with the small table of 16 words, which suits a microcontroller.
 static CRC: Crc<u32, Table<0>> = Crc::<u32, Table<0>>::new(&CRC_32_ISO_HDLC);
 
-/// A frame that changes nothing.
+/// Why a frame is rejected. A rejected frame has no effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum FrameError {
-    /// Not as long as its address asks for.
+    /// The frame does not have the length that its address requires.
     #[error("a frame of {0} bytes, which none is")]
     Length(usize),
-    /// Damaged.
+    /// The frame is damaged.
     #[error("a frame with a wrong CRC")]
     Crc,
-    /// Nothing is written at this address in this way.
+    /// This kind of write does not exist at this address.
     #[error("nothing is written at {0:#04x} in this way")]
     Address(u8),
 }
 
-/// What is asked of the gateware.
+/// The operation of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Body {
-    /// A register is read.
+    /// Reads a register.
     Read {
-        /// Its address.
+        /// Address of the register.
         address: u8,
     },
-    /// A register is written.
+    /// Writes a register.
     Write {
-        /// Its address, without [`WRITE`].
+        /// Address of the register, without [`WRITE`].
         address: u8,
-        /// Its new value.
+        /// The new value.
         word: u32,
     },
-    /// A segment goes into a queue.
+    /// Appends a segment to the queue of an axis.
     Segment {
-        /// The axis, from 0.
+        /// Number of the axis, from 0.
         axis: u8,
-        /// The segment; its ticks are at least 1.
+        /// The segment; it has at least 1 tick.
         segment: Segment,
     },
 }
 
 impl Body {
-    /// The address byte of its frame.
+    /// The address byte of the frame.
     pub const fn address(&self) -> u8 {
         match *self {
             Self::Read { address } => address & !WRITE,
@@ -58,27 +58,27 @@ impl Body {
     }
 }
 
-/// The address of an axis' register.
+/// The address of a register of an axis.
 pub const fn of_axis(register: u8, axis: u8) -> u8 {
     register + PER_AXIS * (axis & (MOST_AXES - 1))
 }
 
-/// The axis that an address names.
+/// The axis to which an address belongs; `None` for a register of no axis.
 pub const fn axis_of(address: u8) -> Option<u8> {
     let plain = address & !WRITE;
     if plain < AXES_AT { None } else { Some((plain - AXES_AT) / PER_AXIS) }
 }
 
-/// A request: a body with its number.
+/// A request: an operation with its sequence number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Request {
-    /// Its number: of writes, one after the other; of reads, any.
+    /// Sequence number. Writes are numbered consecutively; a read may have any number.
     pub sequence: u8,
-    /// What is asked.
+    /// The operation.
     pub body: Body,
 }
 
-/// The bytes of a request, without END and ESC.
+/// The bytes of a request with its CRC, before END and ESC are escaped.
 #[derive(Debug, Clone, Copy)]
 pub struct RequestBytes {
     bytes: [u8; LONGEST_REQUEST],
@@ -86,7 +86,7 @@ pub struct RequestBytes {
 }
 
 impl RequestBytes {
-    /// The bytes.
+    /// The bytes as a slice.
     pub fn as_slice(&self) -> &[u8] {
         self.bytes.get(..self.length).unwrap_or(&self.bytes)
     }
@@ -100,7 +100,7 @@ impl RequestBytes {
 }
 
 impl Request {
-    /// Its bytes, CRC included.
+    /// The bytes of the request, with its CRC.
     pub fn to_bytes(&self) -> RequestBytes {
         let mut frame = RequestBytes { bytes: [0; LONGEST_REQUEST], length: 0 };
         frame.put(&[self.sequence, self.body.address()]);
@@ -120,10 +120,10 @@ impl Request {
         frame
     }
 
-    /// The request that these bytes are; a board in software reads with this.
+    /// Decodes a request. Simulated boards use this.
     ///
     /// # Errors
-    /// [`FrameError`]: the frame is not to be answered.
+    /// [`FrameError`] if the frame must not be answered.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FrameError> {
         let (&[sequence, address, ..], Some((content, _))) = (bytes, bytes.split_last_chunk::<CRC_BYTES>()) else {
             return Err(FrameError::Length(bytes.len()));
@@ -155,44 +155,44 @@ impl Request {
     }
 }
 
-/// What the gateware says to a request.
+/// The gateware's answer to a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Answer {
-    /// The request's number.
+    /// Sequence number of the request.
     pub sequence: u8,
-    /// The request's address byte.
+    /// Address byte of the request.
     pub address: u8,
-    /// The number that the next write must have: all before it have been executed.
+    /// Sequence number that the next write must have. All writes before it have been executed.
     pub next: u8,
-    /// A stop has been called.
+    /// A stop is in force.
     pub fault: bool,
-    /// No axis moves any more.
+    /// The stop is over: no axis moves any more.
     pub halted: bool,
-    /// All axes are done, no start is armed.
+    /// All axes have finished and no start is armed.
     pub idle: bool,
-    /// Starts are taken.
+    /// The gateware accepts starts.
     pub ready: bool,
-    /// A start waits.
+    /// A start is armed; it waits until all its axes rest.
     pub armed: bool,
-    /// Why, where there is a fault: a place in [`registers::CAUSES`](map::CAUSES).
+    /// The stop cause if `fault` is set: an index of [`registers::CAUSES`](map::CAUSES).
     pub cause: u8,
-    /// Segments that the addressed axis still takes.
+    /// Number of free queue places of the addressed axis.
     pub free: u8,
-    /// This write was not executed.
+    /// The write of this answer was not executed.
     pub refused: bool,
-    /// The axes that the fault came from.
+    /// Mask of the axes that caused the stop.
     pub culprits: u8,
-    /// Axes that still wait for their limit.
+    /// Mask of the axes that still wait for their limit.
     pub homing: u8,
-    /// The register, or the position of the axis.
+    /// Value of the register that was read; after a write, the position of the addressed axis.
     pub data: u32,
 }
 
 impl Answer {
-    /// The answer that these bytes are.
+    /// Decodes an answer.
     ///
     /// # Errors
-    /// [`FrameError`]: it is to be ignored.
+    /// [`FrameError`] if the frame must be ignored.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FrameError> {
         let bytes: &[u8; ANSWER_BYTES] = bytes.try_into().map_err(|_| FrameError::Length(bytes.len()))?;
         check(bytes)?;
@@ -214,19 +214,19 @@ impl Answer {
         })
     }
 
-    /// Why there is a fault, in a word; nothing where there is none.
+    /// The name of the stop cause; `None` without a fault.
     pub fn cause_name(&self) -> Option<&'static str> {
         if self.fault { map::CAUSES.get(usize::from(self.cause)).copied() } else { None }
     }
 }
 
-/// The last four bytes are the CRC of those before them.
+/// Checks that the last four bytes are the CRC of those before them.
 fn check(bytes: &[u8]) -> Result<(), FrameError> {
     let (content, crc) = bytes.split_last_chunk::<CRC_BYTES>().ok_or(FrameError::Length(bytes.len()))?;
     if CRC.checksum(content) == u32::from_le_bytes(*crc) { Ok(()) } else { Err(FrameError::Crc) }
 }
 
-/// The word at a place, low byte first; 0 beyond the end.
+/// The word at a place, low byte first. Bytes beyond the end are 0.
 fn word_at(bytes: &[u8], at: usize) -> u32 {
     bytes.get(at..).and_then(<[u8]>::first_chunk).map_or(0, |chunk| u32::from_le_bytes(*chunk))
 }

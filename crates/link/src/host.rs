@@ -1,4 +1,5 @@
-//! The driver: one gateware on one line, from connecting to a clean stop. Each call returns when it is done.
+//! The driver: controls one gateware on one line, from connecting to a clean stop. Every call
+//! blocks until it has finished.
 
 mod error;
 mod homing;
@@ -21,16 +22,16 @@ use crate::registers::{LONGEST_REQUEST, MOST_AXES};
 use crate::session::{Session, SessionError, WriteError};
 use crate::slip;
 
-/// What a machine does, as of the last answers.
+/// State of the machine, from the last answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Status {
-    /// The last answer; its state is the machine's.
+    /// The last answer, with the state of the machine.
     pub answer: Answer,
-    /// Steps forward less steps back, of each axis.
+    /// Position of each axis: steps forward minus steps backward.
     pub positions: [i32; MOST_AXES as usize],
 }
 
-/// A connected gateware. `N` writes may be on their way, at most 127.
+/// A connected gateware. Up to `N` writes, at most 127, can be unacknowledged at a time.
 #[derive(Debug)]
 pub struct Host<L, C, const N: usize = 64> {
     line: L,
@@ -39,9 +40,9 @@ pub struct Host<L, C, const N: usize = 64> {
     session: Session<N>,
     facts: Facts,
     status: Status,
-    /// The drivers were seen powered: they stay so until this host says otherwise.
+    /// Whether the drivers were seen with power. They keep it until this host removes it.
     powered: bool,
-    /// Bytes on their way to the line.
+    /// Bytes that are waiting for the line.
     out: [u8; 256],
     queued: usize,
     heard: u32,
@@ -49,12 +50,12 @@ pub struct Host<L, C, const N: usize = 64> {
 }
 
 impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
-    /// Finds out who is there, and whether this driver was made for it: for build `wanted`, or for any.
-    /// Nothing is written.
+    /// Connects: reads the facts of the gateware, and checks that this driver was made for build
+    /// `wanted` (`None`: for any build). Writes nothing.
     ///
     /// # Errors
-    /// [`HostError::Silence`], [`HostError::Noise`] or [`HostError::Refused`]: nothing answers, something else does, or
-    /// another gateware.
+    /// [`HostError::Silence`] if nothing answers, [`HostError::Noise`] if the bytes received are no
+    /// frames, [`HostError::Refused`] if it is another gateware.
     pub fn connect(line: L, clock: C, wanted: Option<u64>, patience: Patience) -> Result<Self, HostError<L::Error>> {
         let mut host = Self {
             line,
@@ -86,25 +87,25 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         Ok(host)
     }
 
-    /// What the gateware said of itself.
+    /// The facts that the gateware reported.
     pub const fn facts(&self) -> &Facts {
         &self.facts
     }
 
-    /// The machine as of the last answers; [`Self::look`] asks anew.
+    /// The state from the last answers. [`Self::look`] reads it again.
     pub const fn status(&self) -> &Status {
         &self.status
     }
 
-    /// The line again.
+    /// Returns the line.
     pub fn free(self) -> L {
         self.line
     }
 
-    /// Asks for the state and all positions.
+    /// Reads the state and all positions.
     ///
     /// # Errors
-    /// [`HostError`].
+    /// [`HostError`] if the connection fails.
     pub fn look(&mut self) -> Result<Status, HostError<L::Error>> {
         for axis in 0..self.session.axes() {
             self.register(of_axis(map::POSITION, axis))?;
@@ -115,7 +116,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// Reads a register.
     ///
     /// # Errors
-    /// [`HostError`].
+    /// [`HostError`] if the connection fails.
     pub fn register(&mut self, address: u8) -> Result<u32, HostError<L::Error>> {
         self.registers([address]).map(|[word]| word)
     }
@@ -124,7 +125,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let mut words = [None; K];
         self.listen();
         for address in addresses {
-            // At most eight at once, and no other questions are open: there is room.
+            // At most eight reads are in progress, and no others are open: there is room.
             let _ = self.session.read(address);
         }
         while words.iter().any(Option::is_none) {
@@ -139,10 +140,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         Ok(words.map(Option::unwrap_or_default))
     }
 
-    /// Writes a register and waits until that is done.
+    /// Writes a register, and waits until the gateware has executed the write.
     ///
     /// # Errors
-    /// [`HostError`].
+    /// [`HostError`] if the connection fails.
     pub fn write(&mut self, address: u8, word: u32) -> Result<(), HostError<L::Error>> {
         self.listen();
         let body = Body::Write { address, word };
@@ -159,14 +160,14 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         Ok(())
     }
 
-    /// Silence counts from here, where nothing was asked before.
+    /// Starts to measure silence, if no request was open before.
     fn listen(&mut self) {
         if !self.session.waiting() {
             (self.heard, self.noise) = (self.clock.milliseconds(), 0);
         }
     }
 
-    /// One exchange with the line; `seen` gets each answer.
+    /// Performs one exchange with the line. `seen` is called with each answer.
     fn pump(&mut self, mut seen: impl FnMut(&Answer)) -> Result<(), HostError<L::Error>> {
         let mut now = self.clock.milliseconds();
         while self.queued + slip::line_bytes(LONGEST_REQUEST) <= self.out.len() {
@@ -214,7 +215,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     }
 }
 
-/// The axis whose position is in this answer: where it was read, and after every segment.
+/// The axis whose position is in this answer: after a read of its position, and after every
+/// segment.
 fn axis_with_position(answer: &Answer) -> Option<u8> {
     let axis = crate::frame::axis_of(answer.address)?;
     let position = of_axis(map::POSITION, axis);

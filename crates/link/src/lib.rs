@@ -1,16 +1,16 @@
-//! The host's side of the link (docs/protocol.md): `no_std`, without allocation.
+//! The host's side of the link (docs/protocol.md). It is `no_std` and allocates no memory.
 //!
 //! ```text
-//! Host      connect, enable, stream, stop, clear, home        blocking; needs a Line and a Clock
-//!   Session   what to send next, what an answer means         no time, no line of its own
-//!     Window    writes on their way, sent again from the first that is missing
-//!     Reads     questions on their way
-//!     Feeder    the segments of a program, as the queues have room
+//! Host      connect, enable, stream, stop, clear, home        blocking; uses a Line and a Clock
+//!   Session   what to send next, what an answer means         without a line or a clock
+//!     Window    unacknowledged writes, sent again from the first that is missing
+//!     Reads     reads without an answer
+//!     Feeder    the segments of a program, in the order in which the queues need them
 //!   frame, slip   requests and answers as bytes
 //! Line      a serial port (feature `serial`) or SPI (feature `spi`)
 //! ```
 //!
-//! The same in C99 is in `c/`; both pass the same tests.
+//! The directory `c/` holds the same library in C99; both pass the same tests.
 #![no_std]
 
 #[cfg(feature = "std")]
@@ -42,7 +42,7 @@ pub use line::{Exchanged, Line};
 pub use session::{Session, SessionError, Timing, WriteError};
 pub use window::{Foreign, OutOfStep};
 
-/// The files of the C library: name and text. They go together into any project.
+/// Name and text of each file of the C library. A project needs all of them.
 pub const C_LIBRARY: [(&str, &str); 7] = [
     ("carrystep_registers.h", include_str!("../c/carrystep_registers.h")),
     ("carrystep_frame.h", include_str!("../c/carrystep_frame.h")),

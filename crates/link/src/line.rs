@@ -1,28 +1,30 @@
-//! A line: bytes out, bytes in. A serial port (feature `serial`), an SPI bus (feature `spi`), or anything else.
+//! The line: an interface that sends and receives bytes. It is implemented for a serial port
+//! (feature `serial`) and an SPI bus (feature `spi`), and can be implemented for other devices.
 
 #[cfg(feature = "serial")]
 pub mod serial;
 #[cfg(feature = "spi")]
 pub mod spi;
 
-/// How much of an exchange took place.
+/// Result of an exchange.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Exchanged {
-    /// Bytes that went out, from the front.
+    /// Number of bytes of `out` that were sent.
     pub sent: usize,
-    /// Bytes that came in.
+    /// Number of bytes received.
     pub received: usize,
 }
 
-/// Takes bytes both ways without waiting for long: some milliseconds at most.
+/// A line in both directions. A call may block for some milliseconds at most.
 pub trait Line {
-    /// What can go wrong on it.
+    /// Error of the line.
     type Error;
 
-    /// Sends some of `out`, and puts what has come into `into`; either may be nothing.
+    /// Sends as many bytes of `out` as possible, and stores received bytes in `into`. Either count
+    /// may be 0.
     ///
     /// # Errors
-    /// The line is gone.
+    /// The line has failed.
     fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> Result<Exchanged, Self::Error>;
 }
 

@@ -1,4 +1,5 @@
-//! Questions on their way: an answer is known again by its number and address, a lost one is asked again.
+//! Reads in progress: an answer is matched to its read by number and address; a read without an
+//! answer is sent again.
 
 use crate::frame::{Answer, Body, Request};
 use crate::registers::{MOST_AXES, WRITE};
@@ -19,10 +20,10 @@ pub struct Reads {
 }
 
 impl Reads {
-    /// Reads a register; once, where it is being read already.
+    /// Reads a register. If it is being read already, no second read is added.
     ///
     /// # Errors
-    /// [`Full`].
+    /// [`Full`] if eight registers are being read.
     pub fn ask(&mut self, address: u8) -> Result<(), Full> {
         let address = address & !WRITE;
         if self.questions.iter().flatten().any(|question| question.address == address) {
@@ -34,12 +35,13 @@ impl Reads {
         Ok(())
     }
 
-    /// Whether an answer is still to come.
+    /// Whether an answer is outstanding.
     pub fn waiting(&self) -> bool {
         self.questions.iter().any(Option::is_some)
     }
 
-    /// What is to be sent at this time, ms; after `resend` ms without its answer a question is asked again.
+    /// The read to be sent at the time `now`, ms. A read without an answer is sent again after
+    /// `resend` ms.
     pub fn transmit(&mut self, now: u32, resend: u32) -> Option<Request> {
         let due = |question: &&mut Question| question.asked.is_none_or(|asked| now.wrapping_sub(asked) >= resend);
         let question = self.questions.iter_mut().flatten().find(due)?;
@@ -47,7 +49,7 @@ impl Reads {
         Some(Request { sequence: question.sequence, body: Body::Read { address: question.address } })
     }
 
-    /// Whether this answers a question, which is done with it.
+    /// Whether this answer belongs to a read, which it completes.
     pub fn answer(&mut self, answer: &Answer) -> bool {
         let own = |place: &&mut Option<Question>| {
             place.is_some_and(|question| {

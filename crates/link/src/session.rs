@@ -1,4 +1,5 @@
-//! What to send next and what an answer means; without a line and without a clock: bytes and milliseconds come from outside.
+//! The session: what to send next, and what an answer means. It has no line and no clock; the
+//! caller passes bytes and milliseconds.
 
 use crate::command::ProgramError;
 use crate::feeder::{Feeder, Source};
@@ -9,67 +10,72 @@ use crate::slip::{Decoder, Received};
 use crate::window::{Foreign, Full, OutOfStep, Window};
 use thiserror::Error;
 
-/// Why a write is not taken.
+/// Why a write was not accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum WriteError {
-    /// There is no room, or nothing was adopted yet.
+    /// There is no room, or [`Session::adopt`] was not called yet.
     #[error(transparent)]
     Full(#[from] Full),
-    /// A START, and the drivers have no power.
+    /// The write is a START, and the drivers have no power.
     #[error(transparent)]
     NoPower(ProgramError),
 }
 
-/// Why this host cannot go on with this gateware.
+/// Why this host cannot continue with this gateware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum SessionError {
-    /// It counts writes that were never sent.
+    /// The gateware acknowledges writes that were never sent.
     #[error(transparent)]
     OutOfStep(#[from] OutOfStep),
-    /// It answers someone else.
+    /// The gateware answers another host.
     #[error(transparent)]
     Foreign(#[from] Foreign),
 }
 
-/// How long to wait, in milliseconds.
+/// Waiting times, in milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Timing {
-    /// For an answer, until the request is sent again: more than the line and its driver ever take.
+    /// Time without an answer until a request is sent again. It must exceed the delay of the line
+    /// and its driver.
     pub resend: u32,
-    /// Where the gateware was busy, until it is asked again.
+    /// Time until a request is sent again that the gateware refused as busy.
     pub pause: u32,
 }
 
 impl Default for Timing {
-    /// For USB serial bridges, which hold an answer back for up to 16 ms.
+    /// Times for USB serial bridges, which delay an answer by up to 16 ms.
     fn default() -> Self {
         Self { resend: 40, pause: 2 }
     }
 }
 
-/// One host's talk with one gateware, up to `N` writes on their way.
+/// The dialogue of one host with one gateware, with up to `N` unacknowledged writes.
 #[derive(Debug, Clone)]
 pub struct Session<const N: usize> {
     decoder: Decoder<ANSWER_BYTES>,
     window: Window<N>,
     reads: Reads,
     timing: Timing,
-    /// Axes of the build; 0 until the gateware's count of writes was adopted.
+    /// Number of axes of the build; 0 until the gateware's sequence number was adopted.
     axes: u8,
-    /// Segments on their way to each axis, and how many more it takes.
+    /// Number of unacknowledged segments of each axis.
     under_way: [u8; MOST_AXES as usize],
+    /// Number of further segments that the queue of each axis can hold.
     room: [u8; MOST_AXES as usize],
-    /// A start is on its way, or waits in the gateware.
+    /// Whether a start is unacknowledged.
     starting: bool,
+    /// Whether a start is armed in the gateware.
     armed: bool,
-    /// The last answer came from drivers without power; this host has asked for power.
+    /// Whether the last answer reported drivers without power.
     unpowered: bool,
+    /// Whether this host has requested power.
     powering: bool,
+    /// Number of damaged frames that were received.
     broken: u32,
 }
 
 impl<const N: usize> Session<N> {
-    /// Nothing known yet: registers may be read, nothing may be written.
+    /// A session without a known gateware. Registers may be read, but not written.
     pub fn new(timing: Timing) -> Self {
         Self {
             decoder: Decoder::default(),
@@ -87,7 +93,8 @@ impl<const N: usize> Session<N> {
         }
     }
 
-    /// From here on writes are numbered from `next`, which an answer gave, for a build of so many axes.
+    /// Numbers the following writes from `next`, which an answer reported, for a build with this
+    /// number of axes.
     pub fn adopt(&mut self, next: u8, axes: u8) {
         self.window = Window::new(next);
         self.axes = axes.min(MOST_AXES);
@@ -97,39 +104,41 @@ impl<const N: usize> Session<N> {
         self.powering = false;
     }
 
-    /// Axes of the build.
+    /// Number of axes of the build.
     pub const fn axes(&self) -> u8 {
         self.axes
     }
 
-    /// Frames from the line that were damaged.
+    /// Number of damaged frames that were received.
     pub const fn broken(&self) -> u32 {
         self.broken
     }
 
-    /// Whether an answer is still to come.
+    /// Whether any answer is outstanding.
     pub fn waiting(&self) -> bool {
         !self.window.is_empty() || self.reads.waiting()
     }
 
-    /// Whether writes were not seen executed yet.
+    /// Whether any write is unacknowledged.
     pub fn writing(&self) -> bool {
         !self.window.is_empty()
     }
 
-    /// Reads a register: its answer comes out of [`Self::receive`].
+    /// Starts to read a register; [`Self::receive`] returns the answer.
     ///
     /// # Errors
-    /// [`Full`] where eight are being read.
+    /// [`Full`] if eight registers are being read.
     pub fn read(&mut self, address: u8) -> Result<(), Full> {
         self.reads.ask(address)
     }
 
-    /// Writes, in order, once; not before [`Self::adopt`].
+    /// Queues a write; writes are executed in order, each exactly once. [`Self::adopt`] must be
+    /// called first.
     ///
     /// # Errors
-    /// [`WriteError::Full`]; [`WriteError::NoPower`] for a START that would be refused for ever, and everything behind
-    /// it, because the last answer says that the drivers have no power and this host has not asked for it.
+    /// [`WriteError::Full`] if the window is full. [`WriteError::NoPower`] for a START if the last
+    /// answer reported drivers without power and this host has not requested it; the gateware would
+    /// refuse the START, and all writes behind it, for ever.
     pub fn write(&mut self, body: Body) -> Result<(), WriteError> {
         if self.axes == 0 {
             return Err(Full.into());
@@ -151,21 +160,23 @@ impl<const N: usize> Session<N> {
         Ok(())
     }
 
-    /// Whether a START is taken, at once or after a while.
+    /// Whether the gateware will accept a START, at once or after a while.
     const fn may_start(&self) -> bool {
         self.powering || !self.unpowered
     }
 
-    /// Takes back the writes that were never sent, so that the next one goes out at once.
+    /// Removes the writes that were never sent, so that the next one is sent at once.
     pub fn withdraw(&mut self) {
         let (under_way, starting) = (&mut self.under_way, &mut self.starting);
         self.window.withdraw(|body| settle(body, under_way, starting));
     }
 
-    /// Hands over as much of a program as there is room for; asks axes that have none. Whether it is all handed over.
+    /// Queues as much of a program as there is room for, and reads the state of axes without room.
+    /// Returns whether the whole program was queued.
     ///
     /// # Errors
-    /// [`ProgramError`]; after [`ProgramError::NoPower`] the program may go on once CONTROL = 1 was written.
+    /// [`ProgramError`]. After [`ProgramError::NoPower`] the program can continue once CONTROL = 1
+    /// was written.
     pub fn feed<S: Source>(&mut self, feeder: &mut Feeder<S>) -> Result<bool, ProgramError> {
         while self.window.room() > 0 {
             let free = !self.starting && !self.armed;
@@ -184,7 +195,7 @@ impl<const N: usize> Session<N> {
             let silent = self.under_way.get(index) == Some(&0);
             let full = self.room.get(index) == Some(&0);
             let armed = axis == 0 && self.armed && feeder.wants_start();
-            // A refusal only means that enough is being asked already.
+            // An error only means that enough reads are in progress.
             if (silent && full && feeder.wants(axis)) || armed {
                 let _ = self.reads.ask(of_axis(POSITION, axis));
             }
@@ -192,16 +203,17 @@ impl<const N: usize> Session<N> {
         Ok(feeder.is_done(self.axes))
     }
 
-    /// The next request to be put on the line at this time, ms.
+    /// The next request to be sent at the time `now`, ms.
     pub fn transmit(&mut self, now: u32) -> Option<Request> {
         let Timing { resend, pause } = self.timing;
         self.reads.transmit(now, resend).or_else(|| self.window.transmit(now, resend, pause))
     }
 
-    /// A byte from the line, at this time, ms; the answer that it completes, where it answers this session.
+    /// Processes a byte received at the time `now`, ms. Returns the answer if the byte completes
+    /// one.
     ///
     /// # Errors
-    /// [`SessionError`].
+    /// [`SessionError`] if the answer shows that this host must not continue.
     pub fn receive(&mut self, byte: u8, now: u32) -> Result<Option<Answer>, SessionError> {
         let answer = match self.decoder.push(byte) {
             Received::Nothing => return Ok(None),
@@ -234,7 +246,7 @@ impl<const N: usize> Session<N> {
     }
 }
 
-/// A write is no longer on its way.
+/// Updates the counts when a write is acknowledged or withdrawn.
 fn settle(body: &Body, under_way: &mut [u8], starting: &mut bool) {
     match *body {
         Body::Segment { axis, .. } => {

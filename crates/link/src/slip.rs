@@ -1,14 +1,15 @@
-//! Frames on the line, as in RFC 1055: END around them, END and ESC inside them as two bytes.
+//! Framing as in RFC 1055: END before and behind a frame; END and ESC within it are escaped to two
+//! bytes.
 
 use crate::registers::{END, ESC, ESC_END, ESC_ESC};
 use core::iter::once;
 
-/// Most bytes that a frame of so many can take on the line.
+/// Greatest number of bytes on the line for a frame of this length.
 pub const fn line_bytes(frame: usize) -> usize {
     2 * frame + 2
 }
 
-/// The bytes of a frame on the line.
+/// The bytes of a frame as they are sent on the line.
 pub fn encode(frame: &[u8]) -> impl Iterator<Item = u8> + '_ {
     let escaped = frame.iter().flat_map(|&byte| {
         let (first, second) = match byte {
@@ -21,18 +22,18 @@ pub fn encode(frame: &[u8]) -> impl Iterator<Item = u8> + '_ {
     once(END).chain(escaped).chain(once(END))
 }
 
-/// What a byte from the line has ended.
+/// Result of a received byte.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Received<'a> {
-    /// Nothing yet.
+    /// No frame has ended.
     Nothing,
-    /// A frame; its CRC is not looked at yet.
+    /// A frame has ended. Its CRC has not been checked.
     Frame(&'a [u8]),
-    /// Something that is no frame: too long, or an ESC before the wrong byte.
+    /// An invalid frame has ended: it was too long, or had a wrong byte after an ESC.
     Broken,
 }
 
-/// Takes frames of at most `N` bytes from a line, byte by byte.
+/// Decodes frames of at most `N` bytes, byte by byte.
 #[derive(Debug, Clone)]
 pub struct Decoder<const N: usize> {
     bytes: [u8; N],
@@ -48,7 +49,7 @@ impl<const N: usize> Default for Decoder<N> {
 }
 
 impl<const N: usize> Decoder<N> {
-    /// The next byte of the line. Empty frames are nothing.
+    /// Processes the next byte of the line. Empty frames are ignored.
     pub fn push(&mut self, byte: u8) -> Received<'_> {
         if byte == END {
             let (length, broken) = (self.length, self.broken || self.escaped);

@@ -1,9 +1,11 @@
-//! Whether a line can carry a program in time: known before anything moves.
+//! Checks before any motion whether a line can carry a program in time.
 //!
 //! ```text
-//! queue     segments 0 .. 6 wait before the start; segment k + 7 has a place when segment k begins to run,
-//! line      takes its time for each, the most urgent first, and it must be there
-//! axis      |  k  | k + 1 | ... | k + 6 |  k + 7           before segment k + 7 begins
+//! queue     segments 0 .. 6 are queued before the start; when segment k begins to run,
+//!           the place of segment k + 7 becomes free
+//! line      transmits one segment at a time, the most urgent first
+//! axis      |  k  | k + 1 | ... | k + 6 |  k + 7      segment k + 7 must have arrived
+//!                                       ^             before this moment
 //! ```
 
 use crate::command::Command;
@@ -14,36 +16,38 @@ use std::collections::VecDeque;
 use std::vec::Vec;
 use thiserror::Error;
 
-/// Bits of a byte on a UART: start, eight, stop.
+/// Bits per byte on a UART: a start bit, eight data bits, a stop bit.
 const BITS_OF_BYTE: u64 = 10;
 
-/// A program that no host could supply.
+/// A program that this line cannot carry in time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
     "{baud} baud are too slow for this move: axis {axis} would run dry {at_ms} ms after the start, its next segment {late_us} us late; take a higher baud rate, a larger fit_ns, or fewer axes at once"
 )]
 pub struct Starved {
-    /// The axis whose queue runs dry, from 0.
+    /// Number of the axis whose queue would run empty, from 0.
     pub axis: u8,
-    /// When, ms after the start of the program.
+    /// Time when it would, ms after the start of the program.
     pub at_ms: u64,
-    /// How late its next segment would be, us, rounded up.
+    /// Delay of the axis' next segment, us, rounded up.
     pub late_us: u64,
-    /// The line, bit/s.
+    /// Baud rate of the line, bits per second.
     pub baud: u32,
 }
 
-/// One segment on its way: when it has a place, when it must be there, how long the line needs for it; ns.
+/// The transmission of one segment, ns: when its queue place becomes free, when it must have
+/// arrived, and how long the line needs.
 struct Job {
     place: u64,
     due: u64,
     takes: u64,
 }
 
-/// Checks that a UART of so many baud brings each segment before its axis needs it, where the host is never late.
+/// Checks that a UART at this baud rate delivers each segment before its axis needs it, provided
+/// that the host is never late.
 ///
 /// # Errors
-/// [`Starved`] names the first axis that would run dry.
+/// [`Starved`] gives the first axis whose queue would run empty.
 pub fn check(commands: &[Command], axes: u8, tick_ns: u64, baud: u32) -> Result<(), Starved> {
     let mut waiting: Vec<VecDeque<Job>> = (0..axes).map(|axis| jobs(commands, axis, tick_ns, baud)).collect();
     let mut now = 0_u64;
@@ -62,7 +66,7 @@ pub fn check(commands: &[Command], axes: u8, tick_ns: u64, baud: u32) -> Result<
     }
 }
 
-/// The segments of an axis that do not wait in its queue before the start.
+/// The transmissions of an axis' segments, without those that are in the queue before the start.
 fn jobs(commands: &[Command], axis: u8, tick_ns: u64, baud: u32) -> VecDeque<Job> {
     let mut begins = Vec::new();
     let mut tick = 0_u64;
@@ -89,7 +93,7 @@ mod tests {
     use super::*;
     use crate::command::Segment;
 
-    /// So many segments of so many ticks for each of six axes.
+    /// A program of `count` segments of `ticks` ticks for each of six axes.
     fn even(count: u32, ticks: u32) -> Vec<Command> {
         let segment = |last| Segment { ticks, v: 1, a: 0, j: 0, last };
         let of = |k| (0..6).map(move |axis| Command::Segment { axis, segment: segment(k + 1 == count) });
@@ -97,8 +101,8 @@ mod tests {
     }
 
     #[test]
-    fn six_axes_at_a_rate_need_a_line_that_carries_it() {
-        // 500 segments a second: 6 x 500 x 40 bytes x 10 bits = 1.2 Mbit/s.
+    fn six_axes_need_a_line_of_their_data_rate() {
+        // 500 segments per second: 6 x 500 x 40 bytes x 10 bits = 1.2 Mbit/s.
         let dense = even(1000, 1000);
         assert_eq!(check(&dense, 6, 2000, 3_000_000), Ok(()));
         let starved = check(&dense, 6, 2000, 921_600).unwrap_err();
@@ -107,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn what_waits_in_the_queues_costs_nothing() {
+    fn segments_queued_before_the_start_need_no_line_time() {
         assert_eq!(check(&even(7, 1), 6, 2000, 300), Ok(()));
         assert!(check(&even(8, 1), 6, 2000, 300).is_err());
         assert_eq!(check(&[], 6, 2000, 0), Ok(()));

@@ -1,4 +1,5 @@
-//! A move of one axis from rest to rest that always fits into its queue: speed up, cruise, slow down, in integers only.
+//! A move of one axis from rest to rest that always fits into its queue: acceleration, cruise and
+//! deceleration, computed with integers only.
 //!
 //! ```text
 //! V      ____________
@@ -11,26 +12,26 @@ use crate::command::Segment;
 use crate::registers::QUEUE_SEGMENTS;
 use thiserror::Error;
 
-/// How an axis may move: a speed in 2^-64 step per tick, an acceleration in 2^-64 step per tick^2.
+/// Limits of a move: speeds in 2^-64 step per tick, acceleration in 2^-64 step per tick^2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Gait {
-    /// The speed to which the motor jumps from rest.
+    /// Speed at which the motor starts from rest.
     pub start: u64,
-    /// The greatest speed, 1 to 2^63 - 1.
+    /// Greatest speed, 1 to 2^63 - 1.
     pub speed: u64,
-    /// The greatest acceleration, 1 or more.
+    /// Greatest acceleration, 1 or more.
     pub accel: u64,
 }
 
-/// A move that takes more ticks than segments count.
+/// Error: the move needs more ticks than a segment can count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("a move of {steps} steps at this speed takes over 2^32 ticks: a greater speed or acceleration would do")]
 pub struct TooLong {
-    /// Its steps.
+    /// Length of the move, steps.
     pub steps: i32,
 }
 
-/// Segments of one axis, 7 at the most; the last one ends the move.
+/// The segments of a move of one axis, at most 7. The last one ends the move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Travel {
     segments: [Option<Segment>; QUEUE_SEGMENTS as usize],
@@ -38,12 +39,13 @@ pub struct Travel {
 }
 
 impl Travel {
-    /// A move of so many steps, forward where they are positive, with so many ticks of rest before and behind it.
+    /// A move of `steps` steps, forward if positive, with `before` ticks of rest before it and
+    /// `after` ticks behind it.
     ///
-    /// The axis lands exactly: its fraction of a step is what it was before.
+    /// The axis lands exactly: its fraction of a step is the same as before the move.
     ///
     /// # Errors
-    /// [`TooLong`].
+    /// [`TooLong`] if the move needs too many ticks.
     pub fn new(steps: i32, gait: Gait, before: u32, after: u32) -> Result<Self, TooLong> {
         let mut travel = Self::default();
         let rest = Segment { ticks: 0, v: 0, a: 0, j: 0, last: false };
@@ -58,12 +60,12 @@ impl Travel {
         Ok(travel)
     }
 
-    /// The segments in order.
+    /// The segments, in order.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
         self.segments.iter().copied().flatten()
     }
 
-    /// The segment of this place.
+    /// The segment with this index.
     pub fn get(&self, at: usize) -> Option<Segment> {
         self.segments.get(at).copied().flatten()
     }
@@ -85,20 +87,22 @@ impl Travel {
         };
         let ticks = |count: u128| u32::try_from(count).ok();
         let peak = start + n * a;
-        // What the divisions have left is spread over the cruise.
+        // The remainders of the divisions are distributed over the cruise.
         let rest = (u128::from(steps.unsigned_abs()) << 64) - (2 * n + m) * start - n * (n + m - 1) * a;
         let (speed, faster) = (peak + rest / m, rest % m);
         self.push(Segment { ticks: ticks(n)?, v: signed(start)?, a: signed(a)?, j: 0, last: false });
         self.push(Segment { ticks: ticks(faster)?, v: signed(speed + 1)?, a: 0, j: 0, last: false });
         self.push(Segment { ticks: ticks(m - faster)?, v: signed(speed)?, a: 0, j: 0, last: false });
-        // From the speed of the last tick of the acceleration, which is a less than the peak.
+        // The deceleration starts at the speed of the last tick of the acceleration, which is `a`
+        // below the peak.
         let v = start + n.saturating_sub(1) * a;
         self.push(Segment { ticks: ticks(n)?, v: signed(v)?, a: -signed(a)?, j: 0, last: false });
         Some(())
     }
 }
 
-/// Ticks of acceleration and of cruise, speed of the first tick and acceleration, all zero or more; `m` is 1 or more.
+/// Shape of a move: speed `start` of the first tick, acceleration `a`, `n` ticks of acceleration
+/// and of deceleration, `m` ticks of cruise. All are 0 or more; `m` is 1 or more.
 struct Shape {
     start: u128,
     a: u128,
@@ -107,7 +111,7 @@ struct Shape {
 }
 
 impl Shape {
-    /// The shortest move of so many steps that keeps to the gait.
+    /// The shortest move of this number of steps within the limits.
     fn of(steps: u32, Gait { start, speed, accel }: Gait) -> Option<Self> {
         let distance = u128::from(steps) << 64;
         let (speed, accel) = (u128::from(speed).min(i64::MAX as u128), u128::from(accel.max(1)));
@@ -117,7 +121,7 @@ impl Shape {
         }
         let most = u128::from(u32::MAX);
         let full = (speed - start).div_ceil(accel);
-        // With n ticks of acceleration, and one of cruise, an axis goes so far at the most.
+        // The greatest distance with n ticks of acceleration and one tick of cruise.
         let reach = |n: u128| (2 * n + 1) * start + n * n * accel;
         let (mut n, mut above) = (0, full.min(most));
         if full <= most && reach_at_speed(start, speed, full) < distance {
@@ -131,7 +135,8 @@ impl Shape {
                 return None;
             }
         }
-        // As many ticks of cruise as keep the speed under the greatest: (n + 1) start + (n - 1 + m) peak = distance.
+        // The number of cruise ticks that keeps the peak within the greatest speed, from (n + 1)
+        // start + (n - 1 + m) peak = distance.
         let cruise = distance.saturating_sub((n + 1) * start).div_ceil(speed);
         let m = (cruise + 1).saturating_sub(n).max(1);
         if 2 * n + m > most {
@@ -149,7 +154,7 @@ impl Shape {
     }
 }
 
-/// How far an axis goes that just reaches its greatest speed.
+/// Distance of a move that just reaches its greatest speed.
 const fn reach_at_speed(start: u128, speed: u128, n: u128) -> u128 {
     (n + 1) * start + n * speed
 }
@@ -160,7 +165,7 @@ mod tests {
     use proptest::prelude::*;
     use std::vec::Vec;
 
-    /// Runs the segments; the distance in 2^-64 step, the ticks, the greatest and least speed, and the greatest change of speed.
+    /// Executes the segments and returns the distance in 2^-64 step and the number of ticks.
     fn run(travel: &Travel) -> (i128, u64) {
         let (mut sum, mut ticks) = (0_i128, 0_u64);
         for Segment { ticks: n, v, a, .. } in travel.segments() {
@@ -173,7 +178,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_lands_exactly_within_its_gait(
+        fn move_lands_exactly_within_its_limits(
             steps in prop_oneof![1_i32..50, 1_i32..1_000_000], back in any::<bool>(),
             start in prop_oneof![Just(0_u64), 1_u64..1 << 56], speed in (1_u64 << 48)..1 << 62, accel in (1_u64 << 35)..1 << 58,
             before in 0_u32..100, after in 0_u32..100,
@@ -184,7 +189,7 @@ mod tests {
             prop_assert!(segments.len() <= QUEUE_SEGMENTS.into());
             prop_assert_eq!(segments.iter().position(|segment| segment.last), Some(segments.len() - 1));
             prop_assert_eq!(run(&travel).0, i128::from(steps) << 64);
-            // The divisions leave less than a unit for each tick.
+            // The divisions leave a remainder of less than one unit per tick.
             let (slack, mut v) = (1 + run(&travel).1, 0_i64);
             for Segment { ticks, v: first, a, .. } in segments {
                 let jump = first.abs_diff(v);
@@ -201,8 +206,8 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_shorter_within_the_gait() {
-        // From rest at 2^40 a tick^2: 10 steps take twice the square root of 10 x 2^24 ticks.
+    fn move_is_the_shortest_within_the_limits() {
+        // From rest with 2^40 per tick^2: 10 steps take twice the square root of 10 x 2^24 ticks.
         let gait = Gait { start: 0, speed: 1 << 62, accel: 1 << 40 };
         let ticks = run(&Travel::new(10, gait, 0, 0).unwrap()).1;
         assert!((25_905..=25_908).contains(&ticks), "{ticks}");
@@ -211,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn rests_are_kept_and_what_takes_too_long_is_refused() {
+    fn rests_are_kept_and_too_long_moves_refused() {
         let gait = Gait { start: 0, speed: 1 << 60, accel: 1 << 40 };
         let travel = Travel::new(0, gait, 3, 4).unwrap();
         assert_eq!(travel.segments().map(|segment| (segment.ticks, segment.v)).collect::<Vec<_>>(), [(3, 0), (4, 0)]);

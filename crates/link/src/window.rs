@@ -1,88 +1,93 @@
-//! Writes on their way: in order, each executed once, sent again from the first that is missing.
+//! The window of unacknowledged writes. They are executed in order, each exactly once, and are sent
+//! again from the first that is missing.
 
 use crate::frame::{Answer, Body, Request};
 use crate::registers::{WINDOW, WRITE};
 use thiserror::Error;
 
-/// The gateware's count of writes is none that this host can have caused: it was restarted, or someone else writes.
+/// Error: the gateware's sequence number is not one that this host can have caused. The gateware
+/// was restarted, or another host writes to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
     "the gateware has lost count: it waits for write {next}, this host has {sent} on their way from {first} on; it was restarted, or another host writes to it"
 )]
 pub struct OutOfStep {
-    /// What the gateware waits for.
+    /// Sequence number that the gateware expects.
     pub next: u8,
-    /// The first write that this host believes to be missing.
+    /// Sequence number of the first write that this host considers missing.
     pub first: u8,
-    /// So many were sent from there on.
+    /// Number of writes sent from there on.
     pub sent: u8,
 }
 
-/// An answer to a write that this host has not sent.
+/// Error: an answer to a write that this host has not sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
     "an answer came to write {sequence} at {address:#04x}, which this host has not sent: another host writes to this board at the same time; end one of the two, then stop and clear"
 )]
 pub struct Foreign {
-    /// The number in the answer.
+    /// Sequence number of the answer.
     pub sequence: u8,
-    /// The address in the answer.
+    /// Address of the answer.
     pub address: u8,
 }
 
-/// There is no more room: first some answers must come.
+/// Error: there is no room until answers arrive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("no more requests can be on their way")]
 pub struct Full;
 
-/// Up to `N` writes that were not seen executed yet; `N` is at most [`WINDOW`].
+/// Up to `N` unacknowledged writes; `N` is at most [`WINDOW`].
 #[derive(Debug, Clone)]
 pub struct Window<const N: usize> {
     slots: [Body; N],
-    /// Slot of the first write, how many there are, and the number of the first.
+    /// Slot of the first write.
     at: usize,
+    /// Number of writes.
     length: usize,
+    /// Sequence number of the first write.
     first: u8,
-    /// Sent in this round, and in any.
+    /// Number of writes sent in this round. A round sends the writes in order from the first.
     sent: usize,
+    /// Number of writes that were sent at least once.
     reached: usize,
-    /// When the round began, or the last write was seen executed.
+    /// Time when the round began or the last write was acknowledged, ms.
     since: u32,
-    /// How far behind the missing write the refusals of this round have come.
+    /// Distance from the missing write to the last refused write of this round.
     refused: Option<u8>,
-    /// The gateware was busy: wait before the next round.
+    /// Whether the gateware refused the write as busy, so that the next round must wait.
     busy: bool,
 }
 
 impl<const N: usize> Window<N> {
     const FITS: () = assert!(N > 0 && N <= WINDOW as usize, "1 to 127 writes may be on their way");
 
-    /// Empty; the next write has this number.
+    /// An empty window; the next write has the sequence number `first`.
     pub fn new(first: u8) -> Self {
         let () = Self::FITS;
         let slots = [Body::Read { address: 0 }; N];
         Self { slots, at: 0, length: 0, first, sent: 0, reached: 0, since: 0, refused: None, busy: false }
     }
 
-    /// How many were not seen executed yet.
+    /// Number of unacknowledged writes.
     pub const fn len(&self) -> usize {
         self.length
     }
 
-    /// Whether all were seen executed.
+    /// Whether all writes are acknowledged.
     pub const fn is_empty(&self) -> bool {
         self.length == 0
     }
 
-    /// How many more there is room for.
+    /// Number of further writes that there is room for.
     pub const fn room(&self) -> usize {
         N - self.length
     }
 
-    /// One more write, to be sent when its turn comes.
+    /// Appends a write.
     ///
     /// # Errors
-    /// [`Full`].
+    /// [`Full`] if there is no room.
     pub fn push(&mut self, body: Body) -> Result<(), Full> {
         if self.room() == 0 {
             return Err(Full);
@@ -93,7 +98,7 @@ impl<const N: usize> Window<N> {
         Ok(())
     }
 
-    /// Takes back what was never sent; `withdrawn` sees each.
+    /// Removes the writes that were never sent; `withdrawn` is called with each.
     pub fn withdraw(&mut self, mut withdrawn: impl FnMut(&Body)) {
         while self.length > self.reached {
             self.length -= 1;
@@ -101,8 +106,8 @@ impl<const N: usize> Window<N> {
         }
     }
 
-    /// What is to be sent at this time, ms; `resend` ms without progress begin a new round, `pause` ms pass where the
-    /// gateware was busy.
+    /// The request to be sent at the time `now`, ms. A new round begins after `resend` ms without
+    /// progress. If the gateware was busy, it begins after `pause` ms.
     pub fn transmit(&mut self, now: u32, resend: u32, pause: u32) -> Option<Request> {
         let waited = now.wrapping_sub(self.since);
         if self.sent > 0 && self.length > 0 && waited >= resend {
@@ -124,10 +129,11 @@ impl<const N: usize> Window<N> {
         Some(request)
     }
 
-    /// Whether this answers a write that was sent from here, as far as that can be known: of writes that were executed
-    /// already only the number is left, so a late answer to one of them is believed.
+    /// Checks that this answers a write of this host, as far as that can be known. Of acknowledged
+    /// writes only the number is left, so a late answer to one of them is accepted.
     ///
     /// # Errors
+    /// [`Foreign`] if the number was never sent, or was sent with another address.
     /// [`Foreign`]: its number was never sent from here, or with another address.
     pub fn own(&self, answer: &Answer) -> Result<(), Foreign> {
         let behind = answer.sequence.wrapping_sub(self.first);
@@ -139,10 +145,11 @@ impl<const N: usize> Window<N> {
         if sent { Ok(()) } else { Err(Foreign { sequence: answer.sequence, address: answer.address }) }
     }
 
-    /// Takes what an answer says of the writes before `next`; `executed` sees each, once, in order.
+    /// Processes the acknowledgement in an answer: all writes before `next` were executed.
+    /// `executed` is called with each of them once, in order.
     ///
     /// # Errors
-    /// [`OutOfStep`]: the answer counts writes that were never sent.
+    /// [`OutOfStep`] if the answer acknowledges writes that were never sent.
     pub fn answer(&mut self, answer: &Answer, now: u32, mut executed: impl FnMut(&Body)) -> Result<(), OutOfStep> {
         let advance = usize::from(answer.next.wrapping_sub(self.first));
         if advance > self.reached {
@@ -167,8 +174,8 @@ impl<const N: usize> Window<N> {
         Ok(())
     }
 
-    /// Everything behind a missing write is refused, so one loss brings many refusals: they come with rising numbers,
-    /// and only the first of them begins a new round.
+    /// Processes a refusal. The gateware refuses every write behind a missing one, so one loss
+    /// causes many refusals with rising numbers. Only the first of them begins a new round.
     fn refusal(&mut self, behind: u8, now: u32) {
         if self.refused.is_some_and(|before| behind > before) {
             self.refused = Some(behind);

@@ -1,5 +1,6 @@
-//! Conversations word for word: both clients send these bytes, and take those. `tests/conversations/*.txt`: `>` is said to
-//! the client (words: support/client.rs), `<` is what it must say.
+//! Conversations, byte for byte: the clients in Rust and C must send and accept exactly these
+//! bytes. In `tests/conversations/*.txt` a line with `>` is a command for the client (commands:
+//! support/client.rs), and a line with `<` is its expected reply. A new conversation is a new file.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -12,23 +13,23 @@ use support::device::crc;
 use support::unhex;
 
 #[test]
-fn in_rust() {
+fn rust_client_follows_every_conversation() {
     for (name, text) in scripts() {
         converse(&mut RustClient::default(), &text).unwrap_or_else(|words| panic!("{name}: {words}"));
     }
 }
 
 #[test]
-fn in_c() {
+fn c_client_follows_every_conversation() {
     for (name, text) in scripts() {
         converse(&mut CClient::shared(), &text).unwrap_or_else(|words| panic!("{name}: {words}"));
     }
 }
 
-/// Every frame of docs/protocol.md is one that both clients have sent or taken, in that order; and its CRC is right by an
-/// implementation of its own.
+/// Every frame of docs/protocol.md occurs in a conversation of both clients, in that order, and has
+/// a correct CRC by an independent implementation.
 #[test]
-fn the_frames_of_the_page_are_those_of_the_conversation() {
+fn frames_of_the_page_occur_in_a_conversation() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let page = std::fs::read_to_string(root.join("../../docs/protocol.md")).unwrap();
     let (_, rest) = page.split_once("```frames\n").expect("a block of frames");

@@ -1,5 +1,6 @@
-//! Bytes are flipped, dropped, doubled, cut off and delayed, both ways: no damaged frame is taken, no segment is lost or
-//! executed twice, and the order stays. Clients in Rust and in C, against a gateware in miniature.
+//! Soak tests on a faulty line, which flips, drops, repeats, cuts off and delays bytes in both
+//! directions. No damaged frame is accepted, no segment is lost or executed twice, and the order is
+//! kept. Clients in Rust and in C talk to a gateware in miniature.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -14,7 +15,8 @@ use support::wire::Faults;
 
 const AXES: u8 = 6;
 
-/// Segments long enough that the queue outlasts what the line does.
+/// Runs a program whose segments are so long that the queues do not run empty while the line
+/// repeats frames.
 fn run(client: &mut dyn Client, segments: usize, seed: u64, faults: Faults) -> Outcome {
     let commands = program(&mut Random(seed), AXES, segments, 20 * TICKS);
     let outcome = soak(client, &commands, Soak { faults, seed, axes: AXES, bugs: Bugs::default() });
@@ -22,7 +24,7 @@ fn run(client: &mut dyn Client, segments: usize, seed: u64, faults: Faults) -> O
 }
 
 #[test]
-fn a_hundred_thousand_frames_from_rust() {
+fn rust_client_survives_a_hundred_thousand_frames() {
     let outcome = run(&mut RustClient::default(), 100_000, 1, Faults::BAD);
     println!("{outcome:?}");
     assert_eq!(outcome.fault, None);
@@ -30,7 +32,7 @@ fn a_hundred_thousand_frames_from_rust() {
 }
 
 #[test]
-fn ten_thousand_frames_from_c() {
+fn c_client_survives_ten_thousand_frames() {
     let outcome = run(&mut CClient::shared(), 10_000, 2, Faults::BAD);
     println!("{outcome:?}");
     assert_eq!(outcome.fault, None);
@@ -38,7 +40,7 @@ fn ten_thousand_frames_from_c() {
 }
 
 #[test]
-fn a_clean_line_repeats_nothing_and_keeps_the_queues_full() {
+fn clean_line_repeats_nothing_and_keeps_the_queues_full() {
     for client in [&mut RustClient::default() as &mut dyn Client, &mut CClient::shared()] {
         let outcome = run(client, 2000, 3, Faults::default());
         assert_eq!((outcome.fault, outcome.damaged, outcome.repeated, outcome.out_of_turn), (None, 0, 0, 0));
@@ -53,10 +55,11 @@ fn faults() -> impl Strategy<Value = Faults> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// However bad: all is executed once and in order, or the motion stopped because a queue ran dry, and what was executed
-    /// is the beginning of what was sent. Both clients say the same, byte for byte.
+    /// On any line, either everything is executed once and in order, or the motion stopped because
+    /// a queue ran empty and a prefix of the program was executed. Both clients send the same
+    /// bytes.
     #[test]
-    fn any_line(faults in faults(), seed: u64, axes in 1..=8_u8, segments in 1..120_usize) {
+    fn any_line_executes_a_prefix_of_the_program_once_and_in_order(faults in faults(), seed: u64, axes in 1..=8_u8, segments in 1..120_usize) {
         let commands = program(&mut Random(seed), axes, segments, 20 * TICKS);
         let how = Soak { faults, seed, axes, bugs: Bugs::default() };
         let rust = soak(&mut RustClient::default(), &commands, how).map_err(TestCaseError::fail)?;

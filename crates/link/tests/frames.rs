@@ -1,4 +1,5 @@
-//! Frames as bytes: there and back, against an implementation of the CRC and the escapes of its own, and never a panic.
+//! Tests of frames as bytes: encoding and decoding are inverse, agree with an independent CRC and
+//! escaping, and never panic.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -19,12 +20,12 @@ fn request() -> impl Strategy<Value = Request> {
     (any::<u8>(), body).prop_map(|(sequence, body)| Request { sequence, body })
 }
 
-/// Likes END, ESC and their companions.
+/// Random bytes in which END, ESC and the escaped codes are frequent.
 fn byte() -> impl Strategy<Value = u8> {
     prop_oneof![any::<u8>(), prop::sample::select(vec![0xc0, 0xdb, 0xdc, 0xdd])]
 }
 
-/// The frames and the broken ones in these bytes.
+/// Decodes these bytes: `Some` for each frame, `None` for each broken one.
 fn received<const N: usize>(line: &[u8]) -> Vec<Option<Vec<u8>>> {
     let mut decoder = Decoder::<N>::default();
     let frame = |byte: &u8| match decoder.push(*byte) {
@@ -39,7 +40,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_request_comes_back(request in request()) {
+    fn request_is_decoded_as_it_was_encoded(request in request()) {
         let bytes = request.to_bytes();
         prop_assert_eq!(Request::from_bytes(bytes.as_slice()), Ok(request));
         let (content, _) = bytes.as_slice().split_last_chunk::<4>().unwrap();
@@ -50,13 +51,13 @@ proptest! {
     }
 
     #[test]
-    fn any_frame_comes_back_after_any_noise(noise in prop::collection::vec(byte(), 0..100), frame in prop::collection::vec(byte(), 1..38)) {
+    fn frame_after_noise_is_decoded(noise in prop::collection::vec(byte(), 0..100), frame in prop::collection::vec(byte(), 1..38)) {
         let line: Vec<u8> = noise.into_iter().chain(slip::encode(&frame)).collect();
         prop_assert_eq!(received::<38>(&line).pop(), Some(Some(frame)));
     }
 
     #[test]
-    fn no_bytes_panic_and_a_changed_bit_is_seen(request in request(), bit: u16, bytes in prop::collection::vec(byte(), 0..60)) {
+    fn decoder_never_panics_and_a_flipped_bit_is_detected(request in request(), bit: u16, bytes in prop::collection::vec(byte(), 0..60)) {
         let _ = Request::from_bytes(&bytes);
         let _ = Answer::from_bytes(&bytes);
         let mut changed = request.to_bytes().as_slice().to_vec();
@@ -67,7 +68,7 @@ proptest! {
 }
 
 #[test]
-fn what_no_address_asks_for_is_refused() {
+fn frames_that_no_address_allows_are_refused() {
     let with = |content: &[u8]| {
         let line = on_the_line(content);
         Request::from_bytes(&received::<60>(&line)[0].clone().unwrap()).unwrap_err()

@@ -1,5 +1,5 @@
-//! What the driver says to gateware that it was not made for, to others, to nobody, and to a program that no gateware takes.
-//! What it does with a board is in crates/virtual-board/tests.
+//! Tests of the driver's errors: other gateware, other devices, a dead line, and programs that no
+//! gateware accepts. Its behaviour with a board is tested in crates/virtual-board/tests.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -38,7 +38,7 @@ fn nobody(peer: Peer) -> Error {
 }
 
 #[test]
-fn another_gateware_is_refused_and_both_are_named() {
+fn other_gateware_is_refused_and_both_builds_are_named() {
     assert_eq!(refusal(|device| device.facts[0] = 0x4242_4242), "what answers is not carrystep: identity 0x42424242");
     let said = refusal(|device| device.facts[1] = 9);
     assert!(said.starts_with("the gateware speaks protocol 9, this driver 1:"), "{said}");
@@ -48,17 +48,17 @@ fn another_gateware_is_refused_and_both_are_named() {
 }
 
 #[test]
-fn silence_and_noise_are_told_apart() {
+fn silence_and_noise_are_different_errors() {
     assert!(matches!(nobody(Peer::Nobody), HostError::Silence { ms: 501.. }));
     assert!(matches!(nobody(Peer::Chatter(b"ok\r\n".to_vec())), HostError::Noise { bytes: 100.. }));
     assert!(matches!(nobody(Peer::Chatter(vec![0xff; 20])), HostError::Noise { .. }));
     assert!(matches!(nobody(Peer::Echo), HostError::Noise { .. }));
-    // A bus with nobody on it that idles at END.
+    // A bus without a device that idles at END.
     assert!(matches!(nobody(Peer::Chatter(vec![0xc0; 20])), HostError::Silence { .. }));
 }
 
 #[test]
-fn nobody_answers_any_more() {
+fn gateware_that_stops_answering_is_reported_as_lost() {
     let end = End::new();
     let mut host = connect(&end, Some(BUILD)).unwrap();
     host.enable().unwrap();
@@ -66,14 +66,14 @@ fn nobody_answers_any_more() {
     let commands = program(&mut Random(11), 6, 100, 20 * TICKS);
     let error = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap_err();
     assert!(matches!(error, HostError::Lost { bytes: 0, .. }), "{error}");
-    // An idle hour in between is no silence.
+    // An idle hour between two calls does not count as silence.
     end.0.borrow_mut().peer = Peer::Gateware;
     end.0.borrow_mut().now += 3_600_000;
     host.look().unwrap();
 }
 
 #[test]
-fn a_program_that_no_gateware_takes_is_refused_before_it_is_sent() {
+fn program_that_no_gateware_accepts_is_refused_before_it_is_sent() {
     let segment = Segment { ticks: 9, v: 0, a: 0, j: 0, last: true };
     let of = |axis, segment| Command::Segment { axis, segment };
     let start = |mask| Command::Start { mask };
@@ -88,13 +88,14 @@ fn a_program_that_no_gateware_takes_is_refused_before_it_is_sent() {
 }
 
 #[test]
-fn refusals_are_errors_of_their_own() {
+fn refusals_are_separate_errors() {
     assert_eq!(HostError::<Infallible>::from(Refusal::Identity(1)), HostError::Refused(Refusal::Identity(1)));
 }
 
-/// The last exchanges of a host before a write of CONTROL with bit 1 was executed.
+/// Runs a program, stops it, and measures the exchanges until the write of CONTROL with bit 1 is
+/// executed.
 #[test]
-fn a_stop_is_on_the_line_within_three_exchanges_of_the_wish() {
+fn stop_is_executed_within_three_exchanges() {
     let end = End::new();
     let mut host = connect(&end, Some(BUILD)).unwrap();
     host.enable().unwrap();
@@ -114,7 +115,7 @@ fn a_stop_is_on_the_line_within_three_exchanges_of_the_wish() {
         });
         assert_eq!(ended, Ok(Ended::Stopped));
         let stopped = end.0.borrow().stopped.expect("a stop");
-        // An exchange is a millisecond of this line.
+        // An exchange takes one millisecond on this line.
         assert!(stopped - asked <= 3, "wished at {asked} ms, executed at {stopped} ms");
         host.clear().unwrap();
         end.0.borrow_mut().stopped = None;
@@ -122,7 +123,7 @@ fn a_stop_is_on_the_line_within_three_exchanges_of_the_wish() {
 }
 
 #[test]
-fn a_start_without_power_is_refused_before_anything_is_sent() {
+fn start_without_power_is_refused_before_anything_is_sent() {
     let end = End::new();
     let mut host = connect(&end, Some(BUILD)).unwrap();
     let segment = Segment { ticks: 9, v: 0, a: 0, j: 0, last: true };
@@ -137,7 +138,7 @@ fn a_start_without_power_is_refused_before_anything_is_sent() {
 }
 
 #[test]
-fn a_clear_with_the_e_stop_pressed_says_so_at_once() {
+fn clear_while_the_estop_is_pressed_is_an_error() {
     let end = End::new();
     let mut host = connect(&end, Some(BUILD)).unwrap();
     host.enable().unwrap();

@@ -1,5 +1,5 @@
-//! The lines themselves: SPI as a bus sees it, serial ports that are there, busy, absent or none at all. With a host at the
-//! one end and a board at the other they are in crates/virtual-board/tests.
+//! Tests of the lines: SPI as seen on the bus, and serial ports that are free, busy, absent or no
+//! serial ports. Tests with a host and a board are in crates/virtual-board/tests.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_link::line::serial::{OpenError, SerialLine};
@@ -9,7 +9,7 @@ use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use serialport::{SerialPort, TTYPort};
 use std::convert::Infallible;
 
-/// A bus with nobody on it, that keeps what was said.
+/// A bus without a device that records what was sent.
 #[derive(Default)]
 struct Bus(Vec<u8>);
 
@@ -37,7 +37,7 @@ impl Clock for Counter {
 }
 
 #[test]
-fn spi_sends_end_while_there_is_nothing_to_say() {
+fn spi_sends_end_while_there_is_nothing_else_to_send() {
     let mut line = SpiLine::new(Bus::default());
     let mut into = [0; 64];
     assert_eq!(line.exchange(&[], &mut into).unwrap(), Exchanged { sent: 0, received: 16 });
@@ -49,10 +49,11 @@ fn spi_sends_end_while_there_is_nothing_to_say() {
     assert_eq!(line.free().0, expected.concat());
 }
 
-/// Two hosts would take each other's acknowledgements for their own.
+/// A second host must not open the port, or the two would take each other's acknowledgements for
+/// their own.
 #[cfg(unix)]
 #[test]
-fn a_port_is_one_hosts_by_all_of_its_names() {
+fn port_is_locked_under_all_of_its_names() {
     let (_board, port) = TTYPort::pair().unwrap();
     let name = port.name().unwrap();
     drop(port);
@@ -68,10 +69,10 @@ fn a_port_is_one_hosts_by_all_of_its_names() {
     SerialLine::open(link.to_str().unwrap(), 921_600).unwrap();
 }
 
-/// A board that hangs must not make its host hang.
+/// A board that does not read must not block its host.
 #[cfg(unix)]
 #[test]
-fn a_line_that_nobody_reads_blocks_nobody() {
+fn line_that_nobody_reads_does_not_block() {
     let (_board, port) = TTYPort::pair().unwrap();
     let name = port.name().unwrap();
     drop(port);
@@ -86,7 +87,7 @@ fn a_line_that_nobody_reads_blocks_nobody() {
 }
 
 #[test]
-fn a_port_that_cannot_be_opened_says_why() {
+fn port_that_cannot_be_opened_gives_the_reason() {
     let absent = SerialLine::open("/dev/carrystep-none", 921_600).err().unwrap();
     assert!(matches!(&absent, OpenError::Absent { port, .. } if port == "/dev/carrystep-none"), "{absent}");
     assert!(absent.to_string().starts_with("there is no serial port /dev/carrystep-none: "), "{absent}");
@@ -109,7 +110,7 @@ fn a_port_that_cannot_be_opened_says_why() {
 }
 
 #[test]
-fn a_line_that_is_gone_is_named() {
+fn lost_line_is_reported() {
     struct Gone;
     impl Line for Gone {
         type Error = &'static str;

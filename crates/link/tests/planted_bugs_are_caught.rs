@@ -1,4 +1,5 @@
-//! The clients' library and the gateware in miniature with one line wrong: each must fail a test that the right ones pass.
+//! Mutation tests: the C library and the gateware in miniature, each with one wrong line, must fail
+//! a test that the correct ones pass.
 
 mod support;
 
@@ -10,7 +11,7 @@ use support::random::{Random, program};
 use support::soak::{Soak, TICKS, soak};
 use support::wire::Faults;
 
-/// Name, right text (it stands once in its file), wrong text; in the C library.
+/// Mutations of the C library: name, correct text (which occurs once in its file), wrong text.
 const IN_C: [(&str, &str, &str); 25] = [
     ("CRC is not looked at", "|| carrystep_crc(frame, content) != word_at(frame, content)", ""),
     ("length is not looked at", "length != CARRYSTEP_ANSWER_BYTES || ", ""),
@@ -73,7 +74,7 @@ fn run(client: &mut dyn Client, bugs: Bugs) -> Result<(), String> {
 }
 
 #[test]
-fn in_the_client() {
+fn bugs_planted_in_the_client_are_caught() {
     assert_eq!(verdict(&mut CClient::shared()), Ok(()));
     for (bug, right, wrong) in IN_C {
         let planted = std::cell::Cell::new(0);
@@ -90,7 +91,7 @@ fn in_the_client() {
 }
 
 #[test]
-fn in_the_gateware() {
+fn bugs_planted_in_the_gateware_are_caught() {
     assert_eq!(run(&mut RustClient::default(), Bugs::default()), Ok(()));
     let bugs = [
         Bugs { no_crc: true, ..Bugs::default() },

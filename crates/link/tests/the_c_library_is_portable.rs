@@ -1,5 +1,6 @@
-//! The C library and its example on a microcontroller: strict C99, also as C++; no memory but its own, nothing undefined, no
-//! library but memset and memcpy; and the example makes its move.
+//! Portability of the C library and of its example for a microcontroller. The code must compile as
+//! strict C99 and as C++, use no library functions but memset and memcpy, and have no undefined
+//! behaviour. The example must execute its move.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -26,7 +27,8 @@ fn as_it_is(_: &str, text: &str) -> String {
     text.to_owned()
 }
 
-/// The example on a PC, with a gateware of this build behind its bus: how it ends, and the gateware.
+/// Runs the example on a PC with a gateware in miniature behind its bus. Returns the exit status
+/// and the gateware.
 fn example(change: impl FnOnce(&mut Device)) -> (Option<i32>, Device) {
     let folder = Folder::new(as_it_is);
     STUBS.iter().for_each(|(name, text)| folder.write(name, text));
@@ -53,7 +55,7 @@ fn example(change: impl FnOnce(&mut Device)) -> (Option<i32>, Device) {
 }
 
 #[test]
-fn the_example_makes_its_move_exactly() {
+fn example_moves_exactly_2500_steps() {
     let (status, device) = example(|_| ());
     assert_eq!((status, device.fault), (Some(0), None));
     let segments =
@@ -71,20 +73,20 @@ fn the_example_makes_its_move_exactly() {
 }
 
 #[test]
-fn the_example_writes_nothing_to_another_build() {
+fn example_writes_nothing_to_another_build() {
     let (status, device) = example(|device| device.facts[2] ^= 1);
     assert_eq!((status, device.log.len()), (Some(1), 0));
 }
 
 #[test]
-fn the_example_ends_with_a_fault() {
+fn example_ends_when_the_machine_stops() {
     let (status, device) = example(|device| device.fault = Some(0));
     assert_eq!(status, Some(1));
     assert_eq!(device.log.first(), Some(&Done::Write(0x20, 1)));
 }
 
 #[test]
-fn it_needs_no_library_but_memset_and_memcpy() {
+fn library_needs_only_memset_and_memcpy() {
     let folder = Folder::new(as_it_is);
     let arguments = ["-c", "-ffreestanding", "-fno-builtin"];
     let copies = &["memset", "memcpy"][..];
@@ -108,7 +110,7 @@ fn it_needs_no_library_but_memset_and_memcpy() {
 }
 
 #[test]
-fn it_reads_nothing_outside_its_memory() {
+fn library_has_no_undefined_behaviour_on_noise() {
     let arguments = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
     let mut client = CClient::with(&arguments, as_it_is);
     for (name, text) in scripts() {
@@ -117,7 +119,7 @@ fn it_reads_nothing_outside_its_memory() {
     let commands = program(&mut Random(21), 8, 1000, 20 * TICKS);
     let how = Soak { faults: Faults::BAD, seed: 21, axes: 8, bugs: Default::default() };
     assert_eq!(soak(&mut client, &commands, how).unwrap().fault, None);
-    // Noise, for long.
+    // A long run of noise.
     let mut random = Random(22);
     for _ in 0..300 {
         let noise: Vec<u8> =

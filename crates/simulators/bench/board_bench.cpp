@@ -1,7 +1,12 @@
-// A board in Verilator that goes as far as it is told. On standard input `COUNT PINS MIN MAX` is so many clocks with these
-// levels (in hex; of PINS bit 0 is RX or MOSI, then SCK, select, e-stop), and `0 ...` asks for a full stop. On standard output, each with the first cycle that has it:
-// `t CYCLE TX`, `p CYCLE STEP DIR`, `l CYCLE` a start has loaded, `f CYCLE CAUSE` a stop is called, and for a full stop
-// `. CYCLE IDLE HALTED FAULT CAUSE CULPRITS`.
+// A board in Verilator that runs for as many clocks as its input requests.
+//
+// A line `COUNT PINS MIN MAX` on standard input requests COUNT clocks with these levels. PINS, MIN
+// and MAX are hexadecimal; bit 0 of PINS is RX or MOSI, followed by SCK, chip select and e-stop. A
+// line `0 ...` requests the state.
+//
+// Lines on standard output, each with the first cycle in which the change is visible: `t CYCLE TX`,
+// `p CYCLE STEP DIR`, `l CYCLE` when a start has loaded, `f CYCLE CAUSE` when a stop comes into
+// force, and for the state `. CYCLE IDLE HALTED FAULT CAUSE CULPRITS`.
 #include "Vboard_bench.h"
 #include "verilated.h"
 #include <cinttypes>

@@ -1,4 +1,4 @@
-// Line, link and engine as on a board, without clock and pins.
+// Line, link and engine of a board, without its clock manager and pins.
 module board_bench #(parameter AXES = 6) (
     input wire clock,
     input wire rx,       // or MOSI

@@ -1,5 +1,6 @@
-// Replays what a host did to carrystep_engine, for Verilator, and reports every cycle in which any output
-// changed; then asks the get port for all that the engine keeps. Arguments: FILE [+mutant=N]; compiled for AXES axes
+// Replays the recorded inputs of a host to carrystep_engine in Verilator, and prints every cycle in
+// which any output changed. Then reads the contents of the engine through the get port. Arguments:
+// FILE [+mutant=N]; compiled for AXES axes.
 #include "Vcarrystep_engine.h"
 #include "verilated.h"
 #include <cinttypes>
@@ -7,7 +8,7 @@
 
 namespace {
 
-// Clocks in which the get port answers: some ticks at most.
+// Greatest number of clocks until the get port answers.
 constexpr int PATIENCE = 1 << 18;
 
 uint64_t outputs(const Vcarrystep_engine& core) {

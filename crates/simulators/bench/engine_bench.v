@@ -1,5 +1,6 @@
-// Replays what a host did to carrystep_engine, for Icarus, and reports every cycle in which any output
-// changed; then asks the get port for all that the engine keeps. +stimuli=FILE, -Pengine_bench.AXES=n
+// Replays the recorded inputs of a host to carrystep_engine in Icarus, and prints every cycle in
+// which any output changed. Then reads the contents of the engine through the get port. Arguments:
+// +stimuli=FILE, -Pengine_bench.AXES=n.
 `timescale 1ns / 1ps
 module engine_bench;
     parameter AXES = 6;

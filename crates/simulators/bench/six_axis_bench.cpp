@@ -1,5 +1,5 @@
-// The host of docs/clock-by-clock.md for Verilator: feeds a program to carrystep_six_axis and reports
-// every cycle in which any output changed. Arguments: FILE TAIL MAX
+// The host of docs/clock-by-clock.md for Verilator: feeds a program to carrystep_six_axis, and
+// prints every cycle in which any output changed. Arguments: FILE TAIL MAX.
 #include "Vcarrystep_six_axis.h"
 #include "verilated.h"
 #include <cinttypes>

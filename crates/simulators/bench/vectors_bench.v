@@ -1,5 +1,6 @@
-// Plays recorded cycles to one module, for Icarus: each line is how many cycles, its inputs, its outputs, and which bits
-// of those count. Says where the outputs are others, or how many cycles were the same. +vectors=FILE
+// Applies recorded cycles to one module in Icarus. Each line of the file holds a number of cycles,
+// the inputs, the outputs, and a mask of the output bits to compare. Prints the first difference,
+// or the number of cycles that were equal. Argument: +vectors=FILE.
 `timescale 1ns / 1ps
 module vectors_bench;
     reg clock;

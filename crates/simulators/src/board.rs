@@ -1,4 +1,5 @@
-//! Line, link and engine of a board in Verilator: a process that goes as far as it is told, and tells what its pins do.
+//! Line, link and engine of a board in Verilator: a process that runs for a given number of clocks,
+//! and reports the changes at its pins.
 
 use crate::LevelError;
 use crate::tool::{self, VERILATOR};
@@ -16,45 +17,45 @@ const BENCH: &str = include_str!("../bench/board_bench.cpp");
 /// Levels of a board's input pins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Levels {
-    /// The line from the host: RX, or MOSI.
+    /// The line from the host: level of RX, or of MOSI.
     pub rx: bool,
-    /// SCK, and select (low).
+    /// Levels of SCK and of the active-low chip select.
     pub spi: [bool; 2],
-    /// The e-stop's pin.
+    /// Level of the e-stop pin.
     pub estop: bool,
-    /// The pins of the limits at the low ends, a bit each axis.
+    /// Levels of the limit pins at the low ends, a bit for each axis.
     pub limit_min: u8,
-    /// And at the high ends.
+    /// Levels of the limit pins at the high ends, a bit for each axis.
     pub limit_max: u8,
 }
 
-/// What a board has done, with the first cycle that has it.
+/// An event of a board, with the first cycle in which it is visible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Did {
-    /// The line to the host: TX, or MISO.
+    /// The line to the host changed: new level of TX, or of MISO.
     Tx(u64, bool),
-    /// STEP and DIR of all axes.
+    /// Levels of STEP and DIR of all axes changed.
     Pins(u64, [u8; 2]),
-    /// A start has loaded its first segments.
+    /// A start loaded its first segments.
     Load(u64),
-    /// A stop is called.
+    /// A stop came into force, with its cause.
     Stop(u64, Cause),
 }
 
-/// Where it is when it stands.
+/// State of the board between two runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Standing {
-    /// The cycle.
+    /// Number of the clock cycle.
     pub cycle: u64,
-    /// No axis moves.
+    /// Whether no axis moves.
     pub idle: bool,
-    /// All axes rest after a stop.
+    /// Whether all axes rest after a stop.
     pub halted: bool,
-    /// The stop, and the axes that called it.
+    /// The stop in force: its cause, and the mask of the axes that caused it.
     pub fault: Option<(Cause, u8)>,
 }
 
-/// The process; it ends with this.
+/// The process; it is ended when this is dropped.
 #[derive(Debug)]
 pub struct BoardProcess {
     child: Child,
@@ -63,14 +64,14 @@ pub struct BoardProcess {
 }
 
 impl BoardProcess {
-    /// The exported Verilog of this build on this line, in cycle 0.
+    /// The exported Verilog of this build with this line, in cycle 0.
     ///
     /// # Errors
-    /// [`LevelError`]: Verilator is missing or fails, or there is no such gateware.
+    /// [`LevelError`] if Verilator is missing or fails, or if there is no such gateware.
     pub fn new(build: &EngineBuild, line: Line) -> Result<Self, LevelError> {
         let what = "a simulation";
         let parts = [line_verilog(line, what), link_verilog(build, line, what), engine_verilog(build, what)];
-        // They are Verilog-2005, the top is more.
+        // The exported files are Verilog-2005; the top level of the bench uses more.
         let mut verilog = format!("{TOP}`begin_keywords \"1364-2005\"\n");
         for part in parts {
             verilog += &part.map_err(|error| LevelError::Gateware(error.to_string()))?;
@@ -87,12 +88,13 @@ impl BoardProcess {
         Ok(Self { child, to: BufWriter::new(to), from: BufReader::new(from) })
     }
 
-    /// Goes on for so many clocks with each of these levels, and stands.
+    /// Runs for the given number of clocks with each of these levels, and returns the state at the
+    /// end.
     ///
-    /// All of `stimuli` must fit a pipe, as some thousands do.
+    /// All of `stimuli` must fit into a pipe; some thousands of entries do.
     ///
     /// # Errors
-    /// [`LevelError`]: the process is gone.
+    /// [`LevelError`] if the process has failed.
     pub fn run(&mut self, stimuli: &[(u64, Levels)], to: &mut dyn FnMut(Did)) -> Result<Standing, LevelError> {
         let last = stimuli.last().map(|&(_, levels)| (0, levels));
         for (count, Levels { rx, spi: [sck, select_n], estop, limit_min, limit_max }) in
@@ -117,13 +119,13 @@ impl BoardProcess {
 
 impl Drop for BoardProcess {
     fn drop(&mut self) {
-        // It may be over by now.
+        // The process may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// A line of the bench.
+/// A line that the bench prints.
 enum Heard {
     Did(Did),
     Standing(Standing),

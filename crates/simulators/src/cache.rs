@@ -1,18 +1,19 @@
-//! The folder of compiled simulations. They are executed, so nobody but the user may have put them there.
+//! The directory of compiled simulations. They will be executed, so no other user may be able to
+//! write to it.
 
 use crate::LevelError;
 use crate::tool::io;
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
 
-/// Names another folder for compiled simulations.
+/// Environment variable that selects another directory for compiled simulations.
 const CACHE_VARIABLE: &str = "CARRYSTEP_CACHE";
 
-/// The user's own folder for compiled simulations, made where it is not there: `$CARRYSTEP_CACHE`, or `carrystep` in
-/// the user's cache folder (`$XDG_CACHE_HOME`, `~/.cache`).
+/// The user's own directory for compiled simulations: `$CARRYSTEP_CACHE`, or `carrystep` in the
+/// user's cache directory (`$XDG_CACHE_HOME`, `~/.cache`). It is created if it does not exist.
 ///
 /// # Errors
-/// The folder cannot be made, or another user owns it or may write to it.
+/// The directory cannot be created, or another user owns it or can write to it.
 pub(crate) fn folder() -> Result<PathBuf, LevelError> {
     let chosen = std::env::var_os(CACHE_VARIABLE).filter(|path| !path.is_empty()).map(PathBuf::from);
     let folder = chosen.or_else(|| Some(dirs::cache_dir()?.join("carrystep")));
@@ -23,7 +24,7 @@ pub(crate) fn folder() -> Result<PathBuf, LevelError> {
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
     let made = format!("cannot make the cache folder {}", folder.display());
     builder.create(&folder).map_err(io(made.clone()))?;
-    // The folder itself, and no link that somebody else may turn round.
+    // Checks the directory itself; a symbolic link could be redirected by another user.
     let there = fs::symlink_metadata(&folder).map_err(io(made))?;
     if !there.is_dir() {
         return Err(refused(&folder, "it is no folder"));
@@ -32,10 +33,10 @@ pub(crate) fn folder() -> Result<PathBuf, LevelError> {
     Ok(folder)
 }
 
-/// Whether a compiled simulation is there.
+/// Whether a compiled simulation exists.
 ///
 /// # Errors
-/// It is there, and another user owns it or may write to it.
+/// It exists, but another user owns it or can write to it.
 pub(crate) fn holds(binary: &Path) -> Result<bool, LevelError> {
     match fs::symlink_metadata(binary) {
         Ok(there) if there.is_file() => own(binary, &there).map(|()| true),
@@ -44,7 +45,8 @@ pub(crate) fn holds(binary: &Path) -> Result<bool, LevelError> {
     }
 }
 
-/// Takes everybody else's permissions from a compiled simulation, whatever the user's mask is.
+/// Removes the permissions of all other users from a compiled simulation, regardless of the user's
+/// umask.
 pub(crate) fn only_ours(binary: &Path) -> Result<(), LevelError> {
     #[cfg(unix)]
     fs::set_permissions(binary, std::os::unix::fs::PermissionsExt::from_mode(0o700))
@@ -53,7 +55,7 @@ pub(crate) fn only_ours(binary: &Path) -> Result<(), LevelError> {
     Ok(())
 }
 
-/// Nobody else owns it or may write to it.
+/// Checks that no other user owns this or can write to it.
 #[cfg(unix)]
 fn own(path: &Path, there: &Metadata) -> Result<(), LevelError> {
     use std::os::unix::fs::MetadataExt as _;

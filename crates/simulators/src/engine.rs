@@ -1,4 +1,5 @@
-//! The engine under the same host as every core: a segment is seven words and a commit.
+//! The engine under the common host: runs programs on an engine; a segment is sent as seven words
+//! and a commit.
 
 mod fast;
 mod feed;
@@ -8,11 +9,11 @@ pub mod run;
 use carrystep_core::engine::{COMMIT, EngineInputs, EngineOutputs, Guard, Put};
 use carrystep_core::{Command, Program, Segment};
 
-/// An engine that can be stepped in Rust.
+/// An engine that is simulated in Rust, clock by clock.
 pub trait EngineCore {
-    /// The outputs of this cycle with these inputs.
+    /// The outputs of this cycle for these inputs.
     fn outputs(&mut self, inputs: &EngineInputs) -> EngineOutputs;
-    /// Goes to the next cycle.
+    /// Advances to the next cycle.
     fn clock(&mut self, inputs: &EngineInputs);
 }
 
@@ -34,7 +35,7 @@ impl EngineCore for carrystep_hdl::EngineSim {
     }
 }
 
-/// One thing that the host does.
+/// One action of the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Act {
     Put(Put),
@@ -43,9 +44,10 @@ enum Act {
     Clear,
 }
 
-/// The words of a segment, and the commit.
+/// The words of a segment, and its commit.
 ///
-/// A segment of no ticks has no words: the sender refuses it (`ticks - 1` has no sign).
+/// A segment of 0 ticks cannot be encoded, because the first word is `ticks - 1`; the sender
+/// refuses it.
 pub fn puts(axis: u8, segment: &Segment) -> Vec<Put> {
     let Some(left) = segment.ticks.checked_sub(1) else { return Vec::new() };
     let halves = |x: i64| [x as u32, (x >> 32) as u32];
@@ -54,49 +56,52 @@ pub fn puts(axis: u8, segment: &Segment) -> Vec<Put> {
     (0..).zip(words).map(|(word, data)| Put { axis, word, data }).chain([commit]).collect()
 }
 
-/// What happens around the host, at a cycle; `true` is active, whatever the polarity of the pin.
+/// An event around the host at a given cycle. `true` means active, regardless of the polarity of
+/// the pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Event {
-    /// The e-stop.
+    /// The e-stop is pressed or released.
     EStop(bool),
-    /// The limits at the low ends.
+    /// New state of the limits at the low ends, a bit for each axis.
     LimitMin(u8),
-    /// The limits at the high ends.
+    /// New state of the limits at the high ends, a bit for each axis.
     LimitMax(u8),
-    /// The host's controlled stop.
+    /// The host requests a controlled stop, or withdraws the request.
     Stop(bool),
-    /// The wish for power.
+    /// The host requests power for the drivers, or removes it.
     Enable(bool),
-    /// A sign of life, in this cycle.
+    /// The host sends a valid request in this cycle, which restarts the watchdog.
     Kick,
-    /// These axes wait for their limit from this cycle on.
+    /// Mask of the axes that wait for their limit from this cycle on.
     Home(u8),
-    /// The segment protocol is broken, in this cycle.
+    /// The host violates the segment protocol in this cycle.
     Broken,
 }
 
-/// Events in order of their cycles.
+/// Events, in the order of their cycles.
 pub type Events = Vec<(u64, Event)>;
 
-/// Feeds a program, a command at a time, each until it is taken, while events go on around it.
+/// The host: offers the commands of a program one after the other, each until it is accepted, while
+/// events happen around it.
 #[derive(Debug, Clone)]
 pub struct EngineHost {
     acts: std::vec::IntoIter<Act>,
     current: Option<Act>,
     events: std::iter::Peekable<std::vec::IntoIter<(u64, Event)>>,
     cycle: u64,
-    /// The host is heard of in every cycle.
+    /// Whether the watchdog is restarted in every cycle.
     awake: bool,
-    /// There was a fault in the cycle before.
+    /// Whether there was a fault in the cycle before.
     fault: bool,
-    /// What is driven beside the program.
+    /// The inputs other than those of the program.
     around: EngineInputs,
     estop_low: bool,
     limits_low: u8,
 }
 
 impl EngineHost {
-    /// A host with this to do, command by command; the drivers are enabled until an event says otherwise.
+    /// A host that executes a program command by command. The drivers have power until an event
+    /// removes it.
     pub fn new(guard: &Guard, program: &Program, events: &Events) -> Self {
         let mut acts = Vec::new();
         for command in program {
@@ -110,7 +115,8 @@ impl EngineHost {
         Self::doing(guard, acts, events.clone(), false)
     }
 
-    /// A host that keeps the queues of planned moves full, and is heard of all the time.
+    /// A host that keeps the queues of planned moves full, and restarts the watchdog in every
+    /// cycle.
     pub fn feeding(guard: &Guard, program: &Program) -> Self {
         Self::doing(guard, feed::acts(program), Events::new(), true)
     }
@@ -127,7 +133,7 @@ impl EngineHost {
         host
     }
 
-    /// Takes the events of this cycle.
+    /// Applies the events of this cycle.
     fn happen(&mut self) {
         self.around = EngineInputs { kick: self.awake, broken: false, home: None, ..self.around };
         while let Some((_, event)) = self.events.next_if(|(cycle, _)| *cycle <= self.cycle) {
@@ -144,7 +150,7 @@ impl EngineHost {
         }
     }
 
-    /// What is driven in this cycle; of the program nothing but `clear` and waiting while there is a fault.
+    /// The inputs of this cycle. During a fault the program only clears and waits.
     pub fn inputs(&self, fault: bool) -> EngineInputs {
         let inputs = EngineInputs {
             estop: self.around.estop != self.estop_low,
@@ -160,7 +166,7 @@ impl EngineHost {
         }
     }
 
-    /// Goes on where the command is done in this cycle.
+    /// Continues with the next command if the current one was accepted in this cycle.
     pub fn advance(&mut self, outputs: &EngineOutputs) {
         let fault = outputs.fault.is_some();
         let done = match &mut self.current {
@@ -180,7 +186,7 @@ impl EngineHost {
         self.happen();
     }
 
-    /// One cycle of a core under this host: what goes in, and what comes out.
+    /// Simulates one cycle of a core under this host, and returns its inputs and outputs.
     pub fn step(&mut self, core: &mut impl EngineCore) -> (EngineInputs, EngineOutputs) {
         let (inputs, outputs) = self.meet(|inputs| core.outputs(inputs));
         self.advance(&outputs);
@@ -188,11 +194,12 @@ impl EngineHost {
         (inputs, outputs)
     }
 
-    /// What goes into a core in this cycle, and what comes out of it.
+    /// The inputs of a core in this cycle, and the outputs that they cause.
     pub fn meet(&mut self, mut core: impl FnMut(&EngineInputs) -> EngineOutputs) -> (EngineInputs, EngineOutputs) {
         let mut inputs = self.inputs(self.fault);
         let mut outputs = core(&inputs);
-        // The host sees this cycle's fault: ask again where it has just changed.
+        // The host's inputs depend on the fault of the same cycle: evaluate again if the fault has
+        // just changed.
         if outputs.fault.is_some() != self.fault {
             self.fault = outputs.fault.is_some();
             inputs = self.inputs(self.fault);
@@ -201,7 +208,8 @@ impl EngineHost {
         (inputs, outputs)
     }
 
-    /// How many cycles the host drives the same, as long as the outputs let it wait and there is no new fault.
+    /// Number of cycles in which the host's inputs stay the same, as long as the outputs make it
+    /// wait and no new fault occurs.
     pub fn patience(&mut self, outputs: &EngineOutputs) -> u64 {
         let fault = outputs.fault.is_some();
         let blocked = match self.current {
@@ -212,21 +220,21 @@ impl EngineHost {
             _ => u64::MAX,
         };
         let lasting = self.around.kick == self.awake && !self.around.broken && self.around.home.is_none();
-        // The last cycle before an event is one of `advance`.
+        // The cycle before an event must be simulated by `advance`.
         let eventless = self.events.peek().map_or(u64::MAX, |(cycle, _)| (cycle - 1).saturating_sub(self.cycle));
         if lasting { blocked.min(eventless) } else { 0 }
     }
 
-    /// So many cycles of [`EngineHost::patience`] have passed.
+    /// Skips this number of cycles, at most [`EngineHost::patience`].
     pub fn wait(&mut self, cycles: u64) {
         if let Some(Act::Wait(clocks)) = &mut self.current {
-            // Never more than its patience, which fits.
+            // The number is at most the patience, which fits.
             *clocks = clocks.saturating_sub(u32::try_from(cycles).unwrap_or(u32::MAX));
         }
         self.cycle += cycles;
     }
 
-    /// Nothing is left.
+    /// Whether no command is left.
     pub fn is_done(&mut self) -> bool {
         self.current.is_none() && self.events.peek().is_none()
     }

@@ -1,8 +1,10 @@
-//! What the two Verilog benches share: the program as a text file, and their report as records.
+//! The text formats that the two Verilog benches share: the program as a text file, and their
+//! report as records.
 //!
-//! Program, one command a line, numbers in hex: `kind a ticks v a j last`, where kind is 0 segment
-//! (a: axis), 1 start (a: mask), 2 wait (ticks: clocks), 3 clear. Report, one record a line:
-//! `O` and all outputs where any changed, `E` and the same in the last cycle, `X` if there was no end.
+//! A program has one command per line, with numbers in hexadecimal: `kind a ticks v a j last`. The
+//! kind is 0 segment (a: axis), 1 start (a: mask), 2 wait (ticks: clocks) or 3 clear. A report has
+//! one record per line: `O` and all outputs if any changed, `E` and the outputs of the last cycle,
+//! `X` if the run did not end.
 
 use crate::tool;
 use crate::{Job, LevelError, Observer, Outcome, halted};
@@ -13,7 +15,7 @@ use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 
-/// The program as the benches read it.
+/// The program in the format of the benches.
 pub(crate) fn program_text(job: &Job<'_>) -> String {
     let mut text = String::new();
     for command in job.program {
@@ -29,7 +31,7 @@ pub(crate) fn program_text(job: &Job<'_>) -> String {
     text
 }
 
-/// Runs a compiled bench and hands its records on.
+/// Runs a compiled bench, and passes its records to the observer.
 pub(crate) fn observe(
     tool: &Tool,
     command: &mut std::process::Command,
@@ -47,7 +49,7 @@ pub(crate) fn observe(
     for line in child.stdout.take().map(BufReader::new).into_iter().flat_map(BufRead::lines) {
         let line = line.map_err(tool::io(format!("reading from the {} simulation", tool.name)))?;
         if halted(job.halt) {
-            // It may be over by now.
+            // The process may have ended already.
             let _ = child.kill();
             child.wait().map_err(tool::io(format!("ending the {} simulation", tool.name)))?;
             return Err(LevelError::Halted);
@@ -75,8 +77,8 @@ pub(crate) fn observe(
     end.filter(|_| odd.is_none()).ok_or_else(failed)
 }
 
-/// One line: letter, cycle, seg_ready start_ready step dir idle started overrun overspeed underrun protocol,
-/// position, discarded; all but the cycle in hex.
+/// Parses a line: letter, cycle, seg_ready start_ready step dir idle started overrun overspeed
+/// underrun protocol, position, discarded. All numbers except the cycle are hexadecimal.
 fn record(line: &str) -> Option<(char, u64, Outputs)> {
     let mut fields = line.split_ascii_whitespace();
     let letter = fields.next()?.chars().next()?;
@@ -93,7 +95,7 @@ fn record(line: &str) -> Option<(char, u64, Outputs)> {
     Some((letter, cycle, Outputs { seg_ready, start_ready, step, dir, position, discarded, idle, faults, started }))
 }
 
-/// 192 bits in hex as six words, axis 0 lowest.
+/// Parses 192 bits in hexadecimal as six words; axis 0 is the lowest.
 fn words(hex: &str) -> Option<[u32; AXES]> {
     let mut words = [0; AXES];
     for (axis, word) in words.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! The fast model fed by the host, which waits for many cycles at once.
+//! Runs the fast model under the host, which can wait for many cycles at once.
 
 use crate::host::Host;
 use crate::replay::Replay;
@@ -7,13 +7,14 @@ use carrystep_core::ports::Outputs;
 use carrystep_model::Fast;
 use carrystep_model::fast::{Edge, Edges};
 
-/// Who wants to hear of edges, and of the outputs wherever more than the pins may have changed.
+/// Receives edges, and the outputs of every cycle in which anything other than the pins may have
+/// changed.
 pub trait Listener<O>: Edges {
-    /// The outputs in this cycle. Edges up to it have been told.
+    /// The outputs in this cycle. All edges up to this cycle have been reported.
     fn outputs(&mut self, cycle: u64, outputs: &O);
 }
 
-/// Edges alone: nothing else is told.
+/// A listener for edges alone, which ignores the outputs.
 pub struct EdgesOnly<E>(pub E);
 
 impl<E: Edges> Edges for EdgesOnly<E> {
@@ -26,7 +27,8 @@ impl<E: Edges, O> Listener<O> for EdgesOnly<E> {
     fn outputs(&mut self, _: u64, _: &O) {}
 }
 
-/// Runs a job on the fast model and tells every cycle in which any output changed, as any level does.
+/// Runs a job on the fast model, and reports every cycle in which any output changed, as the other
+/// levels do.
 pub(crate) fn replay(job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
     let mut replay = Replay::new(&job.build.pins, observer);
     let end = run(job, &mut replay);
@@ -34,10 +36,10 @@ pub(crate) fn replay(job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outco
     end
 }
 
-/// Runs a job on the fast model; the edges stream by.
+/// Runs a job on the fast model; `listener` receives the edges as they occur.
 ///
 /// # Errors
-/// [`LevelError::Endless`]: the run does not end; [`LevelError::Halted`]: it is to.
+/// [`LevelError::Endless`] if the run does not end; [`LevelError::Halted`] if it was halted.
 pub fn run(job: &Job<'_>, listener: &mut impl Listener<Outputs>) -> Result<Outcome, LevelError> {
     let mut core = Fast::new(job.build);
     let mut host = Host::new(job.program);
@@ -69,7 +71,7 @@ pub fn run(job: &Job<'_>, listener: &mut impl Listener<Outputs>) -> Result<Outco
             }
             cycles => {
                 host.wait(cycles);
-                // This cycle has been counted.
+                // The first of these cycles was counted above.
                 quiet += if quiet > 0 { cycles - 1 } else { 0 };
             }
         }

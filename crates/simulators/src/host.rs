@@ -1,14 +1,14 @@
-//! The host that feeds a core, clock by clock: the Rust side of docs/clock-by-clock.md, "host".
+//! The host that feeds a core clock by clock, as defined in docs/clock-by-clock.md, "host".
 
 use crate::{Job, LevelError, Observer, Outcome, halted, how_far};
 use carrystep_core::ports::{Inputs, Outputs};
 use carrystep_core::{Command, Program};
 
-/// A six-axis core that can be stepped in Rust.
+/// A six-axis core that is simulated in Rust, clock by clock.
 pub trait Core {
-    /// The outputs of this cycle with these inputs.
+    /// The outputs of this cycle for these inputs.
     fn outputs(&mut self, inputs: &Inputs) -> Outputs;
-    /// Goes to the next cycle.
+    /// Advances to the next cycle.
     fn clock(&mut self, inputs: &Inputs);
 }
 
@@ -30,7 +30,7 @@ impl Core for carrystep_hdl::SixAxisSim {
     }
 }
 
-/// The commands that are left.
+/// The host, with the commands that are left.
 pub(crate) struct Host<'a> {
     commands: std::iter::Copied<std::slice::Iter<'a, Command>>,
     current: Option<Command>,
@@ -43,7 +43,7 @@ impl<'a> Host<'a> {
         Self { commands, current }
     }
 
-    /// What is driven in this cycle; nothing but `clear` and waiting while the core is frozen.
+    /// The inputs of this cycle. While the core is frozen, the host only clears and waits.
     pub(crate) fn inputs(&self, fault: bool) -> Inputs {
         match self.current {
             Some(Command::Segment { axis, segment }) if !fault => {
@@ -55,7 +55,7 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Goes on where the command is done in this cycle.
+    /// Continues with the next command if the current one was accepted in this cycle.
     pub(crate) fn advance(&mut self, outputs: &Outputs) {
         let fault = outputs.faults.any();
         let done = match &mut self.current {
@@ -73,12 +73,13 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Nothing is left to be done.
+    /// Whether no command is left.
     pub(crate) fn is_done(&self) -> bool {
         self.current.is_none()
     }
 
-    /// How many cycles the host drives the same, as long as the outputs let it wait.
+    /// Number of cycles in which the host's inputs stay the same, as long as the outputs make it
+    /// wait.
     pub(crate) fn patience(&self, outputs: &Outputs) -> u64 {
         let blocked = match self.current {
             Some(Command::Wait { clocks }) => return u64::from(clocks.saturating_sub(1)),
@@ -90,16 +91,16 @@ impl<'a> Host<'a> {
         if blocked { u64::MAX } else { 0 }
     }
 
-    /// So many cycles of [`Host::patience`] have passed.
+    /// Skips this number of cycles, at most [`Host::patience`].
     pub(crate) fn wait(&mut self, cycles: u64) {
         if let Some(Command::Wait { clocks }) = &mut self.current {
-            // Never more than its patience, which fits.
+            // The number is at most the patience, which fits.
             *clocks = clocks.saturating_sub(u32::try_from(cycles).unwrap_or(u32::MAX));
         }
     }
 }
 
-/// The first cycle after a start, if there is one.
+/// The first cycle after a start; `None` if no start is executed.
 pub(crate) fn first_start(core: &mut impl Core, job: &Job<'_>) -> Option<u64> {
     let mut host = Host::new(job.program);
     for cycle in 0..job.max_clocks {
@@ -114,7 +115,7 @@ pub(crate) fn first_start(core: &mut impl Core, job: &Job<'_>) -> Option<u64> {
     None
 }
 
-/// Feeds a core until the program is over and the core is quiet.
+/// Feeds a core until the program is over and the outputs no longer change.
 pub(crate) fn run(core: &mut impl Core, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
     let mut host = Host::new(job.program);
     let mut before = None;
@@ -126,7 +127,8 @@ pub(crate) fn run(core: &mut impl Core, job: &Job<'_>, observer: &mut Observer<'
             return Err(LevelError::Halted);
         }
         how_far::tell(job.how_far, cycle);
-        // The host sees this cycle's fault: ask again where it has just changed.
+        // The host's inputs depend on the fault of the same cycle: evaluate again if the fault has
+        // just changed.
         let mut inputs = host.inputs(fault);
         let mut outputs = core.outputs(&inputs);
         if outputs.faults.any() != fault {

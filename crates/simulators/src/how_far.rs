@@ -1,19 +1,19 @@
-//! How far a run is, for whoever watches it from another thread.
+//! Progress of a run, which another thread can read.
 
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 
-/// What a run does.
+/// Stage of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// It goes from clock to clock, and says at which it is.
+    /// The simulation runs, and reports its clock.
     Runs,
-    /// The model runs first, clock by clock: the Verilog is then compared with it.
+    /// The model runs first, clock by clock. The Verilog will be compared with it.
     ModelRuns,
-    /// The Verilog is compiled and compared; nobody knows how far that is.
+    /// The Verilog is compiled and compared; its progress is not known.
     VerilogRuns,
 }
 
-/// The clock that a run has come to, and what it does.
+/// The clock that a run has reached, and its stage.
 #[derive(Debug, Default)]
 pub struct HowFar {
     clock: AtomicU64,
@@ -21,23 +21,23 @@ pub struct HowFar {
 }
 
 impl HowFar {
-    /// The run has come to this clock.
+    /// Records that the run has reached this clock.
     pub fn at(&self, clock: u64) {
         self.clock.store(clock, Ordering::Relaxed);
     }
 
-    /// The clock that the run has come to.
+    /// The clock that the run has reached.
     pub fn clock(&self) -> u64 {
         self.clock.load(Ordering::Relaxed)
     }
 
-    /// Another stage begins.
+    /// Begins another stage.
     pub(crate) fn begin(&self, stage: Stage) {
         self.at(0);
         self.stage.store(stage as u8, Ordering::Relaxed);
     }
 
-    /// What the run does.
+    /// The current stage.
     pub fn stage(&self) -> Stage {
         match self.stage.load(Ordering::Relaxed) {
             1 => Stage::ModelRuns,
@@ -47,7 +47,7 @@ impl HowFar {
     }
 }
 
-/// Tells whoever watches.
+/// Records the clock, if anybody watches the run.
 pub(crate) fn tell(how_far: Option<&HowFar>, clock: u64) {
     if let Some(how_far) = how_far {
         how_far.at(clock);

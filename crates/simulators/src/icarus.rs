@@ -1,4 +1,4 @@
-//! The exported Verilog in Icarus Verilog.
+//! Runs the exported Verilog in Icarus Verilog.
 
 use crate::tool::{self, ICARUS};
 use crate::{Job, LevelError, Observer, Outcome, external};

@@ -1,8 +1,9 @@
-//! One program at any level: model, Rust-HDL, the exported Verilog in Icarus and in Verilator.
+//! Runs a program at any level: model, Rust-HDL, or the exported Verilog in Icarus and in
+//! Verilator.
 //!
-//! Every level is fed by the same host (docs/clock-by-clock.md) and reports the same thing: all
-//! outputs of the core, in each cycle in which any of them changed. Equal reports are equal pins in
-//! every clock.
+//! Every level has the same host (docs/clock-by-clock.md), and reports all outputs of the core in
+//! each cycle in which any of them changed. If two reports are equal, the pins are equal in every
+//! clock.
 
 pub mod board;
 mod cache;
@@ -29,12 +30,12 @@ use thiserror::Error;
 
 pub use how_far::{HowFar, Stage};
 
-/// Where a program is run.
+/// A level: the implementation on which a program is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Level {
-    /// `crates/model`, from edge to edge.
+    /// The fast model of `crates/model`, which computes from edge to edge.
     Fast,
-    /// `crates/model`, clock by clock.
+    /// The reference model of `crates/model`, clock by clock.
     Model,
     /// `crates/hdl`, simulated by Rust-HDL itself.
     RustHdl,
@@ -45,10 +46,10 @@ pub enum Level {
 }
 
 impl Level {
-    /// All levels, from the fastest down.
+    /// All levels, the fastest first.
     pub const ALL: [Self; 5] = [Self::Fast, Self::Model, Self::RustHdl, Self::Icarus, Self::Verilator];
 
-    /// Its name on the command line.
+    /// Name of the level on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Fast => "fast",
@@ -74,33 +75,36 @@ impl FromStr for Level {
     }
 }
 
-/// What is to be run.
+/// A program for a six-axis core, and the conditions of its run.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
     /// Build parameters of the gateware.
     pub build: &'a Build,
-    /// What the host sends.
+    /// Commands that the host sends.
     pub program: &'a Program,
-    /// Cycles in a row with nothing left to do after which the run is over; at least 1.
+    /// Number of consecutive cycles with nothing left to do after which the run is over; at least
+    /// 1.
     pub tail: u64,
-    /// The run fails after this many cycles.
+    /// The run fails after this number of cycles.
     pub max_clocks: u64,
-    /// Ends it before its end.
+    /// Flags that end the run early.
     pub halt: Halt<'a>,
-    /// Hears how far it is.
+    /// Receives the progress of the run.
     pub how_far: Option<&'a HowFar>,
 }
 
-/// Flags of which any one ends a run with [`LevelError::Halted`]; the loops look at them wherever they come by.
+/// Flags. If any one is set, the run ends with [`LevelError::Halted`]; the loops test them
+/// regularly.
 pub type Halt<'a> = &'a [&'a AtomicBool];
 
-/// Whether one of them is set.
+/// Whether any of the flags is set.
 pub(crate) fn halted(halt: Halt<'_>) -> bool {
     halt.iter().any(|flag| flag.load(Ordering::Relaxed))
 }
 
 impl<'a> Job<'a> {
-    /// A job that may take `ticks` ticks of motion, with time for the pipeline and the last pulse.
+    /// A job of `ticks` ticks of motion. Its limit of cycles includes time for the pipeline and the
+    /// last pulse.
     pub fn new(build: &'a Build, program: &'a Program, ticks: u64) -> Self {
         let clocks = u64::from(build.timebase.clocks_per_tick());
         let slack = 4 * clocks + build.pins.iter().map(|p| u64::from(p.width + p.gap)).max().unwrap_or(0);
@@ -108,12 +112,13 @@ impl<'a> Job<'a> {
     }
 }
 
-/// How a run ended.
+/// Result of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Outcome {
-    /// Clock cycles run.
+    /// Number of clock cycles run.
     pub clocks: u64,
-    /// First cycle in which the first started move's segments are loaded, if any started.
+    /// The cycle in which the first started move's segments are loaded; `None` if no start was
+    /// executed.
     pub origin: Option<u64>,
     /// The outputs in the last cycle.
     pub last: Outputs,
@@ -125,48 +130,49 @@ pub enum LevelError {
     /// A program that the level needs is not installed.
     #[error("{} is not installed: {} installs it", .0.name, .0.ways())]
     Missing(Tool),
-    /// A program failed.
+    /// An external program failed.
     #[error("{tool} failed: {message}")]
     Tool {
-        /// Its name.
+        /// Name of the program.
         tool: &'static str,
-        /// What it said.
+        /// The output of the program.
         message: String,
     },
-    /// The run did not come to its end.
+    /// The run did not end within its limit of cycles.
     #[error("the run was not over after {0} clocks")]
     Endless(u64),
-    /// Somebody asked for it.
+    /// The run was halted by a flag.
     #[error("the run was stopped before its end")]
     Halted,
-    /// The gateware for these build parameters cannot be made.
+    /// No gateware can be made for these build parameters.
     #[error("{0}")]
     Gateware(String),
-    /// What is kept of a simulation would be executed, and may be somebody else's.
+    /// The directory of compiled simulations may have been written by another user; its files would
+    /// be executed.
     #[error("{}: {why}; compiled simulations are executed from there (CARRYSTEP_CACHE names another folder)", .path.display())]
     Cache {
-        /// The folder, or a simulation in it.
+        /// The directory, or a simulation in it.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         why: &'static str,
     },
     /// A file could not be read or written.
     #[error("{context}: {source}")]
     Io {
-        /// What was tried.
+        /// The operation that failed.
         context: String,
-        /// The system's answer.
+        /// The error of the operating system.
         source: std::io::Error,
     },
 }
 
-/// Hears of each cycle in which any output changed, cycle 0 included.
+/// Called for each cycle in which any output changed, cycle 0 included.
 pub type Observer<'a> = dyn FnMut(u64, &Outputs) + 'a;
 
 /// Runs a job at a level.
 ///
 /// # Errors
-/// [`LevelError`]: a tool is missing or fails, or the run does not end.
+/// [`LevelError`] if a tool is missing or fails, or if the run does not end.
 pub fn run(level: Level, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
     match level {
         Level::Fast => fast::replay(job, observer),
@@ -184,10 +190,11 @@ pub fn run(level: Level, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<O
     }
 }
 
-/// Runs a job on Verilog text whose top is `carrystep_six_axis`, in Icarus or in Verilator.
+/// Runs a job in Icarus or Verilator on Verilog text whose top is `carrystep_six_axis`.
 ///
 /// # Errors
-/// [`LevelError`]: a tool is missing or fails, the level has no Verilog, or the run does not end.
+/// [`LevelError`] if a tool is missing or fails, if the level has no Verilog, or if the run does
+/// not end.
 pub fn run_verilog(
     level: Level,
     verilog: &str,
@@ -203,18 +210,19 @@ pub fn run_verilog(
     }
 }
 
-/// The cycle in which a job's first segments are loaded: the same at every level, so the model is asked.
+/// The cycle in which a job's first segments are loaded. It is the same at every level, so the
+/// model computes it.
 ///
 /// # Errors
-/// [`LevelError::Endless`]: the program starts nothing.
+/// [`LevelError::Endless`] if the program has no start.
 pub fn origin(job: &Job<'_>) -> Result<u64, LevelError> {
     host::first_start(&mut carrystep_model::SixAxis::new(job.build), job).ok_or(LevelError::Endless(job.max_clocks))
 }
 
-/// Whether the tools of a level are installed.
+/// Checks that the tools of a level are installed.
 ///
 /// # Errors
-/// [`LevelError::Missing`] names the tool and the line that installs it.
+/// [`LevelError::Missing`] names the tool and the command that installs it.
 pub fn available(level: Level) -> Result<(), LevelError> {
     match level {
         Level::Fast | Level::Model | Level::RustHdl => Ok(()),

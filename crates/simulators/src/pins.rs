@@ -1,10 +1,11 @@
-//! From clock cycles to pin changes in ps: what the checker and the waveform writers take.
+//! Converts outputs per clock cycle to pin changes in ps, the input of the checker and of the
+//! waveform writers.
 
 use carrystep_check::{Pin, PinChange, PinSink, TraceError};
 use carrystep_core::ports::Outputs;
 use carrystep_core::{AXES, Timebase};
 
-/// Hands every change of STEP and DIR of the first `axes` axes to a sink.
+/// Sends every change of STEP and DIR of the first `axes` axes to a sink.
 pub struct PinFeed<'a> {
     timebase: Timebase,
     axes: u8,
@@ -15,24 +16,24 @@ pub struct PinFeed<'a> {
 }
 
 impl<'a> PinFeed<'a> {
-    /// A feed that has seen nothing: all pins are low at configuration.
+    /// A feed with all pins low, as after configuration.
     pub fn new(timebase: Timebase, axes: usize, sink: &'a mut dyn PinSink) -> Self {
         let axes = axes.min(AXES) as u8;
         Self { timebase, axes, sink, step: 0, dir: 0, failed: None }
     }
 
-    /// The outputs in a cycle; a pin's new level begins with the cycle.
+    /// Processes the outputs of a cycle. A new level of a pin begins with the cycle.
     pub fn observe(&mut self, cycle: u64, outputs: &Outputs) {
         self.pins(cycle, outputs.step, outputs.dir);
     }
 
-    /// The pins in a cycle, bit i is axis i; otherwise as [`PinFeed::observe`].
+    /// Processes the pins of a cycle; bit i is axis i. Otherwise as [`PinFeed::observe`].
     pub fn pins(&mut self, cycle: u64, step: u8, dir: u8) {
         if self.failed.is_some() || (step == self.step && dir == self.dir) {
             return;
         }
         let ps = self.timebase.clock_to_ps(cycle);
-        // DIR first: where both change in one cycle, the new direction is that of the step.
+        // DIR comes first: if both change in one cycle, the new direction applies to the step.
         for (pin, now, before) in [(Pin::Dir, dir, self.dir), (Pin::Step, step, self.step)] {
             for axis in (0..self.axes).filter(|axis| (now ^ before) >> axis & 1 == 1) {
                 let change = PinChange { ps, axis, pin, level: now >> axis & 1 == 1 };
@@ -44,12 +45,12 @@ impl<'a> PinFeed<'a> {
         (self.step, self.dir) = (step, dir);
     }
 
-    /// The sink has failed: it hears no more.
+    /// Whether the sink has failed. It receives no more changes.
     pub fn has_failed(&self) -> bool {
         self.failed.is_some()
     }
 
-    /// The run is over after this many cycles.
+    /// Ends the feed after this number of cycles.
     ///
     /// # Errors
     /// The sink failed, now or before.

@@ -1,4 +1,4 @@
-//! From edges back to the outputs of every cycle in which any of them changed.
+//! Reconstructs from edges the outputs of every cycle in which any of them changed.
 
 use crate::fast::Listener;
 use carrystep_core::PinTiming;
@@ -6,14 +6,14 @@ use carrystep_core::engine::{EngineOutputs, MAX_AXES};
 use carrystep_core::ports::Outputs;
 use carrystep_model::fast::{Change, Edge, Edges};
 
-/// No fall is due.
+/// Time of a falling edge that is not scheduled.
 const NEVER: u64 = u64::MAX;
 
 /// Outputs that edges change.
 pub trait Shown: Copy + PartialEq + Default {
-    /// STEP and DIR pins.
+    /// Levels of the STEP and DIR pins.
     fn pins(&mut self) -> (&mut u8, &mut u8);
-    /// A step more of an axis, or one less.
+    /// Counts a step of an axis, forward or backward.
     fn count(&mut self, axis: usize, backward: bool);
 }
 
@@ -36,29 +36,29 @@ impl Shown for EngineOutputs {
     fn count(&mut self, _: usize, _: bool) {}
 }
 
-/// Tells an observer what it would hear from the clock-by-clock model.
+/// Calls an observer for the cycles for which the clock-by-clock model would call it.
 pub struct Replay<'a, O> {
     observer: &'a mut (dyn FnMut(u64, &O) + 'a),
     width: [u64; MAX_AXES],
-    /// When STEP falls.
+    /// Cycle of the next falling edge of each STEP.
     falls: [u64; MAX_AXES],
     first_fall: u64,
-    /// The outputs in cycle `at`, as far as they are known.
+    /// The cycle of `now`, which holds the outputs as far as they are known.
     at: u64,
     now: O,
-    /// What was told last.
+    /// The outputs that were last reported.
     told: Option<O>,
 }
 
 impl<'a, O: Shown> Replay<'a, O> {
-    /// Pins that are all low, with these widths.
+    /// A replay with all pins low and with these pulse widths.
     pub fn new(pins: &[PinTiming], observer: &'a mut (dyn FnMut(u64, &O) + '_)) -> Self {
         let mut width = [0; MAX_AXES];
         width.iter_mut().zip(pins).for_each(|(width, pins)| *width = pins.width.into());
         Self { observer, width, falls: [NEVER; MAX_AXES], first_fall: NEVER, at: 0, now: O::default(), told: None }
     }
 
-    /// All that happens before this cycle is known: tell it.
+    /// Reports everything before this cycle, which is now known completely.
     pub fn reach(&mut self, cycle: u64) {
         while self.first_fall <= cycle {
             self.settle(self.first_fall);

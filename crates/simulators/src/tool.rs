@@ -1,4 +1,4 @@
-//! The external simulators: are they there, and what they say when they fail.
+//! The external simulators: whether they are installed, and their output if they fail.
 
 use crate::LevelError;
 use carrystep_tools::programs::Tool;
@@ -12,7 +12,7 @@ pub(crate) fn find(tool: &Tool) -> Result<(), LevelError> {
     started.map(|_| ()).map_err(|_| LevelError::Missing(*tool))
 }
 
-/// Runs a command to its end; what it prints becomes the error if it fails.
+/// Runs a command to its end. If it fails, its output becomes the error.
 pub(crate) fn complete(tool: &Tool, command: &mut Command) -> Result<(), LevelError> {
     let output = command.output().map_err(|_| LevelError::Missing(*tool))?;
     if output.status.success() {
@@ -22,12 +22,12 @@ pub(crate) fn complete(tool: &Tool, command: &mut Command) -> Result<(), LevelEr
     Err(LevelError::Tool { tool: tool.name, message: String::from_utf8_lossy(&text).trim().to_owned() })
 }
 
-/// An input or output error, with what was tried.
+/// An input or output error, with the operation that failed.
 pub(crate) fn io(context: impl Into<String>) -> impl FnOnce(std::io::Error) -> LevelError {
     move |source| LevelError::Io { context: context.into(), source }
 }
 
-/// Writes files into a folder.
+/// Writes files into a directory.
 pub(crate) fn put(folder: &Path, files: &[(&str, &str)]) -> Result<(), LevelError> {
     for (name, text) in files {
         std::fs::write(folder.join(name), text).map_err(io(format!("cannot write {name}")))?;

@@ -1,4 +1,5 @@
-//! What one module was told and what it showed, cycle by cycle, replayed on its exported Verilog in Icarus.
+//! Recorded inputs and outputs of one module, cycle by cycle, and their replay on its exported
+//! Verilog in Icarus.
 
 use crate::LevelError;
 use crate::tool::{self, ICARUS};
@@ -8,7 +9,7 @@ use std::process::Command;
 
 const BENCH: &str = include_str!("../bench/vectors_bench.v");
 
-/// Some ports in one cycle, side by side as one number.
+/// The values of several ports in one cycle, packed into one number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Bits {
     bits: u128,
@@ -16,7 +17,7 @@ pub struct Bits {
 }
 
 impl Bits {
-    /// With one more port below those that are there; where it is `None` it says nothing that counts.
+    /// Adds a port below the others. `None` marks a value that is not compared.
     ///
     /// `width` is at most 64, and all ports together have at most 128 bits.
     #[must_use]
@@ -30,27 +31,27 @@ impl Bits {
     }
 }
 
-/// A module's ports, and its cycles.
+/// The ports of a module, and its recorded cycles.
 #[derive(Debug, Clone)]
 pub struct Vectors {
-    /// The port of the clock.
+    /// Name of the clock's port.
     pub clock: &'static str,
-    /// Name and width of each input, in the order in which the cycles have them.
+    /// Name and width of each input, in the order of the recorded values.
     pub inputs: Cow<'static, [(&'static str, u32)]>,
-    /// Of each output.
+    /// Name and width of each output, in the order of the recorded values.
     pub outputs: Cow<'static, [(&'static str, u32)]>,
-    /// Inputs and outputs, each with its number of cycles.
+    /// Inputs and outputs, each with a number of cycles.
     rows: Vec<(u64, Bits, Bits)>,
 }
 
 impl Vectors {
-    /// None yet.
+    /// A recording without cycles.
     pub const fn new(inputs: &'static [(&'static str, u32)], outputs: &'static [(&'static str, u32)]) -> Self {
         let (inputs, outputs) = (Cow::Borrowed(inputs), Cow::Borrowed(outputs));
         Self { clock: "clock", inputs, outputs, rows: Vec::new() }
     }
 
-    /// One more cycle.
+    /// Records a cycle.
     pub fn add(&mut self, inputs: Bits, outputs: Bits) {
         match self.rows.last_mut() {
             Some((count, before, shown)) if *before == inputs && *shown == outputs => *count += 1,
@@ -58,15 +59,16 @@ impl Vectors {
         }
     }
 
-    /// Cycles so far.
+    /// Number of recorded cycles.
     pub fn cycles(&self) -> u64 {
         self.rows.iter().map(|(count, ..)| count).sum()
     }
 
-    /// The first cycle in which the module of this name in this Verilog shows anything else, in words.
+    /// Describes the first cycle in which the module of this name in this Verilog has other
+    /// outputs; `None` if there is none.
     ///
     /// # Errors
-    /// [`LevelError`]: Icarus is missing or fails.
+    /// [`LevelError`] if Icarus is missing or fails.
     pub fn difference(&self, module: &str, verilog: &str) -> Result<Option<String>, LevelError> {
         tool::find(&ICARUS)?;
         let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;

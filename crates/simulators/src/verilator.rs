@@ -1,5 +1,6 @@
-//! The exported Verilog in Verilator. A compiled simulation is kept in the user's cache folder, by the hash of all
-//! that went into it, because compiling takes far longer than most runs.
+//! Simulates the exported Verilog in Verilator. Compiling takes far longer than most runs, so a
+//! compiled simulation is kept in the user's cache directory, under the hash of everything that it
+//! was made from.
 
 use crate::tool::{self, VERILATOR};
 use crate::{Job, LevelError, Observer, Outcome, cache, external};
@@ -9,7 +10,8 @@ use std::process::Command;
 use std::sync::Mutex;
 
 const BENCH: &str = include_str!("../bench/six_axis_bench.cpp");
-/// Verilator's own makefile says -Os behind all flags that are given, but for `OPT_FAST`: by that some have a third of the speed.
+/// Verilator's makefile adds -Os behind all other flags, unless `OPT_FAST` is set. With -Os some
+/// simulations reach only a third of the speed.
 const OPTIONS: [&str; 9] =
     ["--cc", "--exe", "--build", "-O3", "--x-assign", "fast", "-Wno-fatal", "-MAKEFLAGS", "OPT_FAST=-O2"];
 
@@ -22,27 +24,27 @@ pub(crate) fn run(verilog: &str, job: &Job<'_>, observer: &mut Observer<'_>) -> 
     external::observe(&VERILATOR, &mut simulation, job, observer)
 }
 
-/// Two tests of a process may want the same simulation.
+/// Serialises compilations: two tests of a process may need the same simulation.
 static COMPILER: Mutex<()> = Mutex::new(());
 
-/// What Verilator makes of Verilog.
+/// The parameters of a compilation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Simulation<'a> {
-    /// Before the hash in its name.
+    /// Prefix of the file name, in front of the hash.
     pub name: &'a str,
-    /// The top module.
+    /// Name of the top module.
     pub top: &'a str,
-    /// What drives it, in C++.
+    /// The bench that drives it, in C++.
     pub bench: &'a str,
-    /// And what else Verilator is told.
+    /// Additional options of Verilator.
     pub options: &'a [&'a str],
 }
 
 impl Simulation<'_> {
-    /// The compiled simulation of this Verilog, from the cache or made now.
+    /// The compiled simulation of this Verilog, from the cache or newly compiled.
     ///
     /// # Errors
-    /// [`LevelError`]: Verilator is missing or fails.
+    /// [`LevelError`] if Verilator is missing or fails.
     pub fn compiled(&self, verilog: &str) -> Result<PathBuf, LevelError> {
         let Self { name, top, bench, options } = *self;
         tool::find(&VERILATOR)?;
@@ -59,7 +61,8 @@ impl Simulation<'_> {
             tool::complete(&VERILATOR, command.current_dir(folder.path()))?;
             let made = folder.path().join("obj_dir").join("bench");
             cache::only_ours(&made)?;
-            // Whole or not at all: another run may be looking for it.
+            // A rename is atomic: another process that looks for the file finds it complete or not
+            // at all.
             std::fs::rename(made, &binary).map_err(tool::io("cannot keep the compiled simulation"))?;
         }
         Ok(binary)

@@ -1,4 +1,4 @@
-//! A board's gateware to a bitstream, on its pins, and what the tools say of it.
+//! Builds a board's gateware to a bitstream on its pins, with the figures of the tools.
 
 pub mod page;
 
@@ -6,49 +6,51 @@ use crate::SynthesisError;
 use crate::ice40::{self, Part, Placed, Size};
 use crate::tool::{self, ICEPACK, ICETIME};
 
-/// Placements are tried with these, in this order, until one reaches the clock; the board's `build.sh` does the same.
+/// Seeds of placement, tried in this order until one reaches the clock. The board's `build.sh` uses
+/// the same.
 pub const SEEDS: [u32; 5] = [1, 2, 3, 4, 5];
 
-/// What is to be built.
+/// A design to be built.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
-    /// All Verilog.
+    /// Verilog of all modules.
     pub verilog: &'a str,
-    /// Its top module.
+    /// Name of the top module.
     pub top: &'a str,
-    /// Which port goes to which pin.
+    /// Constraints that assign each port to a pin.
     pub pcf: &'a str,
-    /// Where it is placed.
+    /// The part.
     pub part: Part<'a>,
-    /// Hz.
+    /// Clock, Hz.
     pub clock_hz: u64,
 }
 
-/// What has been built.
+/// A built design.
 pub struct Built {
-    /// What it takes of the part.
+    /// Resources of the part that the design uses.
     pub size: Size,
-    /// The placement that was taken.
+    /// Seed of the placement that was used.
     pub seed: u32,
-    /// The clock that it reaches, MHz, as nextpnr has it,
+    /// Greatest clock according to nextpnr, MHz.
     pub mhz: f64,
-    /// and as icetime has it.
+    /// Greatest clock according to icetime, MHz.
     pub icetime_mhz: f64,
     /// The bitstream.
     pub bitstream: Vec<u8>,
 }
 
 impl Built {
-    /// Whether nextpnr says that a clock, Hz, is reached.
+    /// Whether nextpnr reports that a clock, Hz, is reached.
     pub fn reaches(&self, clock_hz: u64) -> bool {
         self.mhz * 1e6 >= clock_hz as f64
     }
 }
 
-/// Builds a bitstream; `stage` hears of each program before it is started.
+/// Builds a bitstream. `stage` is called with the name of each program before it is started.
 ///
 /// # Errors
-/// [`SynthesisError`]: a tool is missing or refuses the design; for want of room, it is nextpnr.
+/// [`SynthesisError`] if a tool is missing or refuses the design. If the design is too large, the
+/// tool is nextpnr.
 pub fn build(job: &Job<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
     stage("yosys");
     let netlist = ice40::synthesise_tight(job.verilog, job.top)?;
@@ -56,7 +58,7 @@ pub fn build(job: &Job<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, Synthe
     let mut failed = None;
     for seed in SEEDS {
         stage(&format!("nextpnr-ice40, seed {seed}"));
-        // Near a part's limits it is luck whether a placement is found.
+        // If a part is nearly full, only some seeds lead to a placement.
         match netlist.place_on(job.part, job.pcf, job.clock_hz, seed) {
             Ok(placed) if best.as_ref().is_none_or(|(_, best)| placed.mhz > best.mhz) => best = Some((seed, placed)),
             Ok(_) => {}
@@ -88,7 +90,7 @@ pub fn build(job: &Job<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, Synthe
     Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: slowest_path(&said)?, bitstream })
 }
 
-/// `Total path delay: 11.64 ns (85.92 MHz)`
+/// Reads the line `Total path delay: 11.64 ns (85.92 MHz)`.
 fn slowest_path(said: &str) -> Result<f64, SynthesisError> {
     let mhz =
         said.lines().find_map(|line| line.strip_prefix("Total path delay:")?.split_once('(')?.1.strip_suffix(" MHz)"));
@@ -101,7 +103,7 @@ mod tests {
     use super::slowest_path;
 
     #[test]
-    fn icetime_is_read() {
+    fn output_of_icetime_is_parsed() {
         let said =
             "// Reading input .asc file..\nTotal number of logic levels: 9\nTotal path delay: 11.64 ns (85.92 MHz)\n";
         assert_eq!(slowest_path(said).unwrap(), 85.92);

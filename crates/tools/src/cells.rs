@@ -1,4 +1,5 @@
-//! yosys' own models of cells: those that a design uses and no others, for all of them take yosys a minute.
+//! Extracts yosys' models of those cells that a design uses. With the models of all cells yosys
+//! would need a minute.
 
 use crate::SynthesisError;
 use crate::tool::YOSYS;
@@ -7,11 +8,11 @@ use std::collections::BTreeSet;
 
 /// The models of a vendor's cells.
 pub(crate) struct Library {
-    /// Where yosys keeps them, seen from the folder that it is in.
+    /// File of the models, relative to yosys' data directory.
     file: &'static str,
-    /// What all its cells' names begin with.
+    /// Prefix of the names of all these cells.
     cells: &'static str,
-    /// What goes before them.
+    /// Text that must precede the models.
     head: &'static str,
 }
 
@@ -24,19 +25,19 @@ pub(crate) const ICE40: Library = Library {
 pub(crate) const XILINX: Library =
     Library { file: "../share/yosys/xilinx/cells_sim.v", cells: r"\b[A-Z][A-Z0-9_]+\b", head: "" };
 
-/// A design for an iCE40, and before it the models of its cells.
+/// A design for an iCE40, preceded by the models of its cells.
 pub(crate) fn with_models(verilog: &str) -> Result<String, SynthesisError> {
     Ok(format!("{}{verilog}", models(&ICE40, verilog)?))
 }
 
-/// The models of all cells in a design that the library has.
+/// The models of those cells of a design that the library has.
 pub(crate) fn models(library: &Library, verilog: &str) -> Result<String, SynthesisError> {
     let known = text(library)?;
     let (head, _) = known.split_once("\nmodule ").ok_or_else(|| unread("a module in its models".to_owned()))?;
     let mut text = format!("{}{head}\n", library.head);
     let cell = pattern(library.cells);
     for name in cell.find_iter(verilog).map(|found| found.as_str()).collect::<BTreeSet<_>>() {
-        // Names of cells are parts of names of wires too: those are no modules.
+        // The names of cells also occur within the names of wires; only those of modules count.
         let begin = [" (", "("].iter().find_map(|ports| known.find(&format!("\nmodule {name}{ports}")));
         let Some(begin) = begin else { continue };
         let end = known[begin..].find("\nendmodule").ok_or_else(|| unread(format!("the end of {name}")))?;
@@ -58,10 +59,10 @@ fn unread(what: String) -> SynthesisError {
     SynthesisError::Unread { tool: YOSYS.name, what }
 }
 
-/// A pattern of this crate's own.
+/// Compiles a pattern that this crate defines.
 ///
 /// # Panics
-/// Where it is none: a bug that the first run shows.
+/// If the pattern is invalid, which is a bug that the first run shows.
 pub(crate) fn pattern(text: &str) -> Regex {
     Regex::new(text).expect("a fine pattern")
 }

@@ -1,6 +1,8 @@
-//! What stands between this machine and a running board: tools that are missing, ports that may not be opened, and why.
+//! Finds what prevents this machine from using a board: missing tools, ports that may not be
+//! opened, and the reasons.
 //!
-//! Nothing is opened and nothing is changed: to open a serial port would move its control lines, and with them some boards.
+//! Nothing is opened and nothing is changed. Opening a serial port would change its control lines,
+//! and some boards react to them, for example by a reset.
 
 mod access;
 mod host;
@@ -19,26 +21,26 @@ use serde::Serialize;
 /// What was found.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Report {
-    /// Tools that are wanted, whether they are there or not.
+    /// The tools that are needed, installed or not.
     pub tools: Vec<Found>,
     /// Serial ports of USB devices.
     pub serial_ports: Vec<SerialPort>,
-    /// USB devices that are one of the boards, by vendor and product.
+    /// USB devices whose vendor and product id are those of a board.
     pub usb_devices: Vec<UsbDevice>,
 }
 
 impl Report {
-    /// Looks at this machine; with a board, for what that one needs.
+    /// Inspects this machine. With a board, it looks for what that board needs.
     pub fn of(host: &Host, board: Option<&Board>) -> Self {
         Self { tools: tools(host, board), serial_ports: serial_ports(host), usb_devices: usb_devices(host) }
     }
 
-    /// No tool is missing.
+    /// Whether no tool is missing.
     pub fn has_all_tools(&self) -> bool {
         self.tools.iter().all(|tool| tool.path.is_some())
     }
 
-    /// Every port and device may be used.
+    /// Whether every port and device may be opened.
     pub fn has_all_access(&self) -> bool {
         let serial = self.serial_ports.iter().map(|port| &port.access);
         serial.chain(self.usb_devices.iter().map(|device| &device.access)).all(|access| *access == Access::Granted)

@@ -1,13 +1,19 @@
-//! Proofs that a stage of synthesis is the stage before it, for ever, by induction over one clock.
+//! Proves by induction over one clock that a stage of synthesis is equivalent to the stage before
+//! it.
 //!
-//! Both stages are cut at their block RAMs: what a memory reads is any word, the same on both sides; what it is asked
-//! and told must be equal. So both sides have the same flip-flops, matched by name, and the induction says: where
-//! all of them and all words read are equal, all outputs, all that the memories are told and the next flip-flops are equal.
-//! They start equal: a flip-flop of iCE40 is 0 after configuration, which a simulation from configuration shows too (the induction
-//! knows nothing of beginnings). That the memories themselves are the same ones, in mode and first contents, is [`memories`].
+//! Both stages are cut at their block RAMs. The words that a memory reads become free inputs, equal
+//! on both sides; the addresses, data and enables of a memory become outputs, which must be equal.
+//! Both sides then have the same flip-flops, matched by name. The induction step is: if all
+//! flip-flops and all words read are equal, then all outputs, all inputs of the memories and the
+//! next values of the flip-flops are equal.
 //!
-//! What is left to simulation: how yosys reads the Verilog, its word-level optimisation, and its choice of block RAMs for
-//! memories (`synth_ice40` up to `map_ffram`). All that is after it (gates, flip-flops, LUTs, carry) is proved.
+//! The induction does not cover the initial state. All flip-flops of an iCE40 are 0 after
+//! configuration, and a simulation from configuration confirms the equal start. [`memories`]
+//! compares the modes and the initial contents of the memories themselves.
+//!
+//! Three steps are not proved but only simulated: how yosys reads the Verilog, its word-level
+//! optimisation, and its choice of block RAMs for memories (`synth_ice40` up to `map_ffram`). All
+//! later steps (gates, flip-flops, LUTs, carry) are proved.
 
 use crate::SynthesisError;
 use crate::cells::{self, ICE40, pattern};
@@ -16,19 +22,21 @@ use crate::inverses::with_inverses;
 use crate::tool::{self, YOSYS};
 use std::collections::BTreeMap;
 
-/// What a proof came to.
+/// Result of a proof.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
-    /// So many pairs of wires are equal for ever.
+    /// This number of pairs of wires is proved to be equal at all times.
     Proved(u32),
-    /// So many of so many pairs are not shown to be equal.
+    /// The first number is how many pairs could not be proved to be equal; the second is the number
+    /// of all pairs.
     Open(u32, u32),
 }
 
-/// The Verilog, after `synth_ice40` has found its memories, against the netlist `verilog` that has come of it.
+/// Compares the Verilog, after `synth_ice40` has mapped its memories, with the netlist `verilog`
+/// that was made from it.
 ///
 /// # Errors
-/// [`SynthesisError`]: yosys is missing, or a name has been lost that the proof needs.
+/// [`SynthesisError`] if yosys is missing, or if a name that the proof needs has been lost.
 pub fn verilog_and_netlist(core: &str, netlist: &Netlist, verilog: &str) -> Result<Verdict, SynthesisError> {
     let top = netlist.top();
     let gold = format!(
@@ -44,19 +52,19 @@ pub fn verilog_and_netlist(core: &str, netlist: &Netlist, verilog: &str) -> Resu
     prove(top, &gold, core, &with_inverses(verilog, &words, netlist.json()))
 }
 
-/// The netlist against the bitstream that has been read back.
+/// Compares the netlist with the bitstream that was read back.
 ///
 /// # Errors
-/// [`SynthesisError`]: yosys is missing, or a name has been lost that the proof needs.
+/// [`SynthesisError`] if yosys is missing, or if a name that the proof needs has been lost.
 pub fn netlist_and_bitstream(netlist: &Netlist, read_back: &str) -> Result<Verdict, SynthesisError> {
     let top = netlist.top();
     prove(top, &cells_in("core.v", top), &netlist.verilog, read_back)
 }
 
-/// The block RAMs that `synth_ice40` finds for the memories of Verilog, as [`memories`].
+/// The block RAMs to which `synth_ice40` maps the memories of Verilog, as [`memories`].
 ///
 /// # Errors
-/// [`SynthesisError`]: yosys is missing or refuses the text.
+/// [`SynthesisError`] if yosys is missing or refuses the text.
 pub fn memories_of_verilog(core: &str, top: &str) -> Result<Memories, SynthesisError> {
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", core)?;
@@ -65,7 +73,7 @@ pub fn memories_of_verilog(core: &str, top: &str) -> Result<Memories, SynthesisE
     Ok(memories(&tool::read(folder.path(), "words.v")?))
 }
 
-/// As far as words and block RAMs; gates and LUTs come after it.
+/// The commands of synthesis up to words and block RAMs; gates and LUTs follow after them.
 fn to_words(top: &str) -> String {
     format!("synth_ice40 -top {top} -run begin:map_ffram")
 }
@@ -73,7 +81,8 @@ fn to_words(top: &str) -> String {
 /// Parameters of block RAMs, by name.
 pub type Memories = BTreeMap<String, BTreeMap<String, String>>;
 
-/// Modes and first contents of a design's block RAMs, by name. What is never read (`x`) is 0 in a bitstream.
+/// Modes and initial contents of a design's block RAMs, by name. Contents that are never read (`x`)
+/// are 0 in a bitstream.
 pub fn memories(verilog: &str) -> Memories {
     let memory = pattern(r"(?s)SB_RAM40_4K #\((.*?)\n\s*\) *\\?(\S+) *\(");
     let parameter = pattern(r"\.(\w+)\((?:\d+'[hd])?(\w+)\)");
@@ -84,10 +93,11 @@ pub fn memories(verilog: &str) -> Memories {
     all.collect()
 }
 
-/// Makes what a memory is told an output, and what it reads an input.
+/// Commands that cut a design at its memories: their inputs become outputs of the design, and their
+/// outputs become inputs.
 const CUT: &str = "setundef -undriven -zero; expose -evert t:SB_RAM40_4K";
 
-/// Reads a design of cells, and cuts it.
+/// Commands that read a design of cells and cut it.
 fn cells_in(file: &str, top: &str) -> String {
     format!(
         "read_verilog cells.v {file}; blackbox SB_RAM40_4K; hierarchy -top {top}; proc; flatten; {CUT}; opt_clean; \
@@ -95,7 +105,7 @@ fn cells_in(file: &str, top: &str) -> String {
     )
 }
 
-/// Proves that two designs are one.
+/// Proves that two designs are equivalent.
 fn prove(top: &str, gold: &str, gold_text: &str, gate_text: &str) -> Result<Verdict, SynthesisError> {
     let folder = tool::folder()?;
     let both = format!("{gold_text}{gate_text} SB_RAM40_4K");

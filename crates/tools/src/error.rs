@@ -1,4 +1,4 @@
-//! What can go wrong with tools and their files.
+//! Errors of tools and of their files.
 
 use crate::programs::Tool;
 use thiserror::Error;
@@ -12,28 +12,28 @@ pub enum SynthesisError {
     /// A program failed.
     #[error("{tool} failed: {message}")]
     Tool {
-        /// Its name.
+        /// Name of the program.
         tool: &'static str,
-        /// The end of what it said.
+        /// The last lines of its output.
         message: String,
     },
-    /// A program's output is not what it was with the versions that are known.
+    /// The output of a program does not have the format of the supported versions.
     #[error("cannot read what {tool} says: {what}")]
     Unread {
-        /// Its name.
+        /// Name of the program.
         tool: &'static str,
-        /// What was looked for.
+        /// The text that was not found.
         what: String,
     },
     /// A file could not be read or written.
     #[error("{context}: {source}")]
     Io {
-        /// What was tried.
+        /// The operation that failed.
         context: String,
-        /// The system's answer.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// Gateware that is to be built cannot be made.
+    /// The gateware to be built cannot be generated.
     #[error("{0}")]
     Gateware(String),
 }

@@ -1,4 +1,5 @@
-//! Verilog to an iCE40 bitstream by yosys, nextpnr and icepack; and what each stage says of it.
+//! Turns Verilog into an iCE40 bitstream with yosys, nextpnr and icepack, and reads the figures of
+//! each stage.
 
 use crate::cells::pattern;
 use crate::tool::{self, ICEBOX_VLOG, ICEPACK, ICEUNPACK, NEXTPNR, PYTHON};
@@ -7,26 +8,26 @@ use serde_json::Value;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// A part: what nextpnr calls its device, and its package.
+/// A part: nextpnr's names of its device and of its package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Part<'a> {
-    /// `hx8k`, `up5k` and so on.
+    /// Device, such as `hx8k` or `up5k`.
     pub device: &'a str,
-    /// `ct256` and so on.
+    /// Package, such as `ct256`.
     pub package: &'a str,
 }
 
-/// What a design takes of a part.
+/// Resources of a part that a design uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
-    /// Logic cells: a LUT, a flip-flop, a bit of carry, or all three.
+    /// Logic cells. A cell holds a LUT, a flip-flop, a bit of carry, or all three.
     pub logic_cells: u32,
     /// Block RAMs of 4 kbit.
     pub block_rams: u32,
 }
 
 impl Size {
-    /// What nextpnr's log says of it.
+    /// Parses nextpnr's log.
     fn of(log: &str) -> Result<Self, SynthesisError> {
         Ok(Self { logic_cells: used(log, "ICESTORM_LC:")?, block_rams: used(log, "ICESTORM_RAM:")? })
     }
@@ -35,9 +36,10 @@ impl Size {
 /// A synthesised design.
 pub struct Netlist {
     top: String,
-    /// What nextpnr places.
+    /// The design in the format that nextpnr reads.
     json: String,
-    /// The same as Verilog, of cells that simulators do not know: see [`Netlist::simulated`].
+    /// The design as Verilog made of cells. Simulators need their models: see
+    /// [`Netlist::simulated`].
     pub verilog: String,
 }
 
@@ -45,27 +47,30 @@ pub struct Netlist {
 pub struct Placed {
     /// Configuration bits as text, one tile after the other.
     pub asc: String,
-    /// The greatest clock at which every path between flip-flops and memories is in time, by nextpnr's models.
+    /// Greatest clock, MHz, at which every path between flip-flops and memories meets its timing,
+    /// according to nextpnr.
     pub mhz: f64,
-    /// What it takes.
+    /// Resources that the design uses.
     pub size: Size,
-    /// Where every cell is.
+    /// Location of every cell.
     placement: Value,
 }
 
 /// Synthesises Verilog.
 ///
-/// What `synth_ice40` does, but that names are given before logic is mapped as well: a register that starts at 1
-/// is stored inverted, and is mostly known afterwards by `NAME_$_NOT__Y_A`, which the proofs look for.
+/// The script is that of `synth_ice40`, except that names are also assigned before logic is mapped.
+/// A register that starts at 1 is stored inverted, and is then mostly called `NAME_$_NOT__Y_A`,
+/// which the proofs look for.
 ///
 /// # Errors
-/// [`SynthesisError`]: yosys is missing, refuses the text, or a file cannot be used.
+/// [`SynthesisError`] if yosys is missing or refuses the text, or if a file cannot be used.
 pub fn synthesise(verilog: &str, top: &str) -> Result<Netlist, SynthesisError> {
     synthesise_with(verilog, top, "")
 }
 
-/// The same for a part that is nearly full: eight logic cells of a tile share one enable, so enables of fewer than four
-/// flip-flops are made of logic. On an HX1K the placer finds places within seconds, and mostly none without it.
+/// As [`synthesise`], for a part that is nearly full. The eight logic cells of a tile share one
+/// enable, so enables of fewer than four flip-flops are replaced by logic. On an HX1K the placer
+/// then finds a placement within seconds; without this it mostly finds none.
 ///
 /// # Errors
 /// As [`synthesise`].
@@ -89,37 +94,39 @@ impl Netlist {
     /// The netlist with yosys' models of its cells, for simulators.
     ///
     /// # Errors
-    /// [`SynthesisError`]: yosys' models are not found.
+    /// [`SynthesisError`] if yosys' models are not found.
     pub fn simulated(&self) -> Result<String, SynthesisError> {
         cells::with_models(&self.verilog)
     }
 
-    /// Itself, as yosys' JSON.
+    /// The netlist as yosys' JSON.
     pub(crate) fn json(&self) -> &str {
         &self.json
     }
 
-    /// What it takes, without placing it.
+    /// The resources that the netlist uses, without a placement.
     ///
     /// # Errors
-    /// [`SynthesisError`]: nextpnr is missing or fails.
+    /// [`SynthesisError`] if nextpnr is missing or fails.
     pub fn size(&self, part: Part<'_>) -> Result<Size, SynthesisError> {
         let (_, log) = self.nextpnr(part, None, &["--pack-only"])?;
         Size::of(&log)
     }
 
-    /// Places and routes it for a clock, whether that is reached or not; pins where nextpnr likes.
+    /// Places and routes the netlist for a clock, Hz, on pins of nextpnr's choice. A missed clock
+    /// is not an error.
     ///
     /// # Errors
-    /// [`SynthesisError`]: nextpnr is missing, or the part is too small.
+    /// [`SynthesisError`] if nextpnr is missing, or if the part is too small.
     pub fn place(&self, part: Part<'_>, clock_hz: u64, seed: u32) -> Result<Placed, SynthesisError> {
         self.placed(part, None, clock_hz, seed)
     }
 
-    /// Places and routes it on these pins, which must be all of them, whether the clock is reached or not.
+    /// Places and routes the netlist for a clock, Hz, on the pins of `pcf`, which must list every
+    /// port. A missed clock is not an error.
     ///
     /// # Errors
-    /// [`SynthesisError`]: nextpnr is missing, the part is too small, or a port has no pin.
+    /// [`SynthesisError`] if nextpnr is missing, if the part is too small, or if a port has no pin.
     pub fn place_on(&self, part: Part<'_>, pcf: &str, clock_hz: u64, seed: u32) -> Result<Placed, SynthesisError> {
         self.placed(part, Some(pcf), clock_hz, seed)
     }
@@ -137,7 +144,7 @@ impl Netlist {
         })
     }
 
-    /// Runs nextpnr; its folder and its log.
+    /// Runs nextpnr. Returns its directory and its log.
     fn nextpnr(
         &self,
         part: Part<'_>,
@@ -155,18 +162,19 @@ impl Netlist {
         Ok((folder, log))
     }
 
-    /// Name of its module.
+    /// Name of the top module.
     pub(crate) fn top(&self) -> &str {
         &self.top
     }
 }
 
 impl Placed {
-    /// The bitstream of these configuration bits, read back as Verilog: the netlist's ports, the names of its
-    /// flip-flops and memories, and nothing else of it. `asc` is [`Placed::asc`], or that with a bit changed.
+    /// Reads the bitstream of these configuration bits back as Verilog. Of the netlist, only the
+    /// ports and the names of its flip-flops and memories are used. `asc` is [`Placed::asc`],
+    /// possibly with a bit changed.
     ///
     /// # Errors
-    /// [`SynthesisError`]: a tool of icestorm is missing or fails.
+    /// [`SynthesisError`] if a tool of icestorm is missing or fails.
     pub fn read_back(&self, netlist: &Netlist, asc: &str) -> Result<String, SynthesisError> {
         let folder = tool::folder()?;
         tool::write(folder.path(), "placed.asc", asc)?;
@@ -177,7 +185,8 @@ impl Placed {
     }
 }
 
-/// Runs icebox_vlog on `back.asc`; where it stops at a UP5K's `SB_PLL40_CORE`, with what its table of that lacks.
+/// Runs icebox_vlog on `back.asc`. Where it stops at the `SB_PLL40_CORE` of a UP5K, the entry that
+/// its table lacks is added.
 fn icebox_vlog(folder: &Path) -> Result<String, SynthesisError> {
     match tool::run(&ICEBOX_VLOG, folder, &["-S", "back.asc"]) {
         Err(SynthesisError::Tool { message, .. }) if message.contains("KeyError: 'SHIFTREG_DIV_MODE'") => {
@@ -188,10 +197,10 @@ fn icebox_vlog(folder: &Path) -> Result<String, SynthesisError> {
     }
 }
 
-/// Read back Verilog with yosys' models of the memories, for simulators.
+/// Verilog that was read back, with yosys' models of the memories, for simulators.
 ///
 /// # Errors
-/// [`SynthesisError`]: yosys' models are not found.
+/// [`SynthesisError`] if yosys' models are not found.
 pub fn simulated(read_back: &str) -> Result<String, SynthesisError> {
     cells::with_models(read_back)
 }
@@ -200,17 +209,17 @@ fn unread(what: String) -> SynthesisError {
     SynthesisError::Unread { tool: NEXTPNR.name, what }
 }
 
-/// The number behind a name in nextpnr's report of what it has packed.
+/// The number behind a name in nextpnr's report on packing.
 fn used(log: &str, name: &str) -> Result<u32, SynthesisError> {
     let line = log.lines().find(|line| line.contains(name) && line.contains('%'));
     let number = line.and_then(|line| line.split(name).nth(1)?.split('/').next()?.trim().parse().ok());
     number.ok_or_else(|| unread(name.to_owned()))
 }
 
-/// The last clock that nextpnr reports is that of the routed design.
+/// The last clock in nextpnr's log, which is that of the routed design.
 fn greatest_clock(log: &str) -> Result<f64, SynthesisError> {
     let clock = pattern(r"Max frequency for clock +'(\S+)': ([0-9.]+) MHz");
-    // What is said last of each clock counts; the slowest one is the design's.
+    // The last figure of each clock counts; the slowest clock is the design's.
     let last: HashMap<&str, f64> =
         clock.captures_iter(log).filter_map(|found| Some((found.get(1)?.as_str(), found[2].parse().ok()?))).collect();
     last.into_values().min_by(f64::total_cmp).ok_or_else(|| unread("Max frequency for clock".to_owned()))

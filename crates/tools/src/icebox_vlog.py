@@ -1,5 +1,6 @@
-# icebox_vlog, with the name that its table of the UP5K's PLL lacks: without it, it stops at an SB_PLL40_CORE. What the bit does is of
-# no interest to who reads this back, for the PLL is a model of the bench.
+# Runs icebox_vlog with an entry that its table for the PLL of the UP5K lacks; without the entry it
+# stops at an SB_PLL40_CORE. The function of that bit does not matter here, because the bench
+# replaces the PLL by a model.
 import os
 import runpy
 import shutil

@@ -1,17 +1,20 @@
-//! Registers that start at 1, in a netlist whose flip-flops start at 0: they are stored inverted, and may lose their names.
+//! Restores the names of registers that start at 1. The flip-flops of the netlist start at 0, so
+//! such registers are stored inverted and may lose their names.
 //!
-//! A name is only a hint to the proof, which fails where it is wrong.
+//! A name is only a hint for the proof: with a wrong name the proof fails.
 
 use crate::cells::pattern;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A bit of a wire: its name, its place, and how wide the wire is.
+/// A bit of a wire: name of the wire, index of the bit, and width of the wire.
 type Named = (String, usize, usize);
 
-/// Gives inverses their registers' names: `NAME_$_NOT__Y_A`, and the one, if there is one, whose name says nothing.
+/// Names inverted flip-flops after their registers: those called `NAME_$_NOT__Y_A`, and the one
+/// without a meaningful name, if there is exactly one.
 ///
-/// `words` is the design before gates, `netlist` after them, both as yosys' JSON; `verilog` the netlist, or what was made of it.
+/// `words` is the design before mapping to gates, and `netlist` the design after it, both as yosys'
+/// JSON. `verilog` is the netlist, or what was made from it.
 pub(crate) fn with_inverses(verilog: &str, words: &str, netlist: &str) -> String {
     let inverse = pattern(r"(?m)^  wire \\?((\w+(?:\.\w+)*)_\$_NOT__Y_A) ?;$");
     let names = inverse.captures_iter(verilog).map(|found| (found[1].to_owned(), found[2].to_owned()));
@@ -26,7 +29,8 @@ pub(crate) fn with_inverses(verilog: &str, words: &str, netlist: &str) -> String
     verilog.replacen("endmodule", &format!("{wires}endmodule"), 1)
 }
 
-/// The register that starts at 1 and that no flip-flop is called after, and the flip-flop that is called after nothing, where there is one of each.
+/// The register that starts at 1 and has no flip-flop of its name, and the flip-flop without a
+/// meaningful name, if there is exactly one of each.
 fn nameless(words: &str, netlist: &str) -> Option<(Named, Named)> {
     let (words, netlist) = (Design::of(words)?, Design::of(netlist)?);
     let driven = |(name, place, _): &Named| {
@@ -43,7 +47,7 @@ fn nameless(words: &str, netlist: &str) -> Option<(Named, Named)> {
         flip_flops.filter(|names| names.iter().all(made_up) && !names.iter().any(is_inverse)).collect();
     match (&lost[..], &orphans[..]) {
         ([register], [flip_flop]) => {
-            // The netlist may know it by a shorter name than the design.
+            // The netlist may use a shorter one of the register's names.
             let known = register.iter().find(|(name, ..)| netlist.wires.contains_key(name))?;
             let alias = netlist.wires[&known.0].get(known.1).and_then(|bit| netlist.names(*bit).into_iter().next())?;
             Some((alias, flip_flop.first()?.clone()))
@@ -56,18 +60,18 @@ fn bit((name, place, width): &Named) -> String {
     if *width == 1 { format!("\\{name} ") } else { format!("\\{name} [{place}]") }
 }
 
-/// A module of yosys' JSON: bits are numbers.
+/// A module of yosys' JSON, in which bits are numbers.
 struct Design {
     wires: BTreeMap<String, Vec<u64>>,
     driven: BTreeSet<u64>,
-    /// What flip-flops hold.
+    /// The bits that flip-flops hold.
     registers: BTreeSet<u64>,
-    /// What is 1 at first.
+    /// The bits whose initial value is 1.
     ones: BTreeSet<u64>,
 }
 
 impl Design {
-    /// The only module with cells.
+    /// Reads the only module that contains cells.
     fn of(json: &str) -> Option<Self> {
         let json: Value = serde_json::from_str(json).ok()?;
         let modules = json["modules"].as_object()?;
@@ -78,7 +82,7 @@ impl Design {
         let wires = top["netnames"].as_object()?;
         let mut ones = BTreeSet::new();
         for wire in wires.values() {
-            // The highest bit first.
+            // The attribute lists the highest bit first.
             let first = wire["attributes"]["init"].as_str().unwrap_or("");
             let first_bits = bits(&wire["bits"]).into_iter().zip(first.chars().rev());
             ones.extend(first_bits.filter_map(|(bit, first)| (first == '1').then_some(bit)));

@@ -1,5 +1,6 @@
 //! Programs of others: which there are ([`programs`]), whether they are installed ([`doctor`]), and
-//! how they are run: Verilog to netlist, placed design and bitstream, and back to Verilog; and what it costs.
+//! how they are run, from Verilog to netlist, placed design and bitstream and back to Verilog, with
+//! the resources used.
 //!
 //! ```text
 //! Verilog --yosys--> netlist --nextpnr--> placed --icepack--> bitstream
@@ -7,7 +8,7 @@
 //!    Verilog with the netlist's names <--icebox_vlog-- iceunpack <+
 //! ```
 //!
-//! Nothing here knows the engine but [`resources`], which is the table of what it costs.
+//! Only [`resources`], the table of the engine's resources, depends on the engine.
 
 pub mod board;
 mod cells;

@@ -1,5 +1,6 @@
-//! `cargo xtask resources`: measures every row and writes `hdl-out/resources.md`; with the argument `boards`, which `cargo xtask
-//! long boards` gives, builds all boards and writes `hdl-out/boards.md` and the figures that `carrystep boards` shows.
+//! `cargo xtask resources` measures every row and writes `hdl-out/resources.md`. With the argument
+//! `boards` (from `cargo xtask long boards`) it builds all boards, and writes `hdl-out/boards.md`
+//! and the figures that `carrystep boards` shows.
 
 use carrystep_boards::MEASURED_AT;
 use carrystep_tools::board::page;
@@ -10,7 +11,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 fn say(line: &str) {
-    // Nobody is left to tell if this fails.
+    // If standard error cannot be written, there is nowhere to report it.
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
@@ -28,10 +29,10 @@ fn main() -> ExitCode {
     }
 }
 
-/// What is written above the figures of the boards.
+/// Text above the figures of the boards.
 const HEAD: &str = "# What the shipped gateware takes of each board, on its first part with its first clock. Written by `cargo xtask long boards`.\n\n";
 
-/// All boards; one that does not reach its clock stands in the table, and is a failure.
+/// Builds all boards. A board that misses its clock is entered in the table, and is an error.
 fn boards() -> Result<(), String> {
     let all = page::measure(&mut say).map_err(|error| error.to_string())?;
     let text = page::page(&all);
@@ -45,14 +46,14 @@ fn boards() -> Result<(), String> {
     Ok(())
 }
 
-/// Whole or not at all.
+/// Writes a file that appears completely or not at all.
 fn write(page: &str, text: &str) -> Result<(), String> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(page);
     let next = path.with_extension("new");
     std::fs::write(&next, text).and_then(|()| std::fs::rename(&next, &path)).map_err(|error| error.to_string())
 }
 
-/// The page is written as it was measured, then held against its budgets.
+/// Measures all rows, writes the page, and then checks it against the budgets.
 fn resources() -> Result<(), String> {
     let (mut rows, mut families) = (Vec::new(), Vec::new());
     for row in &ROWS {
@@ -72,7 +73,7 @@ fn resources() -> Result<(), String> {
     let text = resources::page(&rows, &links, &families);
     write(PAGE, &text)?;
     resources::check(&text)?;
-    // For the row of `cargo xtask long`.
+    // A line for the table of `cargo xtask long`.
     say(&format!("FIGURES {} rows of iCE40, {} of Xilinx, each within its budget", rows.len(), families.len()));
     Ok(())
 }

@@ -1,23 +1,23 @@
-//! Programs of others that are run: what one types, how they say their version, what they are wanted for, how to get them.
+//! External programs that carrystep runs: name, version option, purpose and ways to install.
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// A program.
+/// An external program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Tool {
-    /// What one types; those of `yowasp-*` packages have that before it.
+    /// Name of the command. Packages of pip install it with the prefix `yowasp-`.
     pub name: &'static str,
-    /// The option that shows its version; some have none, or take seconds.
+    /// The option that prints its version. `None` if there is none, or if it takes seconds.
     pub version: Option<&'static str>,
-    /// What it is wanted for.
+    /// Purpose of the tool.
     pub purpose: &'static str,
-    /// Ways to get it: commands, where there is one.
+    /// Ways to install it, as commands if possible.
     pub install: &'static [&'static str],
 }
 
 impl Tool {
-    /// How to get it, for a message: `` `one command` or `another` ``.
+    /// The ways to install it, for a message: `` `one command` or `another` ``.
     pub fn ways(&self) -> String {
         let ways: Vec<String> = self.install.iter().map(|way| format!("`{way}`")).collect();
         ways.join(" or ")
@@ -40,36 +40,36 @@ const NEXTPNR_FROM: &[&str] = &["sudo apt-get install nextpnr-ice40", "pip insta
 
 /// Simulates Verilog.
 pub const ICARUS: Tool = tool("iverilog", Some("-V"), "--level icarus", &["sudo apt-get install iverilog"]);
-/// Makes a program of Verilog, which simulates it.
+/// Compiles Verilog into a program that simulates it.
 pub const VERILATOR: Tool =
     tool("verilator", Some("--version"), "--level verilator", &["sudo apt-get install verilator g++ make"]);
-/// Answers the questions of proofs.
+/// The solver of the proofs.
 pub const Z3: Tool = tool("z3", Some("--version"), "cargo xtask prove", &["sudo apt-get install z3"]);
-/// Makes netlists.
+/// Synthesises netlists.
 pub const YOSYS: Tool = tool("yosys", Some("-V"), "synthesis", YOSYS_FROM);
-/// Asks a solver for yosys.
+/// Runs a solver on proofs prepared by yosys.
 pub const YOSYS_SMTBMC: Tool = tool("yosys-smtbmc", None, "cargo xtask prove", YOSYS_FROM);
-/// Looks for runs, bit by bit.
+/// Searches counterexamples with bit-level engines.
 pub const YOSYS_ABC: Tool = tool("yosys-abc", None, "cargo xtask prove", YOSYS_FROM);
-/// Places and routes.
+/// Places and routes for iCE40.
 pub const NEXTPNR: Tool = tool("nextpnr-ice40", Some("--version"), "place and route for iCE40", NEXTPNR_FROM);
-/// Makes a bitstream.
+/// Packs a bitstream for iCE40.
 pub const ICEPACK: Tool = tool("icepack", None, "bitstreams for iCE40", PACK);
-/// Reads a bitstream.
+/// Unpacks a bitstream of an iCE40.
 pub const ICEUNPACK: Tool = tool("iceunpack", None, "bitstreams read back", PACK);
-/// Finds the slowest path.
+/// Analyses the timing of an iCE40 design.
 pub const ICETIME: Tool = tool("icetime", None, "timing of iCE40", ICESTORM);
-/// Makes Verilog of a bitstream.
+/// Converts an unpacked bitstream to Verilog.
 pub const ICEBOX_VLOG: Tool = tool("icebox_vlog", None, "bitstreams read back", ICESTORM);
-/// Runs icebox_vlog, which is a script.
+/// Runs icebox_vlog, which is a Python script.
 pub const PYTHON: Tool = tool("python3", Some("--version"), "bitstreams read back", &["sudo apt-get install python3"]);
-/// Maps, places and routes for Spartans up to the sixth.
+/// Maps, places and routes for Spartan parts up to Spartan-6 (ISE).
 pub const XST: Tool =
     tool("xst", None, "ISE 14.7", &["ISE 14.7 from AMD's download archive, then source its settings64.sh"]);
-/// The same for the seventh.
+/// Synthesises, places and routes for Spartan-7.
 pub const VIVADO: Tool = tool("vivado", None, "Vivado", &["Vivado from AMD, then source its settings64.sh"]);
 
-/// What loads a bitstream into a board.
+/// Programs that load a bitstream into a board.
 pub const PROGRAMMERS: [Tool; 6] = [
     tool("iceprog", None, "loading", &["sudo apt-get install fpga-icestorm"]),
     tool("tinyprog", Some("--version"), "loading", &["pip install tinyprog"]),

@@ -1,8 +1,10 @@
-//! What icebox_vlog reads out of a bitstream, with the ports of the design and the names of its flip-flops and memories.
+//! Adds the design's ports, and the names of its flip-flops and memories, to what icebox_vlog reads
+//! from a bitstream.
 //!
-//! icebox_vlog knows places only: `io_0_7_1` is a pin, `ram40_8_5` a memory, `/* FF 2 8 3 */` a flip-flop. nextpnr has
-//! told which cell it put where, so every place has one name, and a bit that moved or changed has nowhere to hide. Names come from the
-//! placement, function from the bits alone.
+//! icebox_vlog knows places only: `io_0_7_1` is a pin, `ram40_8_5` a memory, `/* FF 2 8 3 */` a
+//! flip-flop. nextpnr's placement gives the cell at each place, so every place has exactly one
+//! name. The names come from the placement; the function comes from the bits alone, so that a bit
+//! that moved or changed is detected.
 
 use crate::SynthesisError;
 use crate::cells::pattern;
@@ -28,7 +30,7 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
     for (ram, name) in &places.memories {
         names.insert(ram.clone(), format!("\\{name} "));
     }
-    // A flip-flop on a pin has the pin's wire: the flip-flop's name is the one that matters.
+    // A flip-flop on a pin shares the pin's wire; the name of the flip-flop is used.
     for found in pattern(r"/\* FF +(\d+) +(\d+) +(\d+) \*/ always @\(posedge \w+\) .*? (\w+) <=").captures_iter(body) {
         let (_, [x, y, z, wire]) = found.extract();
         let name = places.flip_flops.get(&format!("X{x}/Y{y}/lc{z}")).ok_or_else(|| unread("an unknown flip-flop"))?;
@@ -68,9 +70,9 @@ pub(crate) fn named(text: &str, placement: &Value, top: &str) -> Result<String, 
     Ok(format!("module {top} (\n{}\n);\n{body}\n{wires}endmodule\n", ports.join(",\n")))
 }
 
-/// Which cell is where, as nextpnr has placed it.
+/// The cell at each place, according to nextpnr's placement.
 struct Places {
-    /// `io_X_Y_Z`, and the bit of a port on it.
+    /// `io_X_Y_Z`, and the port bit on that pin.
     pins: BTreeMap<String, String>,
     /// `ram40_X_Y`, and the name of the memory.
     memories: BTreeMap<String, String>,
@@ -112,7 +114,8 @@ impl Places {
         Ok(places)
     }
 
-    /// The wire on which a PLL takes a pad's level, and that pad: the only placed one that icebox_vlog shows nowhere else.
+    /// The wire by which a PLL reads the level of a pad, and that pad. It is the only placed pin
+    /// that icebox_vlog shows nowhere else.
     fn pad_of_pll(&self, body: &str) -> Result<Option<(String, String)>, SynthesisError> {
         let Some(wire) = pattern(r"\.PACKAGEPIN\((n\d+)\)").captures(body) else { return Ok(None) };
         let shown: HashSet<&str> = pattern(r"\bio_\d+_\d+_\d+\b").find_iter(body).map(|io| io.as_str()).collect();

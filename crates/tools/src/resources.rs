@@ -1,7 +1,7 @@
-//! What the engine costs: the rows of `hdl-out/resources.md`, as data, with their budgets.
+//! The resources of the engine: the rows of `hdl-out/resources.md` as data, with their budgets.
 //!
-//! `cargo xtask resources` measures all of it and writes the page; `tests/system/engine_fits_its_budget.rs` measures what is quick in
-//! every test run, and fails where a change goes over budget.
+//! `cargo xtask resources` measures all rows and writes the page. `tests/engine_fits_its_budget.rs`
+//! measures the quick rows in every test run, and fails if a change exceeds the budget.
 
 mod link;
 mod measure;

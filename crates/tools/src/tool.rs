@@ -1,4 +1,4 @@
-//! Running a tool in a folder, and files in that folder.
+//! Runs a tool in a directory, and reads and writes files there.
 
 use crate::SynthesisError;
 use crate::programs::Tool;
@@ -6,13 +6,13 @@ pub(crate) use crate::programs::{ICEBOX_VLOG, ICEPACK, ICETIME, ICEUNPACK, NEXTP
 use std::path::Path;
 use std::process::Command;
 
-/// How much of a failed tool's words is kept.
+/// Number of lines of a failed tool's output that are kept.
 const LAST_LINES: usize = 12;
 
-/// Runs a tool to its end; what it writes to its standard output.
+/// Runs a tool to its end, and returns its standard output.
 pub(crate) fn run(tool: &Tool, folder: &Path, arguments: &[&str]) -> Result<String, SynthesisError> {
     let start = |name: &str| Command::new(name).args(arguments).current_dir(folder).output();
-    // The same tools from pip have a name of their own.
+    // The packages of pip install the same tools under another name.
     let output = start(tool.name).or_else(|_| start(&format!("yowasp-{}", tool.name)));
     let output = output.map_err(|_| SynthesisError::Missing(*tool))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
@@ -40,7 +40,7 @@ pub(crate) fn write(folder: &Path, name: &str, text: &str) -> Result<(), Synthes
     std::fs::write(folder.join(name), text).map_err(|source| SynthesisError::Io { context: context(), source })
 }
 
-/// A folder that is gone when it is no longer needed.
+/// A temporary directory, which is removed when the value is dropped.
 pub(crate) fn folder() -> Result<tempfile::TempDir, SynthesisError> {
     let context = || "cannot make a temporary folder".to_owned();
     tempfile::tempdir().map_err(|source| SynthesisError::Io { context: context(), source })

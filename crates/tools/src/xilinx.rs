@@ -1,4 +1,5 @@
-//! What yosys makes of Verilog for Xilinx families: cells only, for their own tools place them.
+//! Synthesises Verilog to the cells of Xilinx families with yosys. Placement is left to the tools
+//! of the vendor.
 
 mod edif;
 mod models;
@@ -10,10 +11,10 @@ use crate::SynthesisError;
 use crate::tool::{self, YOSYS};
 use carrystep_boards::Mapped;
 
-/// Counts what `synth_xilinx` makes of a design for `xc3s`, `xc6s`, `xc7`.
+/// Counts the cells to which `synth_xilinx` maps a design for `xc3s`, `xc6s` or `xc7`.
 ///
 /// # Errors
-/// [`SynthesisError`]: yosys is missing or refuses the text.
+/// [`SynthesisError`] if yosys is missing or refuses the text.
 pub fn cells(verilog: &str, top: &str, family: &str) -> Result<Mapped, SynthesisError> {
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", verilog)?;
@@ -22,20 +23,21 @@ pub fn cells(verilog: &str, top: &str, family: &str) -> Result<Mapped, Synthesis
     count(&tool::read(folder.path(), "stat.txt")?)
 }
 
-/// Wide multiplexers are left out: with them, yosys 0.23 takes four times the cells.
+/// The commands of synthesis. They omit wide multiplexers, with which yosys 0.23 needs four times
+/// the cells.
 fn synthesis(family: &str, more: &str, top: &str) -> String {
     format!("synth_xilinx -family {family}{more} -nowidelut -flatten -top {top}")
 }
 
-/// What a board's build script has yosys do for ISE, after it has read the Verilog.
+/// The commands of yosys in a board's build script for ISE, after the Verilog was read.
 pub fn script_for_ise(family: &str, top: &str) -> String {
     format!("{}; clean -purge; write_edif -pvector bra {top}.edif", synthesis(family, " -ise", top))
 }
 
-/// The EDIF that ISE gets. Other families than ISE's get the same.
+/// The EDIF for ISE; the one for other families is made in the same way.
 ///
 /// # Errors
-/// [`SynthesisError`]: yosys is missing or refuses the text.
+/// [`SynthesisError`] if yosys is missing or refuses the text.
 pub fn to_edif(verilog: &str, top: &str, family: &str) -> Result<String, SynthesisError> {
     let folder = tool::folder()?;
     tool::write(folder.path(), "core.v", verilog)?;

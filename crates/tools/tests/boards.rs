@@ -1,11 +1,12 @@
-//! The committed gateware of two boards, built by the open tools: it fits, it is in time, and it is as the table says.
+//! Builds the committed gateware of two boards with the open tools. It must fit and reach its
+//! clock, and its figures must be those of the table.
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_boards::{AllMeasured, Measured, board, boards};
 use carrystep_tools::board::page::{PAGE, built, page, placed};
 use std::path::Path;
 
-/// Holds a board against its figures.
+/// Builds a board and compares the result with its figures.
 fn builds(name: &str) {
     let board = board(name).expect("a board");
     let built = built(board).expect("a bitstream");
@@ -16,7 +17,7 @@ fn builds(name: &str) {
 }
 
 #[test]
-fn the_page_is_of_these_figures() {
+fn page_shows_the_committed_figures() {
     let all: AllMeasured =
         boards().iter().map(|board| (board.name.clone(), board.measured().expect("figures"))).collect();
     let committed =
@@ -24,13 +25,13 @@ fn the_page_is_of_these_figures() {
     assert!(committed == page(&all), "{PAGE}: run `cargo xtask long boards`");
 }
 
-/// The smallest part: six axes, link and all in 1280 logic cells.
+/// The smallest part: an engine of six axes and the link in 1280 logic cells.
 #[test]
-fn the_icestick_holds_all_of_it() {
+fn icestick_holds_engine_and_link() {
     builds("icestick");
 }
 
 #[test]
-fn a_up5k_holds_all_of_it() {
+fn up5k_holds_engine_and_link() {
     builds("icesugar");
 }

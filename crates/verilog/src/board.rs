@@ -1,6 +1,8 @@
-//! What a board's toolchain needs beside the gateware: the clock, constraints, a build script, the wiring.
+//! Generates the files that a board's toolchain needs beside the gateware: clock module,
+//! constraints, build script and wiring.
 //!
-//! The top level is whoever's who calls: it says which ports it has, and this says where they go.
+//! The caller provides the top level. It lists the ports of the top level; this module assigns them
+//! to pins.
 
 mod clock;
 mod gateware;
@@ -22,32 +24,34 @@ use minijinja::{Environment, UndefinedBehavior, Value, context};
 pub struct Design<'a> {
     /// The board.
     pub board: &'a Board,
-    /// One of its parts.
+    /// The part on the board; one of the parts that the board is sold with.
     pub part: &'a Part,
-    /// Hz; the board's PLL, DCM or MMCM must be able to make it.
+    /// Clock of the gateware, Hz. The board's PLL, DCM or MMCM must be able to make it.
     pub clock_hz: u64,
-    /// The host link's UART, where it has one.
+    /// The host link's UART, if the link has one.
     pub uart: Option<Uart>,
-    /// Name of the top module, and of all files.
+    /// Name of the top module, and base name of all files.
     pub top: String,
-    /// Its Verilog, file names in the folder of the script.
+    /// Names of the Verilog files, in the directory of the script.
     pub sources: &'a [&'a str],
-    /// Its ports, bit by bit, of those in [`PORTS`]: `uart_rx`, `step[0]`. Each top level also has the port
-    /// [`OSCILLATOR`] and those of the board's ties and of its gate.
+    /// The bits of the top level's ports, such as `uart_rx` or `step[0]`, out of those of
+    /// [`PORTS`]. In addition, each top level has the port [`OSCILLATOR`], and the ports of the
+    /// board's ties and of its gate.
     pub ports: &'a [String],
 }
 
-/// The clock's module, instantiated by the top level: `oscillator` in, `clock` out.
+/// Name of the clock module, which the top level instantiates. It has the ports `oscillator` (in)
+/// and `clock` (out).
 pub const CLOCK_NAME: &str = "carrystep_clock";
 
-/// Constraints, template and extension.
+/// Constraint files: template and extension.
 const PCF: (&str, &str) = (include_str!("../templates/board/top.pcf"), "pcf");
 const UCF: (&str, &str) = (include_str!("../templates/board/top.ucf"), "ucf");
 const XDC: (&str, &str) = (include_str!("../templates/board/top.xdc"), "xdc");
 
 const README: &str = include_str!("../templates/board/readme.md");
 
-/// Scripts: file and template; `TOP` becomes the top module's name.
+/// Script files: name and template. `TOP` in a name becomes the name of the top module.
 const OPEN: &[(&str, &str)] = &[("build.sh", include_str!("../templates/board/open.sh"))];
 const ISE: &[(&str, &str)] = &[
     ("build.sh", include_str!("../templates/board/ise.sh")),
@@ -57,10 +61,11 @@ const ISE: &[(&str, &str)] = &[
 const VIVADO: &[(&str, &str)] = &[("build.tcl", include_str!("../templates/board/vivado.tcl"))];
 
 impl Design<'_> {
-    /// Everything but the gateware: the clock's Verilog, constraints, scripts, and what a person reads, in this order.
+    /// All files except the gateware, in this order: the clock's Verilog, constraints, scripts,
+    /// readme.
     ///
     /// # Errors
-    /// [`ExportError::Board`]: a port without a pin, or a clock that the board cannot make.
+    /// [`ExportError::Board`] if a port has no pin, or if the board cannot make the clock.
     pub fn files(&self) -> Result<Vec<TextFile>, ExportError> {
         let mut files = vec![self.clock()?, self.constraints()?];
         files.extend(self.scripts()?);
@@ -68,19 +73,19 @@ impl Design<'_> {
         Ok(files)
     }
 
-    /// The module that makes the clock.
+    /// The Verilog module that makes the clock.
     ///
     /// # Errors
-    /// [`ExportError::Board`]: the board cannot make it.
+    /// [`ExportError::Board`] if the board cannot make the clock.
     pub fn clock(&self) -> Result<TextFile, ExportError> {
         let text = clock::verilog(self.board, self.clock_hz)?;
         Ok(TextFile::new(format!("{CLOCK_NAME}.v"), text))
     }
 
-    /// Which port goes to which pin.
+    /// The constraint file, which assigns each port to a pin.
     ///
     /// # Errors
-    /// [`ExportError::Board`]: a port without a pin.
+    /// [`ExportError::Board`] if a port has no pin.
     pub fn constraints(&self) -> Result<TextFile, ExportError> {
         let (template, extension) = match self.board.family.toolchain() {
             Toolchain::Open => PCF,
@@ -90,10 +95,10 @@ impl Design<'_> {
         Ok(TextFile::new(format!("{}.{extension}", self.top), self.render(template)?))
     }
 
-    /// What makes a bitstream of it.
+    /// The build scripts.
     ///
     /// # Errors
-    /// [`ExportError::Board`]: a port without a pin.
+    /// [`ExportError::Board`] if a port has no pin.
     pub fn scripts(&self) -> Result<Vec<TextFile>, ExportError> {
         let scripts = match self.board.family.toolchain() {
             Toolchain::Open => OPEN,
@@ -108,10 +113,10 @@ impl Design<'_> {
         scripts.iter().map(file).collect()
     }
 
-    /// Wiring, and how to make and load the bitstream.
+    /// The readme: the wiring, and how to build and load the bitstream.
     ///
     /// # Errors
-    /// [`ExportError::Board`]: a port without a pin.
+    /// [`ExportError::Board`] if a port has no pin.
     pub fn readme(&self) -> Result<TextFile, ExportError> {
         Ok(TextFile::new("README.md".to_owned(), self.render(README)?))
     }
@@ -153,25 +158,26 @@ impl Design<'_> {
         rendered(template, values)
     }
 
-    /// A port, its pin, and where that is.
+    /// A port, its pin, and the place of the pin on a connector.
     fn pin(&self, port: &str) -> Result<Value, BoardError> {
         let wire = self.wire(port)?;
         let (connector, label) = place(wire);
         let known = kind(wire);
-        // Xilinx' tools write a bit of a bus in angles.
+        // The tools of Xilinx write the bit of a bus in angle brackets.
         let angles = port.replace('[', "<").replace(']', ">");
         let pulled_up = known.is_some_and(|known| known.way == Way::PulledUp);
         let what = known.map_or("", |known| known.what);
         Ok(context! { port, angles, pin => &wire.pin, connector, label, pulled_up, what })
     }
 
-    /// The only bit of a bus goes without a number.
+    /// The wire of a port. If a bus has one bit only, its port name has no number.
     fn wire(&self, port: &str) -> Result<&Wire, BoardError> {
         self.board.wire(port).or_else(|error| self.board.wire(&format!("{port}[0]")).map_err(|_| error))
     }
 }
 
-/// Blocks leave no empty lines, and a name that a template does not get is an error.
+/// Renders a template. Lines of block tags leave no empty lines; a name that has no value is an
+/// error.
 fn rendered(template: &str, values: Value) -> Result<String, ExportError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
@@ -179,24 +185,24 @@ fn rendered(template: &str, values: Value) -> Result<String, ExportError> {
     Ok(environment.render_str(template, values)?.trim_end().to_owned() + "\n")
 }
 
-/// Connector and label of a wire, as a person looks for them.
+/// Connector and label of a wire.
 fn place(wire: &Wire) -> (&str, &str) {
     wire.at.as_ref().map_or(("on the board", ""), |Place { connector, label }| (connector, label))
 }
 
-/// What kind of port a wire belongs to.
+/// The port of [`PORTS`] to which a wire belongs.
 fn kind(wire: &Wire) -> Option<&'static Port> {
     let name = wire.port.split('[').next();
     PORTS.iter().find(|port| Some(port.name) == name)
 }
 
-/// The ties, as templates see them.
+/// The ties, as values for the templates.
 fn ties(board: &Board) -> Vec<Value> {
     let row = |tie: &Tie| context! { port => &tie.port, pin => &tie.pin, level => tie.level, why => &tie.why };
     board.ties.iter().map(row).collect()
 }
 
-/// The gate, as templates see it; none where there is none.
+/// The gate, as values for the templates; `None` if the board has none.
 fn gate(board: &Board, clock_hz: u64) -> Option<Value> {
     board.gate.as_ref().map(|gate| {
         let bits = gate.counter_bits(clock_hz);
@@ -205,7 +211,7 @@ fn gate(board: &Board, clock_hz: u64) -> Option<Value> {
     })
 }
 
-/// A period in ns, rounded down to ps: no slower clock is promised.
+/// A clock period in ns, rounded down to ps, so that the constraint is never slower than the clock.
 fn period_ns(hz: u64) -> String {
     let ps = 1_000_000_000_000 / hz.max(1);
     format!("{}.{:03}", ps / 1000, ps % 1000)

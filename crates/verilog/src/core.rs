@@ -1,4 +1,4 @@
-//! A core as one file: header, then every module once, children first.
+//! Writes a core as one file: a header, and then every module once, children first.
 
 use crate::ExportError;
 use crate::guard;
@@ -12,7 +12,7 @@ use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
 use rust_hdl::prelude::{Block, check_all};
 use std::path::{Path, PathBuf};
 
-/// Name of the parallel core's top module and of its files.
+/// Name of the six-axis core's top module and of its files.
 pub const CORE_NAME: &str = "carrystep_six_axis";
 
 /// Name of the engine's top module and of its files.
@@ -27,10 +27,10 @@ pub const CORE_WAIVERS: &str = include_str!("carrystep_six_axis.vlt");
 /// Verilator's waivers for the engine, each with its reason.
 pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
 
-/// The workspace pins it.
+/// The version that the workspace pins.
 const RUST_HDL: &str = "0.46.0";
 
-/// What each module is for, in a line.
+/// The purpose of each module, in one line.
 const PURPOSES: [(&str, &str); 33] = [
     ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
     ("carrystep_sequencer", "The running and the waiting segment of an axis."),
@@ -67,29 +67,31 @@ const PURPOSES: [(&str, &str); 33] = [
     (ENGINE_NAME, "Axes on one adder, their queues, starts, and the guard."),
 ];
 
-/// The parallel core of this build as Verilog-2005, top module [`CORE_NAME`]; `description` names what the build
-/// was made from, one line. The same build gives the same text.
+/// The six-axis core of this build as Verilog-2005 with the top module [`CORE_NAME`]. `description`
+/// is a line that names the source of the build. The same build always gives the same text.
 ///
 /// # Errors
-/// [`ExportError`] where the build cannot be made.
+/// [`ExportError`] if the core cannot be generated.
 pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
     let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, "");
     file_text(&mut SixAxis::new(build)?, CORE_NAME, &facts, description)
 }
 
-/// The engine of this build as Verilog-2005, top module [`ENGINE_NAME`]; otherwise as [`six_axis_verilog`].
+/// The engine of this build as Verilog-2005 with the top module [`ENGINE_NAME`]. Otherwise as
+/// [`six_axis_verilog`].
 ///
 /// # Errors
-/// [`ExportError`] where the build cannot be made.
+/// [`ExportError`] if the engine cannot be generated.
 pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, ExportError> {
     let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, &guard::lines(build));
     file_text(engine(build)?.as_mut(), ENGINE_NAME, &facts, description)
 }
 
-/// The host link of this build as Verilog-2005, top module [`LINK_NAME`]; otherwise as [`six_axis_verilog`].
+/// The host link of this build as Verilog-2005 with the top module [`LINK_NAME`]. Otherwise as
+/// [`six_axis_verilog`].
 ///
 /// # Errors
-/// [`ExportError`] where the build cannot be made.
+/// [`ExportError`] if the link cannot be generated.
 pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Result<String, ExportError> {
     let id = line.build_id(build);
     let lines =
@@ -98,10 +100,11 @@ pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Resul
     file_text(link(build, id)?.as_mut(), LINK_NAME, &facts, description)
 }
 
-/// The line to the host as Verilog-2005, top module [`line_name`]; otherwise as [`six_axis_verilog`].
+/// The line to the host as Verilog-2005 with the top module [`line_name`]. Otherwise as
+/// [`six_axis_verilog`].
 ///
 /// # Errors
-/// [`ExportError`] where it cannot be made.
+/// [`ExportError`] if the module cannot be generated.
 pub fn line_verilog(line: Line, description: &str) -> Result<String, ExportError> {
     let facts =
         Facts { title: "the line to the host".to_owned(), lines: format!("// Line         {line}\n"), pins: &[] };
@@ -120,10 +123,10 @@ pub const fn line_name(line: Line) -> &'static str {
     }
 }
 
-/// Names and widths of some ports.
+/// Names and widths of ports.
 pub(crate) type Ports = Vec<(String, usize)>;
 
-/// The ports that the link shares with the line, and those that it shares with the engine.
+/// The ports between link and line, and the ports between link and engine.
 pub(crate) fn link_ports(build: &EngineBuild, line: Line) -> Result<(Ports, Ports), ExportError> {
     let mut link = link(build, line.build_id(build))?;
     link.connect_all();
@@ -132,7 +135,7 @@ pub(crate) fn link_ports(build: &EngineBuild, line: Line) -> Result<(Ports, Port
     Ok(ports.partition(|(name, _)| name.starts_with("received") || name.starts_with("answer")))
 }
 
-/// What the header tells of a build.
+/// Contents of the header.
 struct Facts<'a> {
     title: String,
     lines: String,
@@ -155,18 +158,19 @@ fn file_text(core: &mut dyn Block, name: &str, build: &Facts<'_>, description: &
     Ok(text)
 }
 
-/// Writes the parallel core's Verilog and its waivers into `dir`; each file appears whole or not at all.
+/// Writes the six-axis core's Verilog and its waivers into `dir`. Each file appears completely or
+/// not at all.
 ///
 /// # Errors
-/// [`ExportError`] where the build cannot be made or a file cannot be written.
+/// [`ExportError`] if the core cannot be generated or a file cannot be written.
 pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<PathBuf>, ExportError> {
     write(dir, &files(CORE_NAME, six_axis_verilog(build, description)?, CORE_WAIVERS))
 }
 
-/// Writes the engine's Verilog and its waivers into `dir`; otherwise as [`write_core`].
+/// Writes the engine's Verilog and its waivers into `dir`. Otherwise as [`write_core`].
 ///
 /// # Errors
-/// [`ExportError`] where the build cannot be made or a file cannot be written.
+/// [`ExportError`] if the engine cannot be generated or a file cannot be written.
 pub fn write_engine(dir: &Path, build: &EngineBuild, description: &str) -> Result<Vec<PathBuf>, ExportError> {
     write(dir, &files(ENGINE_NAME, engine_verilog(build, description)?, ENGINE_WAIVERS))
 }
@@ -175,14 +179,14 @@ fn files(name: &str, verilog: String, waivers: &str) -> [TextFile; 2] {
     [TextFile::new(format!("{name}.v"), verilog), TextFile::new(format!("{name}.vlt"), waivers)]
 }
 
-/// The modules so far, children first.
+/// The modules collected so far, children first.
 struct Library<'a> {
     build: &'a Facts<'a>,
     modules: Vec<(String, String)>,
 }
 
 impl Library<'_> {
-    /// Adds a module and its children; the module's name.
+    /// Adds a module and its children, and returns the module's name.
     fn add(&mut self, module: &Module) -> Result<String, ExportError> {
         let kinds = module.children.iter().map(|child| self.add(child)).collect::<Result<Vec<_>, _>>()?;
         let name = self.name(&module.instance);
@@ -195,7 +199,8 @@ impl Library<'_> {
         Ok(name)
     }
 
-    /// Instances of an array are one module, but for shapers and pulsers, which are named by their timing.
+    /// The name of an instance's module. The instances of an array share one module, except for
+    /// shapers and pulsers, which are named by their timing.
     fn name(&self, instance: &str) -> String {
         let (base, index) = split_index(instance);
         match index.and_then(|index| self.build.pins.get(index)) {

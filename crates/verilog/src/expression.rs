@@ -1,14 +1,16 @@
-//! Rust-HDL expressions as Verilog, with every width known.
+//! Translates Rust-HDL expressions to Verilog with explicit widths.
 //!
-//! Rust wraps where Verilog widens. Both operands of each operator must have one width here, a cast is a
-//! concatenation or a slice, and parentheses come from the tree, not from the text: so the two cannot part.
+//! Rust wraps an overflow where Verilog would widen the result. Therefore both operands of an
+//! operator must have the same width, a cast is written as a concatenation or a slice, and
+//! parentheses are derived from the expression tree. The Verilog then has the same value as the
+//! Rust expression.
 
 use crate::ExportError;
 use crate::names::{Names, slice};
 use crate::netlist::Number;
 use rust_hdl::prelude::ast::{VerilogExpression as Expression, VerilogOp as Op, VerilogOpUnary as Unary};
 
-/// An expression's text and width, and how tightly it binds.
+/// Text and width of an expression, and its precedence.
 #[derive(Debug, Clone)]
 pub(crate) struct Text {
     pub(crate) text: String,
@@ -20,9 +22,9 @@ pub(crate) struct Text {
 enum Bond {
     /// A name or a literal.
     Atom,
-    /// Never needs parentheses, but cannot be sliced.
+    /// An expression that needs no parentheses but cannot be sliced.
     Closed,
-    /// An operator.
+    /// An expression with this operator at its top.
     Open(&'static str),
 }
 
@@ -31,12 +33,12 @@ enum Bond {
 pub(crate) struct Translator<'a> {
     pub(crate) module: &'a str,
     pub(crate) names: &'a Names,
-    /// The loop variable and its value, inside a loop.
+    /// Name and value of the loop variable within a loop.
     pub(crate) counter: Option<(&'a str, usize)>,
 }
 
 impl Translator<'_> {
-    /// The flat name without `$next`, its index put in.
+    /// The flat name without `$next`, with its index inserted.
     pub(crate) fn flat(&self, signal: &str) -> String {
         let signal = signal.trim_end_matches("$next");
         match self.counter {
@@ -71,7 +73,7 @@ impl Translator<'_> {
         }
     }
 
-    /// An index: a literal or the loop variable.
+    /// The value of an index: a literal or the loop variable.
     fn number(&self, index: &Expression) -> Result<usize, ExportError> {
         match (index, self.counter) {
             (Expression::Literal(literal), _) => Ok(literal.as_usize()),
@@ -139,7 +141,7 @@ impl Translator<'_> {
                 left.text, left.width, right.text, right.width
             )));
         }
-        // a & b & c, but a - (b - c)
+        // `a & b & c` needs no parentheses; `a - (b - c)` does.
         let chained = matches!(sign, "&" | "|" | "^") && left.bond == Bond::Open(sign);
         let left_text = if chained { left.text.clone() } else { left.closed() };
         let text = format!("{left_text} {sign} {}", right.closed());
@@ -152,7 +154,7 @@ impl Translator<'_> {
 }
 
 impl Text {
-    /// The text, in parentheses where an operator could tear it apart.
+    /// The text, in parentheses if an operator next to it could change its meaning.
     fn closed(&self) -> String {
         match self.bond {
             Bond::Open(_) => format!("({})", self.text),

@@ -1,15 +1,15 @@
-//! All files of the workspace that are made from tables of `spec`: the register map's, the pages of boards and drivers, and the
-//! boards' gateware.
+//! All files of the workspace that are generated from tables of `spec`: the files of the register
+//! map, the pages of boards and drivers, and the boards' gateware.
 
 use crate::write::{TextFile, write};
 use crate::{ExportError, Gateware, board, registers};
 use carrystep_boards::boards;
 use std::path::Path;
 
-/// Each file, its name being its path in the workspace.
+/// Each file, named by its path in the workspace.
 ///
 /// # Errors
-/// [`ExportError`] where a file cannot be made.
+/// [`ExportError`] if a file cannot be generated.
 pub fn generated_files() -> Result<Vec<TextFile>, ExportError> {
     let mut files: Vec<_> = registers::files()?.into_iter().map(|(path, text)| TextFile::new(path, text)).collect();
     files.extend(board::pages()?);
@@ -20,10 +20,11 @@ pub fn generated_files() -> Result<Vec<TextFile>, ExportError> {
     Ok(files)
 }
 
-/// Writes each of them to its place under the workspace's `root`; each appears whole or not at all.
+/// Writes the files to their places under `root`, the root of the workspace. Each file appears
+/// completely or not at all.
 ///
 /// # Errors
-/// [`ExportError`] where a file cannot be made or written.
+/// [`ExportError`] if a file cannot be generated or written.
 pub fn write_generated_files(root: &Path) -> Result<(), ExportError> {
     write(root, &generated_files()?).map(|_| ())
 }

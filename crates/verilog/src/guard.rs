@@ -1,4 +1,5 @@
-//! What a header says of an engine's guard: the figures as they are counted, in the units of the machine file.
+//! The lines of an engine's header that describe its guard: the times as counted, in the units of
+//! the machine file.
 
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{Between, Limits};
@@ -39,7 +40,7 @@ pub(crate) fn lines(build: &EngineBuild) -> String {
     text
 }
 
-/// As a person writes it: what rounding to 2^-64 step took off is not shown.
+/// A number with six significant digits, so that the rounding to 2^-64 step is not visible.
 fn six_digits(number: f64) -> String {
     let rounded = format!("{number:.5e}");
     rounded.parse::<f64>().map_or(rounded, |number| number.to_string())

@@ -1,9 +1,10 @@
-//! A module's kernel, sorted by how Verilog says it.
+//! Sorts the statements of a module's kernel by the Verilog construct that expresses them.
 //!
-//! Rust-HDL has one combinational block per module. Here every signal that is assigned once becomes a
-//! continuous assignment, every statement that writes registers only goes under the clock, and what is
-//! left (defaults with overrides) stays combinational, one block for each set of signals written
-//! together. Nothing is reordered that writes the same signal, so the meaning is the kernel's.
+//! Rust-HDL has one combinational block per module. Here, a signal that is assigned once becomes a
+//! continuous assignment, and a statement that writes only registers moves into the clocked block.
+//! The remaining statements (defaults with overrides) stay combinational, in one block for each set
+//! of signals that are written together. Statements that write the same signal keep their order, so
+//! that the result is equivalent to the kernel.
 
 use crate::ExportError;
 use crate::expression::Translator;
@@ -16,21 +17,21 @@ use rust_hdl::prelude::ast::{
 };
 use std::collections::BTreeSet;
 
-/// A statement, translated.
+/// A translated statement.
 #[derive(Debug, Clone)]
 pub(crate) enum Step {
     Assign { target: Name, value: String },
     If { test: String, then: Vec<Step>, otherwise: Vec<Step> },
 }
 
-/// A kernel, sorted; each list in the kernel's order.
+/// A sorted kernel; each list has the order of the kernel.
 #[derive(Debug, Default)]
 pub(crate) struct Kernel {
-    /// Assigned once.
+    /// Continuous assignments of signals that are assigned once.
     pub(crate) wires: Vec<(Name, String)>,
     /// Combinational blocks.
     pub(crate) blocks: Vec<Vec<Step>>,
-    /// Under the clock.
+    /// Statements of the clocked block.
     pub(crate) clocked: Vec<Step>,
 }
 
@@ -63,7 +64,7 @@ impl Kernel {
         Ok(kernel)
     }
 
-    /// What drives a signal that is assigned once.
+    /// The expression that drives a signal that is assigned once.
     pub(crate) fn wire(&self, signal: &str) -> Option<&str> {
         self.wires.iter().find(|(target, _)| target.text == signal).map(|(_, value)| value.as_str())
     }
@@ -79,7 +80,7 @@ impl Kernel {
         self.wires.iter().any(|(_, value)| mentions(value, signal)) || steps.into_iter().any(|s| s.reads(signal))
     }
 
-    /// What the combinational blocks write.
+    /// The signals that the combinational blocks write.
     pub(crate) fn block_targets(&self) -> Vec<Name> {
         let mut seen = BTreeSet::new();
         let all = self.blocks.iter().flatten().flat_map(Step::targets);
@@ -88,7 +89,7 @@ impl Kernel {
 }
 
 impl Step {
-    /// Every signal that it may write.
+    /// The signals that this statement can write.
     fn targets(&self) -> Vec<Name> {
         match self {
             Self::Assign { target, .. } => vec![target.clone()],
@@ -109,13 +110,14 @@ impl Step {
         }
     }
 
-    /// The default of a register, to keep its value: under the clock that goes without saying.
+    /// Whether this is a register's default, by which it keeps its value. A clocked block does not
+    /// need it.
     fn is_hold(&self) -> bool {
         matches!(self, Self::Assign { target, value } if target.text == format!("{value}_next"))
     }
 }
 
-/// Whether the text names the signal.
+/// Whether the text contains the signal's name.
 fn mentions(text: &str, signal: &str) -> bool {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|word| word == signal)
 }
@@ -142,7 +144,7 @@ fn block(translator: Translator<'_>, code: &VerilogBlock) -> Result<Vec<Step>, E
     Ok(steps)
 }
 
-/// `None` for a clock: those are wired, not computed.
+/// Translates an assignment; `None` for a clock, which is connected and not computed.
 fn assignment(
     translator: Translator<'_>,
     target: &VerilogExpression,
@@ -176,7 +178,7 @@ fn conditional(translator: Translator<'_>, condition: &VerilogConditional) -> Re
     Ok(Step::If { test, then: block(translator, &condition.then)?, otherwise })
 }
 
-/// Drops a default that is overwritten before anything reads it.
+/// Removes defaults that are always overwritten before they are read.
 fn without_overwritten(steps: Vec<Step>) -> Vec<Step> {
     let dead = |place: usize, signal: &str| {
         for step in &steps[place + 1..] {
@@ -197,10 +199,10 @@ fn without_overwritten(steps: Vec<Step>) -> Vec<Step> {
     steps.into_iter().zip(keep).filter_map(|(step, keep)| keep.then_some(step)).collect()
 }
 
-/// Statements with their places.
+/// Statements with their positions in the kernel.
 type Group = Vec<(usize, Step)>;
 
-/// Statements that write a signal in common, directly or through others.
+/// Groups the statements that write a common signal, directly or by way of other statements.
 fn groups(steps: Vec<Step>) -> Vec<Group> {
     let mut groups: Vec<(BTreeSet<String>, Group)> = Vec::new();
     for (place, step) in steps.into_iter().enumerate() {
@@ -221,7 +223,8 @@ fn groups(steps: Vec<Step>) -> Vec<Group> {
     groups.into_iter().map(|(_, group)| group).collect()
 }
 
-/// Groups run side by side, so what one reads of another must be its final value.
+/// The groups become parallel blocks, so a group may read a signal of another one only after its
+/// last write. Returns a signal for which this is not so.
 fn read_between_writes(groups: &[Group]) -> Option<String> {
     let last_write =
         |group: &Group, signal: &str| group.iter().rev().find(|(_, step)| step.writes(signal)).map(|(place, _)| *place);

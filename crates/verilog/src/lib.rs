@@ -1,11 +1,13 @@
-//! Rust-HDL modules as readable Verilog, the register map for its clients, and what a board's toolchain needs.
+//! Generates readable Verilog from Rust-HDL modules, the files of the register map for clients, and
+//! the files for a board's toolchain.
 //!
-//! Rust-HDL's own output calls every module after its place in the tree and makes a module of every
-//! flip-flop. This crate reads the same checked tree and the same kernels, and writes what a person would:
-//! one module per kind, real names, ANSI ports, registers under the clock.
+//! Rust-HDL's own output names every module by its place in the tree, and makes a module of every
+//! flip-flop. This crate reads the same checked tree and the same kernels, but writes one module
+//! per kind, with real names, ANSI ports, and registers in clocked blocks.
 //!
 //! ```text
-//! blocks --netlist--> ports, registers, children, kernel --kernel--> wires, blocks, clocked --module--> text
+//! blocks --netlist--> ports, registers, children, kernel --kernel--> wires, blocks, clocked
+//!        --module--> text
 //! ```
 
 mod board;
@@ -37,13 +39,13 @@ use carrystep_hdl::HdlError;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why there is no Verilog.
+/// Why nothing could be generated.
 #[derive(Debug, Error)]
 pub enum ExportError {
     /// The modules cannot be built with these parameters.
     #[error(transparent)]
     Hdl(#[from] HdlError),
-    /// A module says something that this crate does not translate.
+    /// A module contains a construct that this crate does not translate.
     #[error("module {module}: cannot translate {what}")]
     Unsupported {
         /// Instance name of the module.
@@ -51,27 +53,27 @@ pub enum ExportError {
         /// The construct.
         what: String,
     },
-    /// Two modules that differ want one name.
+    /// Two different modules would have the same name.
     #[error("two different modules would be called {0}")]
     SameName(String),
-    /// A board has no pin for a port, or cannot make the clock.
+    /// The board has no pin for a port, or cannot make the clock.
     #[error(transparent)]
     Board(#[from] BoardError),
-    /// The clock of the machine file makes no baud rate of the board.
+    /// The clock of the machine file cannot make a baud rate that the board supports.
     #[error(transparent)]
     Baud(#[from] BaudError),
-    /// The machine file is none.
+    /// The machine file is not valid.
     #[error(transparent)]
     Machine(#[from] InputError),
-    /// A template asks for what there is not.
+    /// A template uses a value that does not exist.
     #[error("a template: {0}")]
     Template(#[from] minijinja::Error),
     /// A file could not be written.
     #[error("cannot write {}: {source}", path.display())]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
 }

@@ -1,4 +1,4 @@
-//! One module as text: Verilog-2005, ANSI ports, registers with their initial values.
+//! Writes one module as text: Verilog-2005, ANSI ports, registers with initial values.
 
 use crate::ExportError;
 use crate::kernel::{Kernel, Step};
@@ -36,7 +36,7 @@ pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Resu
     Ok(page.text)
 }
 
-/// A module that brings its own body, as a memory does.
+/// A module that has its own body, such as a memory.
 fn primitive(names: &Names, name: &str, body: &str) -> String {
     let mut page = Page::default();
     page.open(&format!("module {name} ("));
@@ -69,7 +69,8 @@ fn constants(page: &mut Page, names: &Names) {
     }
 }
 
-/// Registers, what combinational blocks write, and the outputs of children that the kernel reads.
+/// Declares the registers, the signals that combinational blocks write, and the outputs of children
+/// that the kernel reads.
 fn declarations(page: &mut Page, module: &Module, names: &Names, kernel: &Kernel) -> Result<(), ExportError> {
     page.gap();
     for register in &module.registers {
@@ -92,7 +93,7 @@ fn declarations(page: &mut Page, module: &Module, names: &Names, kernel: &Kernel
     Ok(())
 }
 
-/// What is assigned once: local signals at their declaration, then the outputs.
+/// Writes the continuous assignments: local signals at their declaration, and then the outputs.
 fn wires(page: &mut Page, names: &Names, kernel: &Kernel) {
     let is_local = |text: &str| names.locals.iter().any(|local| local == text);
     let driven = kernel.wires.iter().filter(|(target, _)| target.role == Role::Driven);
@@ -101,7 +102,7 @@ fn wires(page: &mut Page, names: &Names, kernel: &Kernel) {
     for (target, value) in locals {
         page.line(&format!("wire {}{} = {value};", range(target.width), target.text));
     }
-    // The elements of a vector together, as the ports have them.
+    // Sorts the elements of a vector together, in the order of the ports.
     outputs.sort_by_key(|(target, _)| {
         names.ports.iter().position(|port| target.text.split('[').next() == Some(&port.name))
     });
@@ -139,7 +140,7 @@ fn clocked(page: &mut Page, kernel: &Kernel) {
     page.close("end");
 }
 
-/// Statements; under the clock a register is written by its own name.
+/// Writes statements. In a clocked block, the target of a register is the register's own name.
 fn steps(page: &mut Page, list: &[Step], sign: &str) {
     for step in list {
         match step {
@@ -168,12 +169,12 @@ fn conditional(page: &mut Page, step: &Step, before: &str, sign: &str) {
     }
 }
 
-/// `[63:0] `, or nothing for a single bit.
+/// The range of a vector, `[63:0] `; empty for a single bit.
 fn range(width: usize) -> String {
     if width == 1 { String::new() } else { format!("[{}:0] ", width - 1) }
 }
 
-/// Lines with their indent.
+/// Lines of text with indentation.
 #[derive(Debug, Default)]
 struct Page {
     text: String,
@@ -197,7 +198,7 @@ impl Page {
         self.line(line);
     }
 
-    /// An empty line between paragraphs, one at most.
+    /// Adds an empty line between paragraphs, never two in a row.
     fn gap(&mut self) {
         if !self.text.ends_with("\n\n") {
             self.text.push('\n');

@@ -1,12 +1,13 @@
-//! From Rust-HDL's flat names to Verilog's: `axis$0$go` becomes `axis_0_go`, register `left$q` is `left`,
-//! and an array of ports is one vector (an array of one, one port).
+//! Converts the flat names of Rust-HDL to Verilog: `axis$0$go` becomes `axis_0_go`, the register
+//! `left$q` becomes `left`, and an array of ports becomes one vector (an array of one element, one
+//! port).
 
 use crate::ExportError;
 use crate::netlist::{Module, Number};
 use rust_hdl::prelude::AtomKind;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What a name in a kernel stands for.
+/// The kind of thing that a name in a kernel denotes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Role {
     /// An input port, a constant, or the output of a child.
@@ -19,11 +20,11 @@ pub(crate) enum Role {
     Next,
     /// The input of a child.
     ChildInput,
-    /// A clock, of this module, a register or a child.
+    /// A clock of this module, of a register or of a child.
     Clock,
 }
 
-/// A name's Verilog.
+/// The Verilog for a name.
 #[derive(Debug, Clone)]
 pub(crate) struct Name {
     pub(crate) text: String,
@@ -31,7 +32,7 @@ pub(crate) struct Name {
     pub(crate) role: Role,
 }
 
-/// A port of the module as Verilog has it.
+/// A port of the module in Verilog.
 #[derive(Debug, Clone)]
 pub(crate) struct Port {
     pub(crate) name: String,
@@ -99,7 +100,7 @@ impl Names {
         Ok(names)
     }
 
-    /// What a name in the kernel of `module` stands for.
+    /// What a name in the kernel of `module` denotes.
     pub(crate) fn get(&self, module: &str, flat: &str) -> Result<&Name, ExportError> {
         self.known.get(flat).ok_or_else(|| ExportError::unsupported(module, format!("name {flat}")))
     }
@@ -108,7 +109,7 @@ impl Names {
         self.known.insert(flat.to_owned(), Name { text, width, role });
     }
 
-    /// Adds a port, or one more element to a vector; the text of a reference to it.
+    /// Adds a port, or an element to a vector, and returns the text of a reference to it.
     fn port(&mut self, base: &str, index: Option<usize>, width: usize, output: bool) -> String {
         let name = plain(base);
         let Some(index) = index else {
@@ -122,7 +123,7 @@ impl Names {
         slice(&name, index * width, width)
     }
 
-    /// No two things of one name.
+    /// Checks that no two things have the same name.
     fn check(&self, module: &str) -> Result<(), ExportError> {
         let mut seen = BTreeSet::new();
         let signals = self.known.values().filter(|name| name.role != Role::Clock).map(|name| &name.text);
@@ -135,17 +136,17 @@ impl Names {
     }
 }
 
-/// `name[7]` or `name[31:0]`.
+/// A slice of a vector: `name[7]` or `name[31:0]`.
 pub(crate) fn slice(name: &str, low: usize, width: usize) -> String {
     if width == 1 { format!("{name}[{low}]") } else { format!("{name}[{}:{low}]", low + width - 1) }
 }
 
-/// `axis$0` without its `$`.
+/// A flat name with `_` in place of `$`: `axis_0` for `axis$0`.
 pub(crate) fn plain(flat: &str) -> String {
     flat.replace('$', "_")
 }
 
-/// `axis$0` is element 0 of `axis`.
+/// Splits an array element into name and index: `axis$0` is element 0 of `axis`.
 pub(crate) fn split_index(flat: &str) -> (&str, Option<usize>) {
     match flat.rsplit_once('$').map(|(base, index)| (base, index.parse())) {
         Some((base, Ok(index))) => (base, Some(index)),

@@ -1,4 +1,5 @@
-//! The tree of Rust-HDL blocks, as data: what a module's ports, registers, children and kernel are.
+//! Reads the tree of Rust-HDL blocks as data: the ports, registers, children and kernel of each
+//! module.
 
 use crate::ExportError;
 use rust_hdl::prelude::{Atom, AtomKind, Block, Probe, Verilog, VerilogLiteral};
@@ -6,7 +7,7 @@ use rust_hdl::prelude::{Atom, AtomKind, Block, Probe, Verilog, VerilogLiteral};
 /// One instance of a module.
 #[derive(Debug, Clone)]
 pub(crate) struct Module {
-    /// Field name in its parent, `axis$0` in an array.
+    /// Name of the field in its parent; `axis$0` in an array.
     pub(crate) instance: String,
     pub(crate) atoms: Vec<Wire>,
     pub(crate) registers: Vec<Flop>,
@@ -21,7 +22,7 @@ pub(crate) struct Wire {
     pub(crate) kind: AtomKind,
     pub(crate) width: usize,
     pub(crate) is_clock: bool,
-    /// Its value at configuration.
+    /// Value after configuration.
     pub(crate) value: Number,
 }
 
@@ -33,7 +34,7 @@ pub(crate) struct Flop {
     pub(crate) initial: Number,
 }
 
-/// A literal: width and value.
+/// Width and value of a literal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Number {
     pub(crate) width: usize,
@@ -41,7 +42,7 @@ pub(crate) struct Number {
 }
 
 impl Number {
-    /// Rust-HDL shows a literal only as text, `16'h2a`.
+    /// Parses a literal. Rust-HDL provides it only as text, such as `16'h2a`.
     pub(crate) fn new(literal: &VerilogLiteral) -> Option<Self> {
         let text = format!("{literal:x}");
         let (width, digits) = text.split_once("'h")?;
@@ -59,7 +60,7 @@ impl std::fmt::Display for Number {
     }
 }
 
-/// Reads a block that has been connected and checked.
+/// Reads a block that Rust-HDL has connected and checked.
 pub(crate) fn read(block: &dyn Block) -> Result<Module, ExportError> {
     let mut reader = Reader::default();
     block.accept("top", &mut reader);
@@ -77,7 +78,7 @@ struct Reader {
 }
 
 impl Module {
-    /// A register is a block of d, q and clock whose Verilog is given as text.
+    /// Recognises a register: a block with d, q and clock whose Verilog is given as text.
     fn as_register(&self) -> Option<Flop> {
         let names: Vec<&str> = self.atoms.iter().map(|atom| atom.name.as_str()).collect();
         if !matches!(self.code, Verilog::Custom(_)) || names != ["d", "q", "clock"] {

@@ -1,21 +1,22 @@
-//! The register map for the clients: Rust constants, a C header, a page of documentation, all from the table in `spec`.
+//! Generates the register map for clients from the table in `spec`: Rust constants, a C header, and
+//! a page of documentation.
 
 use crate::ExportError;
 use carrystep_core::link::registers::{self, Access, PER_AXIS, REGISTERS};
 use carrystep_core::link::{self, ANSWER, ANSWER_DATA, CAUSE_NAMES, Constant, Field, WRITE};
 use minijinja::{Environment, Value, context};
 
-/// A file that is written from the table: where it lies in the workspace, and its template.
+/// The generated files: path in the workspace, and template.
 const FILES: [(&str, &str); 3] = [
     ("crates/link/src/registers.rs", include_str!("../templates/registers.rs")),
     ("crates/link/c/carrystep_registers.h", include_str!("../templates/registers.h")),
     ("docs/registers.md", include_str!("../templates/registers.md")),
 ];
 
-/// Every file that is made from the register map: its path in the workspace, and its text.
+/// The files of the register map: path in the workspace, and text.
 ///
 /// # Errors
-/// [`ExportError::Template`] where a template asks for what there is not.
+/// [`ExportError::Template`] if a template uses a value that does not exist.
 pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
     let environment = Environment::new();
     let values = context! {
@@ -45,7 +46,7 @@ const fn access(access: Access) -> &'static str {
     }
 }
 
-/// Lengths are told in decimal, all else in hexadecimal.
+/// The values of a constant. Lengths are decimal, all other values hexadecimal.
 fn constant(row: &Constant) -> Value {
     let (rust, c) = match row.kind {
         "u8" => (format!("{:#04x}", row.value), format!("{:#04x}u", row.value)),

@@ -1,4 +1,5 @@
-//! The translation on small kernels: what Rust means is what the Verilog says, or it is refused.
+//! Tests of the translation with small kernels: the Verilog must mean the same as the Rust code, or
+//! the translation must fail.
 
 use crate::module::module_text;
 use crate::netlist;
@@ -45,7 +46,7 @@ impl Logic for Operators {
 }
 
 #[test]
-fn operators_mean_what_they_mean_in_rust() {
+fn operators_have_the_same_meaning_as_in_rust() {
     let text = verilog(Operators::default());
     for line in [
         "assign masked = (a & b) == c;",
@@ -81,7 +82,7 @@ impl Logic for Counter {
 }
 
 #[test]
-fn registers_go_under_the_clock() {
+fn registers_are_written_in_clocked_blocks() {
     let expected = "\
 module toy (
     input  wire         clock,
@@ -125,7 +126,7 @@ impl Logic for Between {
 }
 
 #[test]
-fn a_read_between_two_writes_is_refused() {
+fn read_between_two_writes_is_refused() {
     assert!(refusal(Between::default()).contains("a read of value between two writes"));
 }
 
@@ -143,6 +144,6 @@ impl Logic for Literals {
 }
 
 #[test]
-fn a_literal_without_a_width_is_refused() {
+fn literal_without_a_width_is_refused() {
     assert!(refusal(Literals::default()).contains("a (8 bits) + 32'd1 (32 bits)"));
 }

@@ -1,33 +1,33 @@
-//! Files that appear whole or not at all.
+//! Writes files that appear completely or not at all.
 
 use crate::ExportError;
 use carrystep_files::{Claim, NewFile, OutputFailure};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// A file that has been made, but not written.
+/// A generated file that has not been written yet.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TextFile {
-    /// Its name, or its path from where it is written.
+    /// Name of the file, or its path relative to the output directory.
     pub name: String,
-    /// Its text.
+    /// Contents of the file.
     pub text: String,
-    /// It is a script.
+    /// Whether the file is an executable script.
     pub executable: bool,
 }
 
 impl TextFile {
-    /// A file that is no script.
+    /// A file that is not a script.
     pub(crate) fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self { name: name.into(), text: text.into(), executable: false }
     }
 }
 
-/// Writes files under `dir`; none appears before all have been written, and none is made where one of them would
-/// replace an input.
+/// Writes files into `dir`. No file appears before all have been written. Nothing is written if one
+/// of them would replace an input of this process.
 ///
 /// # Errors
-/// [`ExportError::Io`] names what cannot be written.
+/// [`ExportError::Io`] names the file that cannot be written.
 pub fn write(dir: &Path, files: &[TextFile]) -> Result<Vec<PathBuf>, ExportError> {
     let claims = files.iter().map(|file| Claim::new(&dir.join(&file.name))).collect::<Result<Vec<_>, _>>()?;
     let made = |(claim, file): (Claim, &TextFile)| {

@@ -1,4 +1,5 @@
-//! The boards' folders: pins, clocks and scripts in the open tools, and what is refused.
+//! The directories of the boards: pins, clocks and scripts must work with the open tools, and
+//! impossible requests must be refused.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_boards::{Board, OSCILLATOR, PORTS, Toolchain, Way, board, boards};
@@ -7,7 +8,7 @@ use carrystep_verilog::{Design, ExportError, Gateware, TextFile, shipped_machine
 use std::path::Path;
 use std::process::Command;
 
-/// All ports of a board, bit by bit.
+/// All bits of a board's ports.
 fn ports(board: &Board) -> Vec<String> {
     board.wires.iter().map(|wire| wire.port.clone()).collect()
 }
@@ -18,7 +19,8 @@ fn files(board: &Board, ports: &[String]) -> Result<Vec<TextFile>, ExportError> 
     Design { board, part, clock_hz, uart: None, top, sources: &["carrystep_clock.v", "top.v"], ports }.files()
 }
 
-/// A top level that uses every pin: inputs meet in a register, outputs are that register.
+/// A top level that uses every pin: all inputs are combined in a register, and the outputs are that
+/// register.
 fn top(board: &Board) -> String {
     let bits = |way: fn(Way) -> bool| {
         let names = PORTS.iter().filter(move |port| way(port.way));
@@ -47,7 +49,7 @@ fn top(board: &Board) -> String {
     format!("module top ({});\n{body}endmodule\n", list.join(", "))
 }
 
-/// A folder with everything that the script needs; its name has a blank.
+/// A directory with everything that the script needs. Its name contains a space.
 fn folder(board: &Board) -> tempfile::TempDir {
     let folder = tempfile::Builder::new().prefix("a board ").tempdir().unwrap();
     for file in files(board, &ports(board)).unwrap() {
@@ -64,10 +66,10 @@ fn run(tool: &str, arguments: &[&str], folder: &Path) {
     assert!(output.status.success(), "{tool} {arguments:?}: {said}");
 }
 
-/// nextpnr knows every pin and finds a place for the PLL; icepack makes a bitstream. By the script that a user runs, from
-/// another folder.
+/// Builds with the script that users run, started in another directory. nextpnr must know every pin
+/// and place the PLL, and icepack must make a bitstream.
 #[test]
-fn every_ice40_board_is_placed_on_all_its_pins_by_its_own_script() {
+fn script_of_every_ice40_board_builds_a_bitstream_with_all_pins() {
     for board in boards().iter().filter(|board| board.family.toolchain() == Toolchain::Open) {
         let folder = folder(board);
         run("sh", &[folder.path().join("build.sh").to_str().unwrap()], Path::new("/"));
@@ -75,9 +77,9 @@ fn every_ice40_board_is_placed_on_all_its_pins_by_its_own_script() {
     }
 }
 
-/// yosys knows the cells of every Spartan's clock, and their ports.
+/// yosys must know the cells and the ports of the clock module of every Spartan.
 #[test]
-fn every_spartan_s_clock_is_of_cells_that_yosys_knows() {
+fn clock_module_of_every_spartan_uses_known_cells() {
     for name in ["s3board", "nexys2", "papilio-pro", "arty-s7"] {
         let board = board(name).unwrap();
         let folder = folder(board);
@@ -91,7 +93,7 @@ fn every_spartan_s_clock_is_of_cells_that_yosys_knows() {
 }
 
 #[test]
-fn a_top_level_gets_the_pins_of_its_ports_and_no_others() {
+fn constraints_contain_exactly_the_ports_of_the_top_level() {
     let board = board("icestick").unwrap();
     let text = files(board, &["uart_rx", "step[0]", "dir"].map(str::to_owned)).unwrap().remove(1).text;
     let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("set_io")).collect();
@@ -100,7 +102,7 @@ fn a_top_level_gets_the_pins_of_its_ports_and_no_others() {
     assert_eq!(refused, "icestick has no pin for limit_max[0]");
 }
 
-/// What is asked of a board, as its machine file with one thing changed.
+/// The error for a board with one thing changed in the shipped machine file.
 fn asked(name: &str, was: &str, becomes: &str) -> Result<(), String> {
     let board = board(name).unwrap();
     let text = shipped_machine(board, &board.clocks[0]).unwrap();
@@ -110,7 +112,7 @@ fn asked(name: &str, was: &str, becomes: &str) -> Result<(), String> {
 }
 
 #[test]
-fn what_a_board_cannot_do_is_refused_with_what_it_can() {
+fn impossible_request_is_refused_with_an_alternative() {
     asked("icestick", "limits", "limits").unwrap();
     let refused = [
         (
@@ -142,16 +144,16 @@ fn what_a_board_cannot_do_is_refused_with_what_it_can() {
     }
 }
 
-/// A board of one's own, without a way to a host that the link speaks.
+/// A user's board without a line to the host that the link supports.
 #[test]
-fn a_board_without_a_uart_is_refused() {
+fn board_without_a_uart_is_refused() {
     let mut board = board("icestick").unwrap().clone();
     board.wires.retain(|wire| !wire.port.starts_with("uart"));
     let refused = Gateware::shipped(&board, &board.parts[0]).unwrap_err().to_string();
     assert_eq!(refused, "icestick has no pin for uart_rx");
 }
 
-/// The folder's script says it is one, and nothing else does.
+/// Exactly the scripts of the directory are executable.
 #[test]
 fn only_scripts_are_executable() {
     for board in boards() {
@@ -161,9 +163,9 @@ fn only_scripts_are_executable() {
     }
 }
 
-/// Over SPI instead of the UART, where the board has the pins for it.
+/// Uses the SPI instead of the UART if the board has the pins for it.
 #[test]
-fn a_machine_may_be_on_an_spi() {
+fn machine_can_use_an_spi() {
     let mut on_spi = 0;
     for board in boards() {
         let text = shipped_machine(board, &board.clocks[0]).unwrap();

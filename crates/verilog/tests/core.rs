@@ -1,4 +1,5 @@
-//! The cores as files: ports, names, lint, synthesis, and that the committed ones are fresh.
+//! The cores as files: ports, names, lint, synthesis, and whether the committed files are up to
+//! date.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::engine::{Guard, Limits};
@@ -14,14 +15,14 @@ use std::process::Command;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
-/// A core that is generated, and the machine file that the committed one is made from.
+/// A generated core, and the machine file of the committed one.
 struct Core {
     name: &'static str,
     of_machine: fn(&Machine, &str) -> Result<String, ExportError>,
     write: fn(&Path, &Build, &str) -> Result<Vec<PathBuf>, ExportError>,
     waivers: &'static str,
     machine: &'static str,
-    /// Clock, tick and phases of some builds.
+    /// Clock (Hz), tick (ns) and phases of some builds.
     timebases: [(u64, u64, u32); 3],
 }
 
@@ -48,14 +49,14 @@ fn pins() -> [PinTiming; AXES] {
     [PinTiming { width: 96, gap: 5, setup: 2, hold: 7 }; AXES]
 }
 
-/// With something of everything that the guard can watch.
+/// An engine whose guard watches something of every kind.
 fn guarded(build: &Build) -> EngineBuild {
     let engine = EngineBuild::minimal(build, 1 << 40);
     let guard = Guard { watchdog: 100, enable: 5, debounce: 3, limits: Limits::Pair, ..engine.guard };
     EngineBuild { guard, ..engine }
 }
 
-/// The same with so many axes.
+/// The same engine with this number of axes.
 fn engine_of(axes: usize) -> EngineBuild {
     let timebase = Timebase::new(56_000_000, 2000, 16).unwrap();
     let mut engine = guarded(&Build { timebase, phase: StartPhase::Half, pins: pins() });
@@ -69,7 +70,7 @@ fn build(clock_hz: u64, phases: u32) -> Build {
     Build { timebase, phase: StartPhase::Half, pins: pins() }
 }
 
-/// Runs a tool on the core in a folder: whether it succeeded, and what it printed.
+/// Runs a tool in a directory with the core. Returns whether it succeeded, and its output.
 fn run(tool: &str, arguments: &[String], folder: &Path) -> (bool, String) {
     let output = Command::new(tool).args(arguments).current_dir(folder).output();
     let output = output.unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
@@ -77,7 +78,8 @@ fn run(tool: &str, arguments: &[String], folder: &Path) -> (bool, String) {
     (output.status.success(), said.into_owned())
 }
 
-/// Runs a tool on each core in some builds, and on engines of each number of axes, each in a fresh folder.
+/// Runs a tool on each core in some builds, and on engines of each number of axes, each in a fresh
+/// directory.
 fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &str) -> bool) {
     for core in &CORES {
         for (clock_hz, tick_ns, phases) in core.timebases {
@@ -98,7 +100,7 @@ fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &
 }
 
 #[test]
-fn ports_are_those_of_the_table() {
+fn core_has_the_ports_of_the_table() {
     let text = six_axis_verilog(&build(48_000_000, 16), "a test").unwrap();
     let (_, top) = text.split_once(&format!("module {CORE_NAME} (\n")).unwrap();
     let (list, _) = top.split_once("\n);").unwrap();
@@ -114,7 +116,7 @@ fn ports_are_those_of_the_table() {
 }
 
 #[test]
-fn an_engine_has_the_axes_of_its_build() {
+fn engine_has_the_axes_of_its_build() {
     for axes in 1..=8 {
         let text = engine_verilog(&engine_of(axes), "a test").unwrap();
         let (_, top) = text.split_once(&format!("module {ENGINE_NAME} (\n")).unwrap();
@@ -130,7 +132,7 @@ fn an_engine_has_the_axes_of_its_build() {
 }
 
 #[test]
-fn equal_modules_are_one_and_nothing_is_called_after_its_place() {
+fn equal_modules_are_written_once_and_named_by_kind() {
     let text = six_axis_verilog(&build(48_000_000, 16), "a test").unwrap();
     let modules: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("module ")).collect();
     let names = ["tick", "sequencer", "step_edge", "axis", "shaper_w96_s5_d2_h7", "six_axis"];
@@ -139,13 +141,13 @@ fn equal_modules_are_one_and_nothing_is_called_after_its_place() {
 }
 
 #[test]
-fn the_same_build_gives_the_same_text() {
+fn same_build_gives_the_same_text() {
     let build = build(20_000_000, 4);
     assert_eq!(six_axis_verilog(&build, "a").unwrap(), six_axis_verilog(&build, "a").unwrap());
 }
 
 #[test]
-fn a_timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
+fn timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
     let mut build = build(48_000_000, 16);
     build.pins[3].gap = 0;
     let folder = tempfile::tempdir().unwrap();
@@ -155,7 +157,7 @@ fn a_timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
 }
 
 #[test]
-fn an_engine_whose_turns_do_not_fit_is_refused_with_the_arithmetic_and_nothing_is_written() {
+fn engine_whose_turns_do_not_fit_is_refused_with_the_arithmetic() {
     let folder = tempfile::tempdir().unwrap();
     let error = write_engine(folder.path(), &guarded(&build(48_000_000, 16)), "a test").unwrap_err();
     assert_eq!(
@@ -167,7 +169,7 @@ fn an_engine_whose_turns_do_not_fit_is_refused_with_the_arithmetic_and_nothing_i
 }
 
 #[test]
-fn an_engine_that_cannot_work_is_refused_by_name_and_nothing_is_written() {
+fn engine_with_invalid_parameters_is_refused_by_name() {
     let phase_of_one_clock = |build: &mut EngineBuild| {
         (build.pins, build.guard.stop) = (vec![PinTiming::SHORTEST], vec![1]);
         build.timebase = Timebase::new(16_000_000, 1000, 16).unwrap();
@@ -195,10 +197,10 @@ fn an_engine_that_cannot_work_is_refused_by_name_and_nothing_is_written() {
     }
 }
 
-/// What a machine file asks is refused before there is a build: the driver's width and gap at the greatest speed, and
-/// phases that do not divide the tick.
+/// A machine file is refused before there is a build if its greatest speed exceeds the driver's
+/// width and gap, or if its phases do not divide the tick.
 #[test]
-fn a_machine_that_no_engine_can_drive_is_refused_by_name() {
+fn machine_that_no_engine_can_drive_is_refused_by_name() {
     let text = std::fs::read_to_string(Path::new(ROOT).join("sim/engine.toml")).unwrap();
     let refusals = [
         ("driver = \"tmc2209\"", "step_ns = 15000\ngap_ns = 15000\nsetup_ns = 20\nhold_ns = 20", "width and gap"),
@@ -215,7 +217,7 @@ fn a_machine_that_no_engine_can_drive_is_refused_by_name() {
 }
 
 #[test]
-fn verilator_has_nothing_to_say() {
+fn verilator_lint_reports_no_warning() {
     let arguments = |name: &str| {
         let words = ["--lint-only", "-Wall", "--top-module", name, &format!("{name}.vlt"), &format!("{name}.v")];
         words.map(String::from).to_vec()
@@ -235,7 +237,7 @@ fn yosys_finds_no_latch_and_no_undriven_wire() {
 }
 
 #[test]
-fn the_committed_cores_are_fresh() {
+fn committed_cores_are_up_to_date() {
     for core in &CORES {
         let machine = Machine::load(&Path::new(ROOT).join(core.machine)).unwrap();
         let read = |extension| {
@@ -249,7 +251,7 @@ fn the_committed_cores_are_fresh() {
 }
 
 #[test]
-fn what_is_made_from_tables_is_fresh() {
+fn files_generated_from_tables_are_up_to_date() {
     for file in generated_files().unwrap() {
         let committed = std::fs::read_to_string(Path::new(ROOT).join(&file.name)).unwrap_or_default();
         assert!(committed == file.text, "{}: run `cargo xtask generate`", file.name);

@@ -1,4 +1,5 @@
-//! A board whose host is not ready at once: nothing drives the lines to it before it says that it is.
+//! A board with a gate: its host is not ready at once, and no line to the host may be driven before
+//! the gate's input allows it.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_boards::{Board, Way, board, boards};
@@ -6,7 +7,7 @@ use carrystep_files::Source;
 use carrystep_verilog::{CLOCK_NAME, Gateware, shipped_machine};
 use std::process::Command;
 
-/// The board's clock, made by none of its cells: the oscillator itself.
+/// A replacement for the board's clock module that passes the oscillator through.
 const CLOCK: &str =
     "module carrystep_clock (input wire oscillator, output wire clock); assign clock = oscillator; endmodule\n";
 
@@ -20,16 +21,17 @@ fn gateware(board: &'static Board, spi: bool) -> Gateware<'static> {
     Gateware::new(board, &board.parts[0], Source { path: "machine.toml".into(), text: text.into() }).unwrap()
 }
 
-/// Its Verilog, with the clock of this bench.
+/// The Verilog of the gateware, with the clock module of this bench.
 fn verilog(gateware: &Gateware<'_>) -> String {
     let files = gateware.verilog().unwrap().into_iter();
     let ours = files.filter(|file| file.name != format!("{CLOCK_NAME}.v"));
     ours.map(|file| file.text).collect::<String>() + CLOCK
 }
 
-/// What the bench of Icarus prints: `right`, or the first thing that is wrong.
+/// The output of the Icarus bench: `right`, or the first error.
 ///
-/// The gate's input is low, high for nearly long enough, low for a clock, high for long enough, and low again.
+/// The gate's input is low, high for slightly less than its wait time, low for a clock, high for
+/// long enough, and low again.
 fn seen(gateware: &Gateware<'_>, spi: bool, verilog: &str) -> String {
     let board = board("mojo-v3").unwrap();
     let gate = board.gate.as_ref().unwrap();
@@ -90,9 +92,9 @@ endmodule
     run("vvp", &["-n", "bench.vvp"])
 }
 
-/// Every output of the board's that ends at the host is one of those that the gate holds.
+/// The gate must hold every output of the board that is connected to the host.
 #[test]
-fn the_gate_holds_every_line_to_the_host() {
+fn gate_holds_every_line_to_the_host() {
     let gated: Vec<&Board> = boards().iter().filter(|board| board.gate.is_some()).collect();
     assert_eq!(gated.iter().map(|board| board.name.as_str()).collect::<Vec<_>>(), ["mojo-v3"]);
     let out = |port: &str| carrystep_boards::PORTS.iter().any(|known| port == known.name && known.way == Way::Out);
@@ -109,7 +111,8 @@ fn no_line_to_the_host_is_driven_before_the_gate_allows_it() {
         let gateware = gateware(board, spi);
         let text = verilog(&gateware);
         assert_eq!(seen(&gateware, spi, &text), "right", "spi: {spi}");
-        // Planted: lines that are driven from the beginning, and a gate that never forgets.
+        // Mutations: lines that are always driven, and a gate that is not reset when its input
+        // becomes low.
         let planted = [
             ("wire driven = cclk_waited[15];", "wire driven = 1'b1;"),
             ("if (!cclk_seen[1]) cclk_waited", "if (1'b0) cclk_waited"),
@@ -121,9 +124,10 @@ fn no_line_to_the_host_is_driven_before_the_gate_allows_it() {
     }
 }
 
-/// Both toolchains for a Spartan-6 make a buffer with an output enable of such a line: yosys shows it here.
+/// Both toolchains for a Spartan-6 turn such a line into a buffer with an output enable; yosys
+/// shows it here.
 #[test]
-fn a_held_line_becomes_a_buffer_with_an_output_enable() {
+fn held_line_becomes_a_buffer_with_an_output_enable() {
     let board = board("mojo-v3").unwrap();
     for spi in [false, true] {
         let gateware = gateware(board, spi);

@@ -1,4 +1,4 @@
-//! Engine and link on one clock, and the line to the host.
+//! The virtual board: the models of engine and link on one clock, with the line to the host.
 
 use crate::wire::{Driven, SPI_RESTS, Wire};
 use carrystep_core::EngineBuild;
@@ -7,19 +7,20 @@ use carrystep_core::link::{Line, LinkInputs, LinkOutputs, Uart};
 use carrystep_model::fast::Edges;
 use carrystep_model::{FastEngine, Link};
 
-/// Switches at the board's inputs; `true` and a bit that is set are active, whatever the level of the pin.
+/// State of the switches at the board's inputs. `true`, or a bit that is set, means active,
+/// regardless of the level of the pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Switches {
     /// The e-stop is pressed.
     pub estop: bool,
-    /// Limits at the low ends, a bit each axis.
+    /// Mask of the limits at the low ends that are reached.
     pub limit_min: u8,
-    /// Limits at the high ends, a bit each axis.
+    /// Mask of the limits at the high ends that are reached.
     pub limit_max: u8,
 }
 
 impl Switches {
-    /// What they drive, with the polarity of their pins.
+    /// Levels of the input pins, with the polarity of the build.
     pub(crate) fn pins(self, guard: &Guard) -> EngineInputs {
         let low = if guard.limits_low { 0xff } else { 0 };
         EngineInputs {
@@ -31,25 +32,25 @@ impl Switches {
     }
 }
 
-/// The board.
+/// A board of models: fast engine, link and line.
 #[derive(Debug, Clone)]
 pub struct Board {
     engine: FastEngine,
     link: Link,
     wire: Wire,
-    /// What the switches drive, with the polarity of their pins.
+    /// Levels of the switch inputs, with the polarity of their pins.
     pins: EngineInputs,
     loads: Vec<u64>,
     stops: Vec<(u64, Cause)>,
 }
 
 impl Board {
-    /// A board as it is configured, in cycle 0, with no switch pressed.
+    /// A board right after configuration, in cycle 0, with a UART and with no switch pressed.
     pub fn new(build: &EngineBuild, uart: Uart) -> Self {
         Self::with(build, uart.into(), Wire::uart(build.timebase.clock_hz(), uart))
     }
 
-    /// The same on an SPI of this rate, Hz.
+    /// As [`Self::new`], with an SPI of this rate, Hz.
     pub fn on_spi(build: &EngineBuild, sck_hz: u64) -> Self {
         Self::with(build, Line::Spi, Wire::spi(build.timebase.clock_hz(), sck_hz))
     }
@@ -67,47 +68,47 @@ impl Board {
         board
     }
 
-    /// The cycle it is in.
+    /// Number of the current clock cycle.
     pub fn cycle(&self) -> u64 {
         self.engine.cycle()
     }
 
-    /// Its engine.
+    /// The model of the engine.
     pub fn engine(&self) -> &FastEngine {
         &self.engine
     }
 
-    /// What the engine says in this cycle.
+    /// The outputs of the engine in this cycle.
     pub fn outputs(&self) -> EngineOutputs {
         self.engine.outputs(&self.inputs(&self.link.outputs()))
     }
 
-    /// The cycles in which starts have loaded their first segments.
+    /// The cycles in which starts loaded their first segments.
     pub fn loads(&self) -> &[u64] {
         &self.loads
     }
 
-    /// The stops that were called: the first cycle with the fault, and why.
+    /// The stops so far: the first cycle with the fault, and the cause.
     pub fn stops(&self) -> &[(u64, Cause)] {
         &self.stops
     }
 
-    /// Says a byte to it, at the line's pace.
+    /// Queues a byte for transmission to the board, at the line's rate.
     pub fn say(&mut self, byte: u8) {
         self.wire.say(byte);
     }
 
-    /// Bytes that have not yet gone to it.
+    /// Number of bytes that were not transmitted completely.
     pub fn unsaid(&self) -> usize {
         self.wire.unsaid()
     }
 
-    /// Bytes are on the line, either way, or an answer is being made.
+    /// Whether bytes are being transmitted in either direction, or an answer is being assembled.
     pub fn talks(&self) -> bool {
         self.wire.unsaid() > 0 || self.wire.is_hearing() || self.link.quiet(true) != u64::MAX
     }
 
-    /// The next byte from it.
+    /// The next byte received from the board.
     pub fn next_byte(&mut self) -> Option<u8> {
         self.wire.next_byte()
     }
@@ -117,8 +118,9 @@ impl Board {
         self.pins = switches.pins(&self.engine.core().build().guard);
     }
 
-    /// Goes on to this cycle; `to` hears of the pins. It stops once on its way, where the first start has loaded: until
-    /// then nothing was to be heard, nor for a tick after that.
+    /// Runs the board up to cycle `end`; `to` receives the edges of the pins. The run ends early,
+    /// once, when the first start has loaded its segments. Up to then, and for a tick after, there
+    /// are no edges.
     pub fn run(&mut self, end: u64, to: &mut impl Edges) {
         let waits = self.loads.is_empty();
         while self.cycle() < end && self.loads.is_empty() == waits {
@@ -135,7 +137,8 @@ impl Board {
         }
     }
 
-    /// The link alone, for as long as the engine means nothing to it, to this cycle at the most; where it is then.
+    /// Runs the link alone as long as the engine does not affect it, at most up to cycle `end`.
+    /// Returns the cycle that it has reached.
     fn run_link(&mut self, end: u64) -> u64 {
         let mut cycle = self.cycle();
         while cycle < end && self.link.is_alone() {
@@ -152,7 +155,7 @@ impl Board {
         cycle
     }
 
-    /// The engine to where the link is.
+    /// Runs the engine up to the cycle that the link has reached.
     fn follow(&mut self, inputs: &EngineInputs, end: u64, to: &mut impl Edges) {
         let clocks = end - self.cycle();
         let begun = self.engine.core().has_turns();
@@ -173,7 +176,7 @@ impl Board {
         self.link.catch_up(turns, |axis, item| core.item(axis, item));
     }
 
-    /// One clock of everything.
+    /// Runs link and engine for one clock.
     fn clock(&mut self, inputs: &EngineInputs, to: &mut impl Edges) {
         let asks = self.link.outputs();
         let says = self.engine.outputs(inputs);
@@ -212,5 +215,5 @@ impl Board {
     }
 }
 
-/// The item of an axis that is its position.
+/// Number of the item of an axis that holds its position.
 const POSITION: u8 = 2;

@@ -1,4 +1,4 @@
-//! A board on a desk: the terminal that its host opens, and the time that passes.
+//! Connects a board to a pseudo-terminal that a host opens, and runs it at a pace.
 
 use crate::gateware::Gateware;
 use crate::pace::Pace;
@@ -9,27 +9,27 @@ use std::io;
 use std::time::Duration;
 use thiserror::Error;
 
-/// Looks at the host in a second of the board's time.
+/// Number of exchanges with the host per second of the board's time.
 const LOOKS_PER_SECOND: u64 = 10_000;
 
-/// Bytes on their way to the board from which on the host has to wait.
+/// Number of waiting bytes from which on no more are read from the host.
 const FULL: usize = 256;
 
-/// A wait for the time to pass, or for the host.
+/// Time to sleep before the next look at the time and at the host.
 const NAP: Duration = Duration::from_micros(300);
 
-/// Why a board goes on no more.
+/// Why a board cannot continue.
 #[derive(Debug, Error)]
 pub enum DeskError {
-    /// What simulates it is gone.
+    /// The simulation has failed.
     #[error(transparent)]
     Level(#[from] LevelError),
-    /// Its terminal is.
+    /// The pseudo-terminal has failed.
     #[error("the pseudo-terminal is gone: {0}")]
     Terminal(#[from] io::Error),
 }
 
-/// Board, terminal and pace.
+/// A board with its terminal and its pace.
 #[derive(Debug)]
 pub struct Desk<B> {
     /// The board.
@@ -40,15 +40,16 @@ pub struct Desk<B> {
 }
 
 impl<B: Gateware> Desk<B> {
-    /// A board of this clock, Hz.
+    /// Connects a board with this clock, Hz, to a terminal.
     pub fn new(board: B, terminal: Terminal, pace: Pace, clock_hz: u64) -> Self {
         Self { board, terminal, pace, clock_hz }
     }
 
-    /// Goes on by a ten-thousandth of a second at the most; where the board is ahead of its time, naps.
+    /// Runs the board for at most a ten-thousandth of a second. If the board is ahead of its pace,
+    /// sleeps for a short time.
     ///
     /// # Errors
-    /// [`DeskError`].
+    /// [`DeskError`] if the simulation or the terminal has failed.
     pub fn step(&mut self, to: &mut impl Edges) -> Result<(), DeskError> {
         if self.board.unsaid() < FULL {
             let bytes = self.terminal.take();

@@ -1,63 +1,66 @@
-//! What a board is to whoever drives it: bytes in and out, switches, and the time that passes.
+//! The interface of a board, whether of models or of Verilog: bytes in and out, switches, and
+//! simulated time.
 
 use crate::board::{Board, Switches};
 use carrystep_core::engine::Cause;
 use carrystep_model::fast::Edges;
 use carrystep_simulators::LevelError;
 
-/// A board that waits for its host keeps so many segments waiting for each axis in the middle of a move.
+/// Number of segments per axis that must remain queued in the middle of a move when a board waits
+/// for its host.
 pub const KEPT: usize = 3;
 
-/// Clocks for which a board that waits for its host goes on at once while bytes are on the line.
+/// Number of clocks for which a board that waits for its host continues while bytes are being
+/// transmitted.
 const TALK: u64 = 1000;
 
 /// A board, of models or of Verilog.
 pub trait Gateware {
-    /// The cycle it is in.
+    /// Number of the current clock cycle.
     fn cycle(&self) -> u64;
 
-    /// No axis moves.
+    /// Whether no axis moves.
     fn rests(&self) -> bool;
 
-    /// The stop that holds it, and the axes that called it.
+    /// The stop in force: its cause, and the mask of the axes that caused it.
     fn fault(&self) -> Option<(Cause, u8)>;
 
-    /// Pulses forward less pulses back.
+    /// Position of an axis: pulses forward minus pulses backward.
     fn position(&self, axis: usize) -> i32;
 
-    /// The STEP pins, a bit each axis.
+    /// Levels of the STEP pins, a bit for each axis.
     fn step(&self) -> u8;
 
-    /// Steps that were discarded, where that can be told.
+    /// Number of steps of an axis that were discarded; `None` if this board cannot report it.
     fn discarded(&self, axis: usize) -> Option<u32>;
 
-    /// Clocks for which it may go on without its host, so that no queue becomes shorter than [`KEPT`]; `None` where no axis
-    /// needs its host, or where that cannot be told.
+    /// Number of clocks for which the board may run without its host so that no queue becomes
+    /// shorter than [`KEPT`]. `None` if no axis needs its host, or if this board cannot report it.
     fn alone(&self) -> Option<u64>;
 
-    /// The cycles in which starts have loaded their first segments.
+    /// The cycles in which starts loaded their first segments.
     fn loads(&self) -> &[u64];
 
-    /// The stops that were called: the first cycle with the fault, and why.
+    /// The stops so far: the first cycle with the fault, and the cause.
     fn stops(&self) -> &[(u64, Cause)];
 
-    /// Says a byte to it, at the line's pace.
+    /// Queues a byte for transmission to the board, at the line's rate.
     fn say(&mut self, byte: u8);
 
-    /// Bytes that have not yet gone to it.
+    /// Number of bytes that were not transmitted completely.
     fn unsaid(&self) -> usize;
 
-    /// The next byte from it.
+    /// The next byte received from the board.
     fn next_byte(&mut self) -> Option<u8>;
 
     /// Sets the switches from this cycle on.
     fn press(&mut self, switches: Switches);
 
-    /// Goes on to this cycle; `to` hears of the pins. It stops once on its way, where the first start has loaded: until then
-    /// nothing was to be heard.
+    /// Runs the board up to cycle `end`; `to` receives the edges of the pins. The run ends early,
+    /// once, when the first start has loaded its segments; up to then there are no edges.
     ///
     /// # Errors
-    /// [`LevelError`]: what simulates it is gone.
+    /// [`LevelError`] if the simulation has failed.
     fn run(&mut self, end: u64, to: &mut impl Edges) -> Result<(), LevelError>;
 }
 

@@ -1,12 +1,13 @@
-//! A board that is not there: the model of the engine and of its host link, with the line between it and its host.
+//! The virtual board: models of the engine and of its host link, with the line between board and
+//! host.
 //!
 //! ```text
 //! bytes -> Speaker --rx--> Link --------> FastEngine -> edges of STEP and DIR
 //! bytes <- Ear <---tx----- Link <--------     ^------- e-stop and limits
 //! ```
 //!
-//! [`VerilatedBoard`] has the exported Verilog in the place of link and engine. Time is clocks of the gateware: whoever has
-//! a board says how far it runs.
+//! [`VerilatedBoard`] uses the exported Verilog instead of the models of link and engine. Time is
+//! counted in clocks of the gateware; the caller decides how far the board runs.
 
 mod board;
 #[cfg(unix)]

@@ -1,17 +1,19 @@
-//! The host's end of a UART, at the host's own baud rate: bits and clocks need not divide.
+//! The host's end of a UART, at the host's own baud rate. A bit need not be a whole number of
+//! clocks.
 
 use carrystep_core::link::Uart;
 use std::collections::VecDeque;
 
-/// Bits of a byte: start, eight, stop.
+/// Bits per byte: a start bit, eight data bits, a stop bit.
 const BITS: u32 = 10;
 
-/// A time in parts of a clock, so many that a bit is a whole number of them.
+/// The unit of time: a fraction of a clock, chosen so that a clock and a bit are whole numbers of
+/// it.
 #[derive(Debug, Clone, Copy)]
 struct Bits {
-    /// Parts of a clock.
+    /// Units per clock.
     parts: u128,
-    /// Parts of a bit.
+    /// Units per bit.
     bit: u128,
 }
 
@@ -20,48 +22,49 @@ impl Bits {
         Self { parts: uart.baud().into(), bit: clock_hz.into() }
     }
 
-    /// The first clock that does not begin before this time.
+    /// The first clock that begins at or after this time.
     fn clock(self, time: u128) -> u64 {
         time.div_ceil(self.parts) as u64
     }
 }
 
-/// Bytes to the gateware.
+/// The transmitter: sends bytes to the gateware.
 #[derive(Debug, Clone)]
 pub struct Speaker {
     bits: Bits,
     queue: VecDeque<u8>,
-    /// What is being said, the present bit lowest, and how many bits of it are left; 0 at rest.
+    /// The bits being sent; the current one is the lowest.
     word: u16,
+    /// Number of these bits that are left; 0 when idle.
     left: u32,
-    /// When the present bit ends.
+    /// End of the current bit.
     ends: u128,
 }
 
 impl Speaker {
-    /// A line at rest.
+    /// A transmitter with an idle line.
     pub fn new(clock_hz: u64, uart: Uart) -> Self {
         Self { bits: Bits::new(clock_hz, uart), queue: VecDeque::new(), word: 1, left: 0, ends: 0 }
     }
 
-    /// Says a byte after all others.
+    /// Queues a byte behind all others.
     pub fn say(&mut self, byte: u8) {
         self.queue.push_back(byte);
     }
 
-    /// Bytes that are not said yet, the present one included.
+    /// Number of bytes that are not sent completely.
     pub fn unsaid(&self) -> usize {
         self.queue.len() + usize::from(self.left > 0)
     }
 
-    /// The level in a clock, which is never before the last one that was asked about.
+    /// The level in a clock. Calls must not go back in time.
     pub fn level(&mut self, cycle: u64) -> bool {
         while self.bits.clock(self.ends) <= cycle {
             if self.left > 1 {
                 self.word >>= 1;
                 self.left -= 1;
             } else if let Some(byte) = self.queue.pop_front() {
-                // Behind the byte before, or now.
+                // The next byte begins right behind the one before, or now.
                 if self.left == 0 {
                     self.ends = self.ends.max(u128::from(cycle) * self.bits.parts);
                 }
@@ -76,7 +79,8 @@ impl Speaker {
         self.word & 1 == 1
     }
 
-    /// Clocks for which the level of this clock stays, this one included; more where nothing is said.
+    /// Number of clocks, this one included, for which the level stays. It may be larger if nothing
+    /// is sent.
     pub fn stays(&self, cycle: u64) -> u64 {
         if self.left == 0 && self.queue.is_empty() {
             u64::MAX
@@ -86,27 +90,27 @@ impl Speaker {
     }
 }
 
-/// Bytes from the gateware.
+/// The receiver: collects bytes from the gateware.
 #[derive(Debug, Clone)]
 pub struct Ear {
     bits: Bits,
     level: bool,
-    /// When the line is looked at next, and what has been heard under a mark; at rest, nothing.
+    /// Time of the next sample, and the bits sampled so far below a marker bit; `None` when idle.
     byte: Option<(u128, u16)>,
     heard: VecDeque<u8>,
 }
 
 impl Ear {
-    /// A line at rest.
+    /// A receiver with an idle line.
     pub fn new(clock_hz: u64, uart: Uart) -> Self {
         Self { bits: Bits::new(clock_hz, uart), level: true, byte: None, heard: VecDeque::new() }
     }
 
-    /// The line has had its level up to this clock, and has this one from here on.
+    /// The line had its previous level up to this clock, and has this level from here on.
     pub fn hear(&mut self, cycle: u64, level: bool) {
         while let Some((look, bits)) = self.byte.filter(|(look, _)| self.bits.clock(*look) < cycle) {
             self.byte = if bits & 1 == 1 {
-                // The stop bit; where it is low, that was no byte.
+                // The sample of the stop bit: if it is low, no byte was received.
                 self.heard.extend(self.level.then_some((bits >> 1) as u8));
                 None
             } else {
@@ -119,22 +123,22 @@ impl Ear {
         self.level = level;
     }
 
-    /// The line has had its level up to this clock, and keeps it.
+    /// The line had its level up to this clock, and keeps it.
     pub fn reach(&mut self, cycle: u64) {
         self.hear(cycle, self.level);
     }
 
-    /// The next byte that was heard.
+    /// The next byte received.
     pub fn next_byte(&mut self) -> Option<u8> {
         self.heard.pop_front()
     }
 
-    /// A byte has begun and is not over.
+    /// Whether the receiver is within a byte.
     pub fn is_hearing(&self) -> bool {
         self.byte.is_some()
     }
 
-    /// The line is at rest, and everything was taken.
+    /// Whether the line is idle and all bytes were taken.
     pub fn is_idle(&self) -> bool {
         self.byte.is_none() && self.heard.is_empty()
     }
@@ -145,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_said_is_heard_at_any_rate() {
+    fn bytes_arrive_at_any_baud_rate_and_clock() {
         for (clock_hz, baud) in [(48_000_000, 3_000_000), (48_000_000, 921_600), (12_000_000, 115_200)] {
             let uart = Uart::new(clock_hz, baud).unwrap();
             let (mut speaker, mut ear) = (Speaker::new(clock_hz, uart), Ear::new(clock_hz, uart));
@@ -158,7 +162,7 @@ mod tests {
                 cycle += speaker.stays(cycle).min(1000);
             }
             assert_eq!(std::iter::from_fn(|| ear.next_byte()).collect::<Vec<_>>(), bytes);
-            // Ten bits a byte, and not a clock more than that.
+            // A byte takes ten bits, without a clock in between.
             let exact = 10 * bytes.len() as u64 * clock_hz / u64::from(baud);
             assert!((17 + exact..17 + exact + 2002).contains(&cycle), "{cycle} {exact}");
         }

@@ -1,32 +1,33 @@
-//! How fast a board's time goes beside the host's.
+//! The pace of a board: how its simulated time relates to real time.
 
 use std::time::{Duration, Instant};
 
-/// A board that was held up does not hurry for longer than this: its host was held up too.
+/// Greatest time that a board makes up for after a delay. Its host was probably delayed too.
 const BEHIND: Duration = Duration::from_millis(20);
 
-/// So long without a byte, and the host is no more: a board that waits for its host goes on.
+/// Time without a byte after which the host is considered gone, so that a board that waits for its
+/// host continues.
 const GONE: Duration = Duration::from_secs(1);
 
-/// Which cycle a board may go to.
+/// Decides up to which cycle a board may run.
 #[derive(Debug)]
 pub enum Pace {
-    /// By the clock on the wall.
+    /// The board runs in real time.
     Real(Walk),
-    /// As fast as it can, but never further than `ahead` clocks past the last byte from the host, nor further than its
-    /// queues allow ([`crate::Gateware::alone`]): a host that is held up is not taken for dead, and its own delays make no
-    /// segment late.
+    /// The board runs as fast as possible, but at most `ahead` clocks beyond the last byte from the
+    /// host, and not further than its queues allow ([`crate::Gateware::alone`]). A delayed host is
+    /// therefore not considered dead, and its delays make no segment late.
     Fast {
-        /// Clocks.
+        /// Greatest number of clocks beyond the last byte.
         ahead: u64,
-        /// When the host was last heard, on the wall and in cycles.
+        /// Real time and cycle of the last byte from the host.
         heard: Option<(Instant, u64)>,
-        /// Where the host is gone.
+        /// Real-time pace for the time after the host is gone.
         alone: Walk,
     },
 }
 
-/// Cycles by the clock on the wall.
+/// Converts real time to cycles.
 #[derive(Debug)]
 pub struct Walk {
     clock_hz: u64,
@@ -34,7 +35,7 @@ pub struct Walk {
 }
 
 impl Walk {
-    /// From this cycle on.
+    /// Counts from now and from this cycle.
     pub fn new(clock_hz: u64, cycle: u64) -> Self {
         Self { clock_hz, from: (Instant::now(), cycle) }
     }
@@ -56,24 +57,26 @@ impl Walk {
 }
 
 impl Pace {
-    /// By the clock on the wall.
+    /// Real time, for a board with this clock, Hz.
     pub fn real(clock_hz: u64) -> Self {
         Self::Real(Walk::new(clock_hz, 0))
     }
 
-    /// As fast as a board of this clock can that runs at most `ahead` clocks past what it heard.
+    /// As fast as possible, for a board with this clock, Hz, but at most `ahead` clocks beyond the
+    /// last byte from the host.
     pub fn fast(clock_hz: u64, ahead: u64) -> Self {
         Self::Fast { ahead, heard: None, alone: Walk::new(clock_hz, 0) }
     }
 
-    /// Bytes have come from the host.
+    /// Records that a byte from the host arrived in this cycle.
     pub fn hear(&mut self, cycle: u64) {
         if let Self::Fast { heard, .. } = self {
             *heard = Some((Instant::now(), cycle));
         }
     }
 
-    /// The cycle to go to now, from this one; the board may go on without its host for `alone` clocks.
+    /// The cycle up to which the board may run now. It is in cycle `cycle`, and may run for `alone`
+    /// clocks without its host.
     pub fn target(&mut self, cycle: u64, alone: Option<u64>) -> u64 {
         match self {
             Self::Real(walk) => walk.target(cycle),

@@ -1,40 +1,46 @@
-//! The host's end of an SPI, mode 0: as long as there is something to say it is selected.
+//! The host's end of an SPI, mode 0. The host selects the gateware as long as it has bytes to send.
 //!
 //! ```text
 //! select_n  ^^\______________________________________/^^^
-//! sck       ________/^^\__/^^\__ ... __/^^\______________     half a period before the first edge and behind the last
+//! sck       ________/^^\__/^^\__ ... __/^^\______________
 //! mosi      --< bit 7 >< bit 6 > ...  < bit 0 >----------
-//! miso                 looked at where SCK rises
 //! ```
+//!
+//! The chip select is asserted half a period before the first edge of SCK, and deasserted half a
+//! period after the last one. MISO is sampled at the rising edges of SCK.
 
 use std::collections::VecDeque;
 
-/// Edges of SCK in a byte.
+/// Edges of SCK per byte.
 const EDGES: u8 = 16;
 
-/// The host; its clock need not divide the gateware's.
+/// The SPI controller. Its clock period need not be a whole number of gateware clocks.
 #[derive(Debug, Clone)]
 pub(crate) struct Master {
-    /// Parts of a clock, and of half a period of SCK.
+    /// Time units per clock.
     parts: u128,
+    /// Time units per half period of SCK.
     half: u128,
-    /// When the present levels may change.
+    /// Time when the current levels may change.
     ends: u128,
     queue: VecDeque<u8>,
-    /// What is being said, the present bit highest, and edges that are left of it.
+    /// The byte being sent; the current bit is the highest.
     byte: u8,
+    /// Number of edges of SCK that are left of this byte.
     left: u8,
     selected: bool,
     sck: bool,
-    /// Clocks in which MISO is to be looked at, its level, and what was seen under a mark.
+    /// Clocks in which MISO will be sampled.
     looks: VecDeque<u64>,
+    /// Current level of MISO.
     miso: bool,
+    /// The bits sampled so far, below a marker bit.
     comes: u16,
     heard: VecDeque<u8>,
 }
 
 impl Master {
-    /// A host at rest, with this SCK.
+    /// An idle controller, with this rate of SCK, Hz.
     pub(crate) fn new(clock_hz: u64, sck_hz: u64) -> Self {
         Self {
             parts: u128::from(2 * sck_hz),
@@ -52,22 +58,23 @@ impl Master {
         }
     }
 
-    /// Says a byte after all others, and hears one.
+    /// Queues a byte for transmission; each byte sent also receives one.
     pub(crate) fn say(&mut self, byte: u8) {
         self.queue.push_back(byte);
     }
 
-    /// Bytes that are not said yet, the present one included; 1 too until it has let go.
+    /// Number of bytes that are not sent completely. It is 1 until the chip select is deasserted.
     pub(crate) fn unsaid(&self) -> usize {
         self.queue.len() + usize::from(self.selected)
     }
 
-    /// The next byte that was heard.
+    /// The next byte received.
     pub(crate) fn next_byte(&mut self) -> Option<u8> {
         self.heard.pop_front()
     }
 
-    /// SCK, select (low) and MOSI in a clock, which is never before the last one that was asked about.
+    /// Levels of SCK, of the active-low chip select and of MOSI in a clock. Calls must not go back
+    /// in time.
     pub(crate) fn pins(&mut self, cycle: u64) -> [bool; 3] {
         while self.changes() <= cycle && self.unsaid() > 0 {
             self.ends = if self.selected { self.ends } else { self.ends.max(u128::from(cycle) * self.parts) };
@@ -77,7 +84,7 @@ impl Master {
         [self.sck, !self.selected, self.byte & 0x80 != 0]
     }
 
-    /// Half a period.
+    /// Advances by half a period.
     fn go_on(&mut self) {
         match (self.left, self.sck) {
             (0, _) if self.selected => self.selected = false,
@@ -101,24 +108,25 @@ impl Master {
         }
     }
 
-    /// The next byte, where there is one.
+    /// Begins the next byte, if there is one.
     fn next(&mut self) {
         if let Some(byte) = self.queue.pop_front() {
             (self.byte, self.left) = (byte, EDGES);
         }
     }
 
-    /// The first clock that does not begin before the present levels end.
+    /// The first clock at or after the end of the current levels.
     fn changes(&self) -> u64 {
         self.ends.div_ceil(self.parts) as u64
     }
 
-    /// Clocks for which the pins stay, this one included; more where nothing is said.
+    /// Number of clocks, this one included, for which the pins stay. It may be larger if nothing is
+    /// sent.
     pub(crate) fn stays(&self, cycle: u64) -> u64 {
         if self.unsaid() == 0 { u64::MAX } else { self.changes().saturating_sub(cycle) }
     }
 
-    /// MISO has had its level up to this clock, and has this one from here on.
+    /// MISO had its previous level up to this clock, and has this level from here on.
     pub(crate) fn hear(&mut self, cycle: u64, level: bool) {
         while self.looks.front().is_some_and(|look| *look < cycle) {
             self.looks.pop_front();
@@ -131,7 +139,7 @@ impl Master {
         self.miso = level;
     }
 
-    /// MISO has had its level up to this clock, and keeps it.
+    /// MISO had its level up to this clock, and keeps it.
     pub(crate) fn reach(&mut self, cycle: u64) {
         self.hear(cycle, self.miso);
     }

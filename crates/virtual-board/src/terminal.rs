@@ -1,13 +1,13 @@
-//! The board's end of a pseudo-terminal: what a host opens as a serial port.
+//! The board's end of a pseudo-terminal, which a host opens as a serial port.
 
 use serialport::{SerialPort as _, TTYPort};
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::time::Duration;
 
-/// Most bytes that are taken from the host at once: what a bridge would keep.
+/// Greatest number of bytes read from the host at once, as many as a USB bridge would buffer.
 const BYTES: usize = 512;
 
-/// A pseudo-terminal whose other end anyone may open, one after the other.
+/// A pseudo-terminal whose other end any host may open, one after the other.
 #[derive(Debug)]
 pub struct Terminal {
     port: TTYPort,
@@ -15,7 +15,7 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// A new one.
+    /// Creates a pseudo-terminal.
     ///
     /// # Errors
     /// The system has no more of them.
@@ -26,29 +26,30 @@ impl Terminal {
         Ok(Self { port, name })
     }
 
-    /// What the host opens.
+    /// The device name that the host opens.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Bytes that the host has sent, if any; does not wait.
+    /// The bytes that the host has sent, if any. Does not wait.
     pub fn take(&mut self) -> Vec<u8> {
         let mut bytes = vec![0; BYTES];
-        // Where nobody has the other end open, nothing comes.
+        // While no host has the other end open, no bytes arrive.
         let there = self.port.bytes_to_read().unwrap_or(0);
         let come = if there == 0 { 0 } else { self.port.read(&mut bytes).unwrap_or(0) };
         bytes.truncate(come);
         bytes
     }
 
-    /// Gives the host bytes; what nobody takes is lost, as on a line that nobody listens to.
+    /// Sends bytes to the host. They are lost if no host reads them, as on a real line.
     ///
     /// # Errors
-    /// The terminal is gone.
+    /// The terminal has failed.
     pub fn give(&mut self, bytes: &[u8]) -> io::Result<()> {
         match self.port.write_all(bytes) {
             Err(error)
-                // The pipe is broken for as long as no host has the other end open: one was killed, and another comes.
+                // While no host has the other end open, the pipe is broken. This is not an error: a
+                // killed host may be followed by another.
                 if !matches!(
                     error.kind(),
                     ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::WriteZero | ErrorKind::BrokenPipe

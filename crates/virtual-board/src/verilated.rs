@@ -1,4 +1,4 @@
-//! The board whose engine, link and line are the exported Verilog, in Verilator.
+//! The board whose engine, link and line are the exported Verilog, simulated with Verilator.
 
 use crate::board::Switches;
 use crate::gateware::Gateware;
@@ -10,10 +10,10 @@ use carrystep_model::fast::{Change, Edge, Edges};
 use carrystep_simulators::LevelError;
 use carrystep_simulators::board::{BoardProcess, Did, Levels, Standing};
 
-/// Clocks that the process is told of at once.
+/// Greatest number of clocks sent to the process at once.
 const CLOCKS: u64 = 5000;
 
-/// The board; its time is that of its process, far slower than a real one's.
+/// A board in a Verilator process. It runs far slower than real time.
 #[derive(Debug)]
 pub struct VerilatedBoard {
     build: EngineBuild,
@@ -25,20 +25,20 @@ pub struct VerilatedBoard {
     stops: Vec<(u64, Cause)>,
     pins: [u8; 2],
     travelled: [i32; MAX_AXES],
-    /// Edges between the first load and where it stopped because of it: the next run tells them.
+    /// Edges after the first load at which a run stopped; the next run delivers them.
     late: Vec<Edge>,
 }
 
 impl VerilatedBoard {
-    /// A board as it is configured, in cycle 0, with no switch pressed.
+    /// A board right after configuration, in cycle 0, with a UART and with no switch pressed.
     ///
     /// # Errors
-    /// [`LevelError`]: Verilator is missing or fails, or there is no such gateware.
+    /// [`LevelError`] if Verilator is missing or fails, or if there is no such gateware.
     pub fn new(build: &EngineBuild, uart: Uart) -> Result<Self, LevelError> {
         Self::with(build, uart.into(), Wire::uart(build.timebase.clock_hz(), uart))
     }
 
-    /// The same on an SPI of this rate, Hz.
+    /// As [`Self::new`], with an SPI of this rate, Hz.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -116,12 +116,12 @@ impl Gateware for VerilatedBoard {
         self.pins[0]
     }
 
-    /// Its pins do not tell.
+    /// Not visible at the pins.
     fn discarded(&self, _: usize) -> Option<u32> {
         None
     }
 
-    /// Nor this.
+    /// Not visible at the pins.
     fn alone(&self) -> Option<u64> {
         None
     }
@@ -167,7 +167,7 @@ impl Gateware for VerilatedBoard {
     }
 }
 
-/// What has changed of STEP and DIR, axis by axis.
+/// Calls `to` with the changes of STEP and DIR, axis by axis.
 fn edges(clock: u64, [step, dir]: [u8; 2], [step_now, dir_now]: [u8; 2], to: &mut dyn FnMut(Edge)) {
     for axis in 0..MAX_AXES as u8 {
         let backward = dir_now >> axis & 1 == 1;

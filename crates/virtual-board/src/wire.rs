@@ -1,28 +1,28 @@
-//! The line between a host and a board: bytes at the one end, levels of pins at the other.
+//! The line between a host and a board: bytes at the host's end, levels of pins at the board's end.
 
 use crate::line::{Ear, Speaker};
 use crate::spi::Master;
 use carrystep_core::link::Uart;
 
-/// The host's end of it.
+/// The host's end of the line.
 #[derive(Debug, Clone)]
 pub(crate) enum Wire {
     Uart(Speaker, Ear),
     Spi(Master),
 }
 
-/// What the host drives. A UART's SPI rests.
+/// Levels that the host drives. With a UART the SPI pins are idle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Driven {
-    /// RX, or MOSI.
+    /// Level of RX, or of MOSI.
     pub rx: bool,
-    /// SCK, and select (low).
+    /// Levels of SCK and of the active-low chip select.
     pub spi: [bool; 2],
-    /// For so many clocks, at the least.
+    /// Number of clocks, at least, for which these levels stay.
     pub stays: u64,
 }
 
-/// SCK and select where nothing is said.
+/// Levels of SCK and chip select when idle.
 pub(crate) const SPI_RESTS: [bool; 2] = [false, true];
 
 impl Wire {
@@ -34,7 +34,7 @@ impl Wire {
         Self::Spi(Master::new(clock_hz, sck_hz))
     }
 
-    /// Says a byte after all others.
+    /// Queues a byte for transmission.
     pub(crate) fn say(&mut self, byte: u8) {
         match self {
             Self::Uart(speaker, _) => speaker.say(byte),
@@ -42,7 +42,7 @@ impl Wire {
         }
     }
 
-    /// Bytes that have not yet gone.
+    /// Number of bytes that are not sent completely.
     pub(crate) fn unsaid(&self) -> usize {
         match self {
             Self::Uart(speaker, _) => speaker.unsaid(),
@@ -50,7 +50,7 @@ impl Wire {
         }
     }
 
-    /// The next byte from the board.
+    /// The next byte received from the board.
     pub(crate) fn next_byte(&mut self) -> Option<u8> {
         match self {
             Self::Uart(_, ear) => ear.next_byte(),
@@ -58,7 +58,7 @@ impl Wire {
         }
     }
 
-    /// The host is in the middle of a byte from the board.
+    /// Whether the host is within a byte from the board.
     pub(crate) fn is_hearing(&self) -> bool {
         match self {
             Self::Uart(_, ear) => ear.is_hearing(),
@@ -66,7 +66,7 @@ impl Wire {
         }
     }
 
-    /// What is driven in a clock, which is never before the last one that was asked about.
+    /// Levels in a clock. Calls must not go back in time.
     pub(crate) fn drive(&mut self, cycle: u64) -> Driven {
         match self {
             Self::Uart(speaker, _) => Driven { rx: speaker.level(cycle), spi: SPI_RESTS, stays: speaker.stays(cycle) },
@@ -77,7 +77,8 @@ impl Wire {
         }
     }
 
-    /// The line from the gateware has had its level up to this clock, and has this one from here on.
+    /// The line from the gateware had its previous level up to this clock, and has this level from
+    /// here on.
     pub(crate) fn hear(&mut self, cycle: u64, level: bool) {
         match self {
             Self::Uart(_, ear) => ear.hear(cycle, level),
@@ -85,7 +86,7 @@ impl Wire {
         }
     }
 
-    /// The line from the gateware has had its level up to this clock, and keeps it.
+    /// The line from the gateware had its level up to this clock, and keeps it.
     pub(crate) fn reach(&mut self, cycle: u64) {
         match self {
             Self::Uart(_, ear) => ear.reach(cycle),

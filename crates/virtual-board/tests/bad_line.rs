@@ -1,5 +1,6 @@
-//! A board at the end of a line that flips, drops, doubles, cuts and delays bytes: its pulses are those of a clean line, or
-//! it has stopped and says why. `CARRYSTEP_FRAMES` asks for so many frames in all.
+//! A board on a line that flips, drops, repeats, cuts and delays bytes. Its pulses must be those of
+//! a clean line, or it must have stopped with a cause. The environment variable `CARRYSTEP_FRAMES`
+//! sets the total number of frames.
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -14,7 +15,7 @@ use support::random::Random;
 use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, Kind, asked, waves};
 
-/// Segments of an axis in a move, and ticks of each: the queues hold a seventh of a second.
+/// Segments of an axis in a move, and ticks of each. The queues then hold a seventh of a second.
 const SEGMENTS: u32 = 60;
 const TICKS: u32 = 10_000;
 
@@ -22,14 +23,14 @@ fn uart() -> Uart {
     Uart::new(CLOCK_HZ, 3_000_000).unwrap()
 }
 
-/// How a move went: its edges from its load on, and the stop that it ended with.
+/// Result of a move: its edges from its load on, and the stop that ended it.
 struct Went {
     edges: Vec<Edge>,
-    /// Cycles from its load on.
+    /// Cycles since the load, and the cause.
     stop: Option<(u64, Cause)>,
 }
 
-/// Makes a move, and clears what has stopped it.
+/// Executes a move, and clears the stop that may have ended it.
 fn make<B: Kind>(end: &End<B>, host: &mut BoardHost<B>, commands: &[Command]) -> Went {
     let (loads, stops) = (end.0.borrow().board.loads().len(), end.0.borrow().board.stops().len());
     let ended = host.stream(Program::new(commands, AXES as u8).unwrap(), |_| Wish::GoOn);
@@ -55,7 +56,8 @@ fn make<B: Kind>(end: &End<B>, host: &mut BoardHost<B>, commands: &[Command]) ->
     went
 }
 
-/// What the pins of a new board do at the end of such a line, and how often that harms.
+/// Runs a move with a new board on a line with these faults. Also returns how often the line did
+/// damage.
 fn on_a_line<B: Kind>(faults: Faults, seed: u64, commands: &[Command]) -> (Went, u64) {
     let end = End::<B>::new(uart(), faults, seed);
     let mut host = end.connect(uart());
@@ -65,7 +67,7 @@ fn on_a_line<B: Kind>(faults: Faults, seed: u64, commands: &[Command]) -> (Went,
     (went, harmed)
 }
 
-/// The same edges, all of them, or all before a stop.
+/// The edges must be equal; after a stop they must be a prefix.
 fn compare(went: &Went, clean: &[Edge]) {
     let until = went.stop.map_or(u64::MAX, |(cycle, _)| cycle);
     let before = |edges: &[Edge]| edges.iter().take_while(|edge| edge.clock < until).copied().collect::<Vec<_>>();
@@ -77,7 +79,7 @@ fn compare(went: &Went, clean: &[Edge]) {
 }
 
 #[test]
-fn pulses_on_a_bad_line_are_those_of_a_clean_one() {
+fn pulses_on_a_bad_line_equal_those_on_a_clean_line() {
     let frames = asked("CARRYSTEP_FRAMES", 3000);
     let mut random = Random(11);
     let (mut sent, mut moves, mut stops, mut edges, mut harmed) = (0, 0_u64, 0_u64, 0, 0);
@@ -88,7 +90,7 @@ fn pulses_on_a_bad_line_are_those_of_a_clean_one() {
         let (went, harms) = on_a_line::<Board>(Faults::BAD, random.next(), &commands);
         compare(&went, &clean.edges);
         if let Some((_, cause)) = went.stop {
-            // Nothing that a frame could have done: it came too late, or not at all.
+            // A damaged frame can only have been missing or late, so no other cause is possible.
             assert!(matches!(cause, Cause::Underrun | Cause::Watchdog), "{cause:?}");
             stops += 1;
         }
@@ -104,9 +106,10 @@ fn pulses_on_a_bad_line_are_those_of_a_clean_one() {
     assert!(stops * 2 < moves, "too few moves are made: {stops} of {moves} stopped");
 }
 
-/// The same line, at whose end is the exported Verilog: its pulses are those of a board of models on a clean one.
+/// The exported Verilog on the same line; its pulses must equal those of the models on a clean
+/// line.
 #[test]
-fn pulses_of_the_verilog_on_a_bad_line_are_those_of_models_on_a_clean_one() {
+fn pulses_of_the_verilog_on_a_bad_line_equal_those_of_models_on_a_clean_line() {
     let commands = waves(&mut Random(12), 9, 3000);
     let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
     let (went, harms) = on_a_line::<VerilatedBoard>(Faults::BAD, 5, &commands);
@@ -116,20 +119,20 @@ fn pulses_of_the_verilog_on_a_bad_line_are_those_of_models_on_a_clean_one() {
     assert_eq!(went.stop, None, "too little is made");
 }
 
-/// `CARRYSTEP_GARBAGE` asks for so many milliseconds.
+/// `CARRYSTEP_GARBAGE` sets the length of the test in ms.
 #[test]
 fn garbage_hangs_nothing() {
     hears_garbage::<Board>(asked("CARRYSTEP_GARBAGE", 2000));
 }
 
-/// `CARRYSTEP_VERILOG_MS` asks for so many milliseconds.
+/// `CARRYSTEP_VERILOG_MS` sets the length of the test in ms.
 #[test]
-fn garbage_hangs_no_verilog_at_921_600_baud() {
+fn garbage_does_not_hang_the_verilog_at_921_600_baud() {
     hears_garbage::<VerilatedBoard>(asked("CARRYSTEP_VERILOG_MS", 50));
 }
 
 fn hears_garbage<B: Kind>(milliseconds: u64) {
-    // As fast as the line carries it.
+    // At the full rate of the line.
     let uart = Uart::new(CLOCK_HZ, 921_600).unwrap();
     let end = End::<B>::new(uart, Faults::default(), 3);
     let mut random = Random(9);

@@ -1,4 +1,4 @@
-//! The driver for embedded-hal's SPI, with a board of models and with the exported Verilog at the bus.
+//! The embedded-hal SPI driver, with a board of models and with the exported Verilog on the bus.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -11,10 +11,10 @@ use support::bus::Bus;
 use support::random::Random;
 use support::{Kind, waves};
 
-/// Bits are flipped in so many of a million bytes.
+/// Number of flipped bits per million bytes.
 const BAD: u32 = 1500;
 
-/// The edges of a short move from its load on, and how often the bus did harm.
+/// The edges of a short move from its load on, and how often the bus did damage.
 fn moves<B: Kind>(sck_hz: u64, flip: u32) -> (Vec<Edge>, u64) {
     let bus = Bus::<B>::bad(sck_hz, flip, 4);
     let mut host = bus.connect();
@@ -31,7 +31,7 @@ fn moves<B: Kind>(sck_hz: u64, flip: u32) -> (Vec<Edge>, u64) {
 }
 
 #[test]
-fn pulses_are_those_of_models_on_a_clean_bus() {
+fn pulses_on_a_bad_bus_equal_those_of_models_on_a_clean_bus() {
     let (clean, _) = moves::<Board>(10_000_000, 0);
     assert!(clean.len() > 500, "{} edges are no move", clean.len());
     for (name, (edges, harmed)) in [

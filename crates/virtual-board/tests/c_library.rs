@@ -1,5 +1,6 @@
-//! The C library as the host of a board of models and of the exported Verilog: the pulses are those that the driver in Rust
-//! makes, on a clean line and on a bad one, over UART and SPI; another build is refused.
+//! The C library as the host of a board, of models and of exported Verilog. The pulses must equal
+//! those of the driver in Rust, on a clean and on a bad line, over UART and SPI. Another build must
+//! be refused.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -23,7 +24,7 @@ fn uart() -> Uart {
     Uart::new(CLOCK_HZ, 3_000_000).unwrap()
 }
 
-/// Segments of so many ticks.
+/// A move with segments of this number of ticks.
 fn commands(ticks: u32) -> Vec<Command> {
     waves(&mut Random(12), 9, ticks)
 }
@@ -32,7 +33,7 @@ fn connect<'a, B: Kind>(client: &'a mut dyn Client, end: &End<B>) -> WordHost<'a
     WordHost::connect(client, end.clone(), end.clone(), 12, uart().build_id(&build()).0).unwrap()
 }
 
-/// What the driver in Rust makes of it with a board of models, on a clean line.
+/// The edges that the driver in Rust makes with a board of models on a clean line.
 fn clean(commands: &[Command]) -> Vec<Edge> {
     let end = End::<Board>::new(uart(), Faults::default(), 0);
     let mut host = end.connect(uart());
@@ -42,7 +43,7 @@ fn clean(commands: &[Command]) -> Vec<Edge> {
     world.edges_since(world.board.loads()[0])
 }
 
-/// What a client makes of it, and how often the line did harm.
+/// The edges that a client makes, and how often the line did damage.
 fn moves<B: Kind>(client: &mut dyn Client, commands: &[Command], faults: Faults, seed: u64) -> (Vec<Edge>, u64) {
     let end = End::<B>::new(uart(), faults, seed);
     let mut host = connect(client, &end);
@@ -56,8 +57,8 @@ fn moves<B: Kind>(client: &mut dyn Client, commands: &[Command], faults: Faults,
 }
 
 #[test]
-fn its_pulses_are_those_of_the_driver_in_rust() {
-    // So long that a queue outlasts what the line does.
+fn c_client_makes_the_pulses_of_the_rust_driver() {
+    // The segments are so long that the queues do not run empty while the line repeats frames.
     let commands = commands(12_000);
     let clean = clean(&commands);
     assert!(clean.len() > 500, "{} edges are no move", clean.len());
@@ -72,13 +73,13 @@ fn its_pulses_are_those_of_the_driver_in_rust() {
 }
 
 #[test]
-fn so_are_those_of_the_verilog_on_a_bad_line() {
+fn c_client_with_verilog_on_a_bad_line_makes_the_pulses_of_the_rust_driver() {
     let commands = commands(5000);
     let (edges, harmed) = moves::<VerilatedBoard>(&mut CClient::shared(), &commands, Faults::BAD, 5);
     assert!(edges == clean(&commands) && harmed > 0);
 }
 
-/// The next move goes on from where the stop left the axes.
+/// The move after a stop begins where the stop left the axes.
 fn stops<B: Kind>() {
     let end = End::<B>::new(uart(), Faults::default(), 3);
     let mut client = CClient::shared();
@@ -100,14 +101,14 @@ fn stops<B: Kind>() {
 }
 
 #[test]
-fn it_stops_and_goes_on() {
+fn c_client_stops_and_resumes() {
     stops::<Board>();
     stops::<VerilatedBoard>();
 }
 
 #[test]
-fn over_spi() {
-    // Six segments on their way at the most (docs/protocol.md).
+fn c_client_works_over_spi() {
+    // At most six unacknowledged segments over SPI (docs/protocol.md).
     let mut client = CClient::with(&["-UCARRYSTEP_SLOTS", "-DCARRYSTEP_SLOTS=6"], |_, text| text.to_owned());
     let clean = clean(&commands(3000));
     assert!(over_bus::<Board>(&mut client) == clean, "models");
@@ -130,7 +131,7 @@ fn another_build_is_refused_and_named() {
     refused::<VerilatedBoard>();
 }
 
-/// The same engine on an SPI is another build.
+/// The same engine with an SPI is another build.
 fn refused<B: Kind>() {
     let end = End::<B>::new(uart(), Faults::default(), 1);
     let other = Line::Spi.build_id(&build());

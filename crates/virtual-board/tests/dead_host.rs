@@ -1,5 +1,6 @@
-//! A host that dies in the middle of a move: the board stops within its watchdog's time and the ramp, its positions are
-//! true, and the next host goes on without a restart. `CARRYSTEP_DEATHS` asks for so many.
+//! A host dies in the middle of a move. The board must stop within its watchdog's time and the
+//! ramp, its positions must be exact, and the next host must continue without a restart.
+//! `CARRYSTEP_DEATHS` sets the number of deaths.
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -14,16 +15,16 @@ use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, FASTEST, Kind, MS, STOP, TICK, asked, build, waves};
 
 #[test]
-fn the_board_stops_and_another_host_goes_on() {
+fn the_board_stops_when_its_host_dies_and_another_host_continues() {
     hosts_die::<Board>(asked("CARRYSTEP_DEATHS", 4), 700, Faults::BAD);
 }
 
 #[test]
-fn the_verilog_stops_and_another_host_goes_on() {
+fn verilog_stops_when_its_host_dies_and_another_host_continues() {
     hosts_die::<VerilatedBoard>(1, 20, Faults::default());
 }
 
-/// So many of them, each within so many milliseconds and twenty, at the end of such a line.
+/// Kills `deaths` hosts, each within `within` + 20 ms, on a line with these faults.
 fn hosts_die<B: Kind>(deaths: u64, within: u64, faults: Faults) {
     let guard = build().guard;
     let watchdog = u64::from(guard.watchdog + 1) * u64::from(guard.round) * TICK;
@@ -39,7 +40,8 @@ fn hosts_die<B: Kind>(deaths: u64, within: u64, faults: Faults) {
         let mut host: BoardHost<B> = end.connect(uart);
         host.settle().unwrap();
         host.enable().unwrap();
-        // Long segments go on for long after their host; short ones run dry.
+        // Long segments continue for long after the host's death; with short ones the queues run
+        // empty.
         let ticks = if seed % 2 == 0 { 60_000 } else { 5000 };
         let commands = waves(&mut random, 40, ticks);
         let dies = end.0.borrow().board.cycle() + (20 + random.below(within)) * MS;
@@ -49,7 +51,7 @@ fn hosts_die<B: Kind>(deaths: u64, within: u64, faults: Faults) {
         let moving = end.0.borrow().board.loads().len() > loads && !end.0.borrow().board.rests();
         match ended {
             Err(HostError::Line(_)) => died += u64::from(moving),
-            // It was over before, or the line alone has stopped it.
+            // The move was over before, or the line's faults alone stopped it.
             Err(HostError::Fault { .. }) | Ok(Ended::Done) => {
                 end.0.borrow_mut().dies = u64::MAX;
                 continue;
@@ -60,7 +62,7 @@ fn hosts_die<B: Kind>(deaths: u64, within: u64, faults: Faults) {
         end.wait((watchdog + ramp) / MS + 60);
         let world = end.0.borrow();
         let last = world.last_edge().map_or(0, |edge| edge.clock);
-        // What was on its way when it died is still heard.
+        // Bytes that were being transmitted when the host died still arrive.
         let since = last.saturating_sub(world.heard.max(dies));
         assert!(since <= watchdog + ramp, "an edge {} ms after the last byte", since / MS);
         assert!(world.board.rests());
@@ -73,7 +75,7 @@ fn hosts_die<B: Kind>(deaths: u64, within: u64, faults: Faults) {
         longest = longest.max(since);
         drop(world);
 
-        // Another host, on another line, without a restart.
+        // Another host on another line, without a restart of the board.
         end.0.borrow_mut().revive(Faults::default(), seed);
         let mut host = end.connect(uart);
         host.settle().unwrap();

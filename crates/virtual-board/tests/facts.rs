@@ -1,4 +1,5 @@
-//! What docs/protocol.md says of rare requests and of the watchdog, from a board of models and from the exported Verilog.
+//! The statements of docs/protocol.md about rare requests and about the watchdog, checked with a
+//! board of models and with the exported Verilog.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -14,10 +15,10 @@ use carrystep_virtual_board::{Board, VerilatedBoard};
 use support::link::device::on_the_line;
 use support::{CLOCK_HZ, Kind, MS};
 
-/// An answer comes within so many clocks.
+/// Time limit for an answer, clocks.
 const PATIENCE: u64 = 30_000;
 
-/// A host that has one request on its way.
+/// A host that sends one request at a time.
 struct Talk<B> {
     board: B,
     next: u8,
@@ -43,7 +44,7 @@ impl<B: Kind> Talk<B> {
         on_the_line(content).iter().for_each(|&byte| self.board.say(byte));
     }
 
-    /// The next answer, if one comes.
+    /// The next answer, if one arrives.
     fn answer(&mut self) -> Option<Answer> {
         let end = self.board.cycle() + PATIENCE;
         let mut line = Vec::new();
@@ -85,12 +86,12 @@ impl<B: Kind> Talk<B> {
     }
 }
 
-/// V = a quarter of a step per tick.
+/// A segment with V = a quarter of a step per tick.
 const fn cruise(ticks_less_one: u32, last: bool) -> [u32; 8] {
     [ticks_less_one, 0, 0x4000_0000, 0, 0, 0, 0, last as u32]
 }
 
-/// Axis k has k segments in its queue, which takes 7.
+/// A board on which axis k has k segments in its queue, which holds 7.
 fn filled<B: Kind>() -> Talk<B> {
     let mut talk = Talk::powered();
     for axis in 0..6 {
@@ -99,7 +100,8 @@ fn filled<B: Kind>() -> Talk<B> {
     talk
 }
 
-/// The page's table: `free` is of the axis that bits 3 to 5 of the address name, below 40 too.
+/// The table of the page: `free` belongs to the axis in bits 3 to 5 of the address, also below
+/// 0x40.
 fn reads<B: Kind>() {
     let mut talk = filled::<B>();
     let next = talk.next;
@@ -120,7 +122,8 @@ fn reads<B: Kind>() {
     }
 }
 
-/// A write to an address that is no register is executed and changes nothing; with another length it is not answered.
+/// A write to an address without a register is executed and has no effect. With another length it
+/// is not answered.
 fn writes<B: Kind>() {
     let mut talk = filled::<B>();
     for address in (0..0x40_u8).filter(|address| ![CONTROL, START, CLEAR, HOME].contains(address)) {
@@ -137,15 +140,16 @@ fn writes<B: Kind>() {
         let answer = talk.read(frame::of_axis(POSITION, axis));
         assert_eq!((answer.next, answer.free), (next, 7 - axis));
     }
-    // The low three bits of a segment's address mean nothing.
+    // The low three bits of a segment's address are ignored.
     let answer = talk.words(WRITE | frame::of_axis(SEGMENT, 1) | 5, &cruise(99, true));
     assert_eq!((answer.free, answer.fault), (5, false));
-    // An axis that the build has not.
+    // An axis that the build does not have.
     let answer = talk.segment(7, cruise(99, true));
     assert_eq!((answer.fault, answer.cause), (true, Cause::Protocol as u8));
 }
 
-/// A START of no axis is armed until the next tick, and moves nothing; one without power is busy until there is.
+/// A START of no axis is armed until the next tick and moves nothing. A START without power is
+/// refused as busy until there is power.
 fn starts<B: Kind>() {
     for mask in [0_u32, 0x40, 0xffff_ffc0] {
         let mut talk = filled::<B>();
@@ -166,7 +170,7 @@ fn starts<B: Kind>() {
     assert!(talk.write(START, 1).armed);
 }
 
-/// The longest segment has 2^32 - 1 ticks: one more would be none, which is a fault.
+/// The longest segment has 2^32 - 1 ticks. One tick more would encode 0 ticks, which is a fault.
 fn ticks<B: Kind>() {
     let mut talk = Talk::<B>::powered();
     let longest = talk.segment(0, cruise(0xffff_fffe, true));
@@ -175,11 +179,12 @@ fn ticks<B: Kind>() {
     assert_eq!((none.fault, none.cause, none.free), (true, Cause::Protocol as u8, 6));
 }
 
-/// The watchdog of this build: 49 rounds of 1024 ticks of 2 us, 100.4 ms.
+/// A time longer than the watchdog's of this build: 49 rounds of 1024 ticks of 2 us, 100.4 ms.
 const OVER: u64 = 110 * MS;
 const UNDER: u64 = 90 * MS;
 
-/// It runs while a segment waits at rest, not where nothing does; valid frames feed it, and nothing else.
+/// The watchdog runs while a segment waits at rest, but not while the machine is idle. Only valid
+/// frames restart it.
 fn watchdog<B: Kind>() {
     let mut talk = Talk::<B>::powered();
     talk.rest(3 * OVER);
@@ -190,7 +195,7 @@ fn watchdog<B: Kind>() {
         talk.rest(UNDER);
         assert!(!talk.read(BUILD_HIGH).fault, "any valid frame feeds it");
     }
-    // Bytes without a frame, a frame with a wrong CRC, one with a wrong length.
+    // Bytes without a frame, a frame with a wrong CRC, and one with a wrong length.
     let mut harmed = on_the_line(&[0, POSITION]);
     harmed[3] ^= 1;
     for noise in [vec![0x55; 20], harmed, on_the_line(&[0, POSITION, 1, 2, 3, 4]), vec![END; 20]] {
@@ -202,7 +207,7 @@ fn watchdog<B: Kind>() {
     assert_eq!((answer.fault, answer.cause), (true, Cause::Watchdog as u8), "{answer:?}");
 }
 
-/// A write that is refused or answered again is a valid frame too.
+/// A write that is refused or answered again is a valid frame, too.
 fn refusals_feed<B: Kind>() {
     let mut talk = Talk::<B>::powered();
     talk.segment(0, cruise(99, true));
@@ -215,9 +220,9 @@ fn refusals_feed<B: Kind>() {
     assert!(!talk.read(POSITION).fault);
 }
 
-/// The page's figures of time are those of our client.
+/// The times of the page must be those of the driver in Rust.
 #[test]
-fn time_outs_are_those_of_the_page() {
+fn timeouts_equal_those_of_the_page() {
     let page = include_str!("../../../docs/protocol.md");
     let Patience { timing, silence, lost, change, look } = Patience::default();
     for row in [
@@ -241,11 +246,11 @@ fn all<B: Kind>() {
 }
 
 #[test]
-fn of_models() {
+fn statements_of_the_page_hold_for_the_models() {
     all::<Board>();
 }
 
 #[test]
-fn of_the_verilog() {
+fn statements_of_the_page_hold_for_the_verilog() {
     all::<VerilatedBoard>();
 }

@@ -1,5 +1,6 @@
-//! An e-stop in the middle of a move, over a bad line: after the freeze there is no new edge (promise 5), every carry is a
-//! pulse or is counted as discarded (promise 6), and the host is told both.
+//! An e-stop in the middle of a move, over a bad line. After the freeze there must be no new edge
+//! (promise 5). Every carry must be a pulse or be counted as discarded (promise 6), and the host
+//! must receive both numbers.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -22,25 +23,26 @@ fn rises(edges: &[Edge], axis: u8, before: u64) -> u32 {
 }
 
 #[test]
-fn a_freeze_loses_no_step_in_silence() {
+fn freeze_counts_every_discarded_step() {
     let (_, discarded) = freezes::<Board>(0..12, 100, Faults::BAD);
     assert!(discarded > 0, "nothing was ever discarded");
 }
 
 #[test]
-fn nor_does_one_of_the_verilog() {
+fn freeze_of_the_verilog_counts_every_discarded_step() {
     let (freezes, _) = freezes::<VerilatedBoard>(0..1, 20, Faults::default());
     assert_eq!(freezes, 1);
 }
 
-/// E-stops within so many milliseconds and twenty of each of these moves; how many have come in time, and how many steps they
-/// have cost.
+/// Presses the e-stop within `within` + 20 ms of the move of each seed. Returns how many e-stops
+/// were the first stop cause of their move, and how many steps were discarded.
 fn freezes<B: Kind>(seeds: Range<u64>, within: u64, faults: Faults) -> (u32, u32) {
     let uart = Uart::new(CLOCK_HZ, 3_000_000).unwrap();
     let mut random = Random(5);
     let (mut freezes, mut discarded) = (0, 0);
     for seed in seeds {
-        // A carry in every fourth tick or so, that one may be on its way to the pin.
+        // A carry about every fourth tick, so that one may be between the engine and the pin when
+        // the freeze comes.
         let faster = |command| match command {
             Command::Segment { axis, segment: Segment { ticks, v, a, j, last } } => {
                 Command::Segment { axis, segment: Segment { ticks, v: 16 * v, a: 16 * a, j, last } }
@@ -82,8 +84,9 @@ fn freezes<B: Kind>(seeds: Range<u64>, within: u64, faults: Faults) -> (u32, u32
             let pulses = rises(&found, axis, u64::MAX);
             assert_eq!(pulses, rises(&found, axis, stop + TICK), "an edge behind the freeze");
             let lost = host.register(of_axis(DISCARDED, axis)).unwrap();
-            // On their way when it freezes: the tick that the pins are in, the one that waits for them, the one that is being
-            // worked out. On a clean line their carries are the pulses of three ticks.
+            // Three ticks are in progress at the freeze: the one at the pins, the one that waits
+            // for the pins, and the one that is being computed. On a clean line their carries are
+            // the pulses of the next three ticks.
             let carried = rises(&clean, axis, stop + 3 * TICK);
             assert_eq!(pulses + lost, carried, "axis {axis}: {lost} discarded, {pulses} pulses");
             discarded += lost;

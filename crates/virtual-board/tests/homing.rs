@@ -1,5 +1,6 @@
-//! Homing from every start, in each wiring, on boards of models and of the exported Verilog: it finds the place where the
-//! switch closes, twice the same, and never runs further over a closed switch than the ramp explains.
+//! Homing from every start in each wiring, on boards of models and of exported Verilog. It must
+//! find the place where the switch closes, twice the same, and must never overrun a closed switch
+//! by more than the ramp requires.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 #[path = "support/asked.rs"]
@@ -21,7 +22,7 @@ use random::Random;
 
 const STARTS: [Start; 3] = [Start::Open, Start::Closed, Start::Bouncing];
 
-/// Two axes, one toward each end; the first homes alone.
+/// A machine of two axes, one toward each end; the first axis homes alone.
 fn two(limits: &str, stop: &str, level: &str) -> Machine {
     machine(&format!(
         r#"[machine]
@@ -59,7 +60,7 @@ home = {{ toward = "max", seek_speed = 300, slow_speed = 20, move_off = 15, max_
     ))
 }
 
-/// Homes, and looks at what has come of it; the places where the limits were accepted.
+/// Homes, checks the result, and returns the positions at which the limits were accepted.
 fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
     let mut host = bench.connect(machine);
     host.enable().unwrap();
@@ -78,7 +79,8 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
         let Some(home) = axis.home else { continue };
         let (sign, edge) = (if home.toward == End::Max { 1 } else { -1 }, edges[number]);
         let switch = bench.edge(number);
-        // Beyond the place where it closes, and not further than the slow speed goes until it is accepted.
+        // The limit is accepted behind the place where it closes, at most by the distance at the
+        // slow speed until then.
         let ticks = u128::from(guard.debounce) * u128::from(guard.round) + 4 + u128::from(bench.slice_ticks());
         let late = ((u128::from(home.slow) * ticks) >> 64) as i32;
         let beyond = (edge - switch) * sign;
@@ -87,7 +89,8 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
             "{what}: axis {number} at {edge}, its switch at {switch}, {late} late"
         );
         assert_eq!(host.status().positions[number], edge - sign * home.pull_off as i32, "{what}: axis {number}");
-        // No pulse has gone further into the switch than the search runs on, or than where the axis had stood.
+        // No pulse went deeper into the switch than the search overruns it, or than the axis stood
+        // at the start.
         let ran = overrun(home.seek, axis.stop, guard)
             + 1
             + ((u128::from(home.seek) * u128::from(bench.slice_ticks())) >> 64) as u64;
@@ -100,7 +103,7 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
     edges[..machine.axes.len()].to_vec()
 }
 
-/// Homes twice from this start.
+/// Homes twice from these starts.
 fn twice<B: Make>(machine: &Machine, starts: &[Start], seed: u64) {
     let what = format!("{:?}, {starts:?}, seed {seed}", machine.guard.limits);
     let bench = Bench::<B>::new(machine, starts, seed);
@@ -112,7 +115,7 @@ fn twice<B: Make>(machine: &Machine, starts: &[Start], seed: u64) {
 }
 
 #[test]
-fn homes_from_every_start_in_each_wiring() {
+fn model_homes_from_every_start_in_each_wiring() {
     for limits in ["pair", "each", "one"] {
         for (stop, level) in [("ramp", "high"), ("freeze", "low")] {
             for x in STARTS {
@@ -125,7 +128,7 @@ fn homes_from_every_start_in_each_wiring() {
 }
 
 #[test]
-fn the_verilog_homes_in_each_wiring() {
+fn verilog_homes_in_each_wiring() {
     for (limits, stop, starts) in [
         ("pair", "freeze", [Start::Closed, Start::Bouncing]),
         ("each", "freeze", [Start::Closed, Start::Open]),
@@ -135,7 +138,7 @@ fn the_verilog_homes_in_each_wiring() {
     }
 }
 
-/// A machine of random figures that the reader accepts.
+/// A machine with random figures that the reader accepts.
 fn random_machine(random: &mut Random, limits: &str) -> Machine {
     loop {
         let axis = |random: &mut Random, name: &str| {
@@ -169,7 +172,8 @@ fn random_machine(random: &mut Random, limits: &str) -> Machine {
     }
 }
 
-/// Machines whose number leaves this rest, so that the wirings run side by side.
+/// Runs the random machines whose number modulo the number of wirings is `rest`, so that the
+/// wirings run in parallel.
 fn random_machines(limits: &str, rest: u64) {
     let machines = std::env::var("CARRYSTEP_HOMING_MACHINES").map_or(300, |text| text.parse().unwrap());
     for seed in (rest..machines).step_by(3) {
@@ -181,21 +185,21 @@ fn random_machines(limits: &str, rest: u64) {
 }
 
 #[test]
-fn random_machines_with_a_switch_at_each_end_home_from_random_starts() {
+fn random_machines_home_with_a_switch_at_each_end() {
     random_machines("pair", 0);
 }
 
 #[test]
-fn random_machines_with_a_wire_for_each_axis_home_from_random_starts() {
+fn random_machines_home_with_one_input_per_axis() {
     random_machines("each", 1);
 }
 
 #[test]
-fn random_machines_with_one_wire_home_from_random_starts() {
+fn random_machines_home_with_one_input_for_all() {
     random_machines("one", 2);
 }
 
-/// What homing came to where the switches are as `change` makes them.
+/// The error of homing with the switches changed by `change`, and the final positions.
 fn fails(limits: &str, change: impl FnOnce(&Bench<Board>)) -> (HostError<axes::Never>, [i32; 2]) {
     let machine = two(limits, "ramp", "high");
     let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Open], 3);
@@ -210,11 +214,11 @@ fn fails(limits: &str, change: impl FnOnce(&Bench<Board>)) -> (HostError<axes::N
 }
 
 #[test]
-fn a_switch_that_is_never_met_is_named_and_nothing_goes_further_than_max_travel() {
+fn missing_switch_is_named_and_no_axis_exceeds_max_travel() {
     for limits in ["pair", "each", "one"] {
         let (error, [x, y]) = fails(limits, |bench| bench.remove(1));
         assert_eq!(error, HostError::Homing { axes: 2, why: HomingFault::NotFound }, "{limits}");
-        // 15 units off, then 220 toward the switch; 4 steps each.
+        // 15 units off the switch, then 220 toward it, with 4 steps each.
         assert_eq!(y, (220 - 15) * 4, "{limits}");
         let moved_off = two(limits, "ramp", "high").axes[0].home.unwrap().move_off as i32;
         assert_eq!(x, if limits == "one" { moved_off } else { 0 }, "{limits}");
@@ -222,18 +226,18 @@ fn a_switch_that_is_never_met_is_named_and_nothing_goes_further_than_max_travel(
 }
 
 #[test]
-fn a_switch_that_stays_closed_is_found_out_where_the_wiring_shows_it() {
+fn switch_that_stays_closed_is_detected_with_a_pair() {
     let (error, [_, y]) = fails("pair", |bench| bench.stick(1));
     assert_eq!(error, HostError::Homing { axes: 2, why: HomingFault::StillClosed });
     assert!((-62..=-55).contains(&y), "it goes no further than to the first look: {y}");
-    // In the other wirings it is not seen, as docs/homing.md says: the search goes to its end.
+    // The other wirings cannot detect it, as docs/homing.md says: the search ends without a limit.
     let (error, _) = fails("each", |bench| bench.stick(1));
     assert_eq!(error, HostError::Homing { axes: 2, why: HomingFault::NotFound });
 }
 
 #[test]
-fn a_limit_that_closes_while_the_axis_moves_away_is_named_but_for_the_far_end_of_a_pair() {
-    // On one wire all that moves has met the limit.
+fn limit_that_closes_while_moving_away_is_an_error_except_at_the_far_end() {
+    // With one input for all, every moving axis has met the limit.
     for (limits, axes) in [("each", 2), ("one", 3)] {
         let (error, _) = fails(limits, |bench| bench.far(1, -20));
         assert_eq!(error, HostError::Homing { axes, why: HomingFault::Closed }, "{limits}");
@@ -245,7 +249,7 @@ fn a_limit_that_closes_while_the_axis_moves_away_is_named_but_for_the_far_end_of
 }
 
 #[test]
-fn an_emergency_stop_and_a_wish_to_stop_end_it() {
+fn estop_and_stop_request_end_homing() {
     for stage in [Stage::MoveOff, Stage::Seek, Stage::BackOff, Stage::Approach, Stage::PullOff] {
         let machine = two("each", "ramp", "high");
         let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Closed], 4);
@@ -272,7 +276,7 @@ fn an_emergency_stop_and_a_wish_to_stop_end_it() {
 }
 
 #[test]
-fn an_axis_that_the_build_does_not_have_and_a_search_that_never_ends_are_refused_before_anything_moves() {
+fn homing_that_cannot_succeed_is_refused_before_any_motion() {
     let machine = two("pair", "ramp", "high");
     let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Open], 5);
     let mut host = bench.connect(&machine);

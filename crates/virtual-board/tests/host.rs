@@ -1,5 +1,5 @@
-//! The driver from connecting to a clean stop, with a board of models and with the exported Verilog, on clean lines and on
-//! bad ones; every error names its cause.
+//! The driver from connecting to a clean stop, with a board of models and with the exported
+//! Verilog, on clean and on bad lines. Every error must name its cause.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -15,7 +15,7 @@ use support::{BoardHost, CLOCK_HZ, End, Kind, MS, build, waves};
 const QUICK: Patience =
     Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 100, look: 20 };
 
-/// Runs a body with both boards.
+/// Runs a function with both kinds of board.
 macro_rules! on_both {
     ($($name:ident)*) => {
         $(mod $name {
@@ -33,19 +33,19 @@ macro_rules! on_both {
 }
 
 on_both! {
-    another_build_is_refused_and_both_are_named
-    a_wish_to_stop_is_obeyed_and_a_clear_resumes
-    a_stop_of_the_machine_is_named
-    a_restarted_gateware_is_noticed
-    what_a_dead_host_has_left_is_not_started
-    a_jog_is_a_move_of_one_axis
+    other_build_is_refused_and_both_ids_are_named
+    stop_request_stops_the_axes_and_clear_resumes
+    stop_of_the_machine_is_reported_with_its_cause
+    restarted_gateware_is_reported
+    segments_of_a_dead_host_are_not_started
+    jog_moves_one_axis
 }
 
 fn uart() -> Uart {
     Uart::new(CLOCK_HZ, 3_000_000).unwrap()
 }
 
-/// Connected and powered.
+/// A host that is connected and has powered the drivers.
 fn ready<B: Kind>(faults: Faults, seed: u64) -> (End<B>, BoardHost<B>) {
     let end = End::new(uart(), faults, seed);
     let mut host = end.connect_to(uart().build_id(&build()), QUICK).unwrap();
@@ -57,12 +57,12 @@ fn go_on(_: &Progress<'_>) -> Wish {
     Wish::GoOn
 }
 
-/// A tenth of a second on all axes; the queues hold most of it.
+/// A program of a tenth of a second on all axes; the queues hold most of it.
 fn moves(seed: u64) -> Vec<Command> {
     waves(&mut Random(seed), 9, 6000)
 }
 
-/// Three steps up on axis 0 in 3 ms, on axis `axis`.
+/// A program of three steps forward in 3 ms on this axis.
 fn hop(axis: u8) -> [Command; 2] {
     let segment = Segment { ticks: 1536, v: 1 << 55, a: 0, j: 0, last: true };
     [Command::Segment { axis, segment }, Command::Start { mask: 1 << axis }]
@@ -72,7 +72,7 @@ fn program(commands: &[Command]) -> Program<'_> {
     Program::new(commands, 6).unwrap()
 }
 
-/// The board has been so many milliseconds in its first move.
+/// Whether the board is `milliseconds` or more into its first move.
 fn into_the_move<B: Kind>(end: &End<B>, milliseconds: u64) -> bool {
     let board = &end.0.borrow().board;
     board.loads().first().is_some_and(|load| board.cycle() > load + milliseconds * MS)
@@ -84,8 +84,8 @@ fn positions_are_true<B: Kind>(end: &End<B>, host: &BoardHost<B>) {
     assert_eq!(host.status().positions[..6], travelled);
 }
 
-/// The same engine on an SPI is another build.
-fn another_build_is_refused_and_both_are_named<B: Kind>() {
+/// The same engine with an SPI is another build.
+fn other_build_is_refused_and_both_ids_are_named<B: Kind>() {
     let end = End::<B>::new(uart(), Faults::default(), 1);
     let (own, other) = (uart().build_id(&build()), Line::Spi.build_id(&build()));
     let refused = end.connect_to(other, QUICK).err().unwrap().to_string();
@@ -94,27 +94,27 @@ fn another_build_is_refused_and_both_are_named<B: Kind>() {
     assert_eq!(end.connect_to(own, QUICK).unwrap().status().answer.next, 0, "something was written");
 }
 
-fn a_wish_to_stop_is_obeyed_and_a_clear_resumes<B: Kind>() {
+fn stop_request_stops_the_axes_and_clear_resumes<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::BAD, 7);
     let stop_soon = |_: &Progress<'_>| if into_the_move(&end, 20) { Wish::Stop } else { Wish::GoOn };
     assert_eq!(host.stream(program(&moves(7)), stop_soon), Ok(Ended::Stopped));
     let status = *host.status();
     assert_eq!(status.answer.cause_name(), Some("stop"));
     positions_are_true(&end, &host);
-    // Not before a clear.
+    // No program is accepted before a clear.
     let hop = hop(0);
     assert_eq!(host.stream(program(&hop), go_on), Err(HostError::Fault { cause: Cause::Stop as u8, culprits: 0 }));
     host.clear().unwrap();
     assert_eq!(host.stream(program(&hop), go_on), Ok(Ended::Done));
     assert_eq!(host.status().positions[0], status.positions[0] + 3);
     positions_are_true(&end, &host);
-    // A clear without a stop is nothing.
+    // A clear without a stop in force writes nothing.
     let next = host.status().answer.next;
     host.clear().unwrap();
     assert_eq!(host.look().unwrap().answer.next, next);
 }
 
-fn a_stop_of_the_machine_is_named<B: Kind>() {
+fn stop_of_the_machine_is_reported_with_its_cause<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::BAD, 8);
     end.0.borrow_mut().meanwhile = Box::new(|board| {
         let reached = u8::from(board.position(2).abs() > 30) << 2;
@@ -137,7 +137,7 @@ fn a_stop_of_the_machine_is_named<B: Kind>() {
     host.clear().unwrap();
 }
 
-fn a_restarted_gateware_is_noticed<B: Kind>() {
+fn restarted_gateware_is_reported<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::default(), 9);
     let mut fresh = Some(B::new(uart()));
     let restart = |_: &Progress<'_>| {
@@ -152,8 +152,8 @@ fn a_restarted_gateware_is_noticed<B: Kind>() {
     assert!(matches!(error, HostError::Restarted | HostError::OutOfStep(_)), "{error}");
 }
 
-/// It died before the start: its segments lie in the queues.
-fn what_a_dead_host_has_left_is_not_started<B: Kind>() {
+/// The first host died before the start; its segments are still in the queues.
+fn segments_of_a_dead_host_are_not_started<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::default(), 15);
     let mut looks = 0;
     let error = host.stream(program(&moves(15)), |_| {
@@ -175,7 +175,7 @@ fn what_a_dead_host_has_left_is_not_started<B: Kind>() {
     assert!(host.status().answer.ready, "the drivers kept their power");
 }
 
-fn a_jog_is_a_move_of_one_axis<B: Kind>() {
+fn jog_moves_one_axis<B: Kind>() {
     let (end, mut host) = ready::<B>(Faults::BAD, 14);
     let segment = Segment { ticks: 3072, v: 1 << 56, a: 0, j: 0, last: false };
     let segments = [segment, segment, Segment { last: true, ..segment }];

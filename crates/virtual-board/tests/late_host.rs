@@ -1,4 +1,4 @@
-//! `virtual-board --fast`: a host that is late by its own clock is not late for the board.
+//! `virtual-board --fast`: delays of a host in real time do not delay it in the board's time.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
@@ -15,12 +15,12 @@ use std::time::{Duration, Instant};
 use support::link::device::on_the_line;
 use support::{CLOCK_HZ, MS, build};
 
-/// Segments of 600 ticks of 2 us: 1.2 ms, 150 steps each.
+/// Number of segments of 600 ticks of 2 us: 1.2 ms and 150 steps each.
 const SEGMENTS: u32 = 200;
 const WORDS: [u32; 6] = [599, 0, 0x4000_0000, 0, 0, 0];
 const STEPS: i32 = 150;
 
-/// A host that has one request on its way, and answers nothing for `delay` before each.
+/// A host that sends one request at a time, and waits for `delay` before each.
 struct LateHost {
     line: SerialLine,
     next: u8,
@@ -60,7 +60,7 @@ impl LateHost {
         self.write(frame::of_axis(SEGMENT, 0), &[&WORDS[..], &[0, last]].concat());
     }
 
-    /// One segment for each look at the queue, as in a loop of a host that has more to do.
+    /// Sends one segment for each read of the queue, like a host that has other work to do.
     fn run(&mut self) -> Answer {
         self.write(CONTROL, &[1]);
         while !self.ask(&[0, POSITION]).ready {}
@@ -84,7 +84,7 @@ impl LateHost {
 }
 
 #[test]
-fn a_host_that_is_late_by_the_wall_clock_is_never_late_for_a_fast_board() {
+fn host_delayed_in_real_time_is_never_late_for_a_fast_board() {
     let uart = Uart::new(CLOCK_HZ, 3_000_000).unwrap();
     let terminal = Terminal::new().unwrap();
     let port = terminal.name().to_owned();
@@ -105,13 +105,13 @@ fn a_host_that_is_late_by_the_wall_clock_is_never_late_for_a_fast_board() {
             LateHost { line: SerialLine::open(&port, 3_000_000).unwrap(), next: 0, delay: Duration::from_millis(30) };
         assert_eq!(host.run().data.cast_signed(), STEPS * SEGMENTS as i32);
         drop(_over);
-        // The line's own time may take a segment of those that are kept.
+        // The transmission itself may use up one of the kept segments.
         let least = board.join().unwrap();
         assert!((KEPT - 1..=KEPT).contains(&least), "{least} segments waited");
     });
 }
 
-/// Says so where it is dropped.
+/// Sets the flag when it is dropped.
 struct Over<'a>(&'a AtomicBool);
 
 impl Drop for Over<'_> {

@@ -1,4 +1,5 @@
-//! The example frames of docs/protocol.md, byte for byte, from a board of models and from the exported Verilog.
+//! The example frames of docs/protocol.md, byte for byte, with a board of models and with the
+//! exported Verilog.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -11,7 +12,7 @@ use support::link::device::on_the_line;
 use support::link::{hex, unhex};
 use support::{CLOCK_HZ, Kind};
 
-/// An answer comes within so many clocks.
+/// Time limit for an answer, clocks.
 const PATIENCE: u64 = 30_000;
 
 struct Talk<B> {
@@ -20,7 +21,7 @@ struct Talk<B> {
 }
 
 impl<B: Kind> Talk<B> {
-    /// What the page's host finds: axis 1 at -250, no power, 42 writes.
+    /// The state that the page's host finds: axis 1 at -250, no power, 42 writes executed.
     fn new() -> Self {
         let mut talk = Self { board: B::new(Uart::new(CLOCK_HZ, 3_000_000).unwrap()), next: 0 };
         talk.write(CONTROL, &[1]);
@@ -71,7 +72,7 @@ impl<B: Kind> Talk<B> {
     }
 }
 
-/// The page's block of frames, and what such a board makes of it.
+/// The page's block of frames, and the same block with the answers of such a board.
 fn replayed<B: Kind>() -> (&'static str, String) {
     let page = include_str!("../../../docs/protocol.md");
     let (_, rest) = page.split_once("```frames\n").unwrap();
@@ -84,7 +85,7 @@ fn replayed<B: Kind>() -> (&'static str, String) {
         match kind {
             "#" => talk.rest(9000),
             ">" => talk.send(&unhex(bytes)),
-            // Lost on the way.
+            // A request that is lost on the line.
             ">x" => {}
             "<" | "<x" => shown = format!("c0 {} c0", hex(&talk.answer())),
             _ => panic!("{line}"),
@@ -95,13 +96,13 @@ fn replayed<B: Kind>() -> (&'static str, String) {
 }
 
 #[test]
-fn of_models() {
+fn example_frames_equal_the_answers_of_the_models() {
     let (block, said) = replayed::<Board>();
     assert_eq!(said, block);
 }
 
 #[test]
-fn of_the_verilog() {
+fn example_frames_equal_the_answers_of_the_verilog() {
     let (block, said) = replayed::<VerilatedBoard>();
     assert_eq!(said, block);
 }

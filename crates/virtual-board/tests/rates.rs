@@ -1,4 +1,4 @@
-//! How many segments a line carries to a board without a queue running dry.
+//! The number of segments per second that a line delivers to a board without an empty queue.
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -11,7 +11,7 @@ use support::random::Random;
 use support::wire::Faults;
 use support::{CLOCK_HZ, End, Kind, TICK_NS, asked, waves};
 
-/// Six axes with so many segments a second each, for so many milliseconds.
+/// Streams `per_second` segments per second to each of six axes for some milliseconds.
 #[track_caller]
 fn carries<B: Kind>(baud: u32, per_second: u32, milliseconds: u32) {
     let uart = Uart::new(CLOCK_HZ, baud).unwrap();
@@ -40,9 +40,10 @@ fn carries<B: Kind>(baud: u32, per_second: u32, milliseconds: u32) {
     assert!(world.least_waiting > 0, "a queue was dry");
 }
 
-/// The same over SPI: the driver for embedded-hal, six segments on their way at the most (docs/protocol.md).
+/// The same over SPI with the embedded-hal driver and at most six unacknowledged segments
+/// (docs/protocol.md).
 #[test]
-fn six_axes_at_500_segments_over_spi_at_10_mhz() {
+fn spi_at_10_mhz_carries_500_segments_per_second_for_six_axes() {
     let bus = Bus::<Board>::new(10_000_000);
     let mut host = bus.connect();
     host.enable().unwrap();
@@ -65,17 +66,18 @@ fn six_axes_at_500_segments_over_spi_at_10_mhz() {
 }
 
 #[test]
-fn six_axes_at_500_segments_over_3_megabaud() {
+fn uart_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
     carries::<Board>(3_000_000, 500, 1500);
 }
 
-/// What waits in its queues cannot be seen, but a dry one is a fault. `CARRYSTEP_VERILOG_MS` asks for so many milliseconds.
+/// The number of queued segments is not visible at the Verilog's pins, but an empty queue is a
+/// fault. `CARRYSTEP_VERILOG_MS` sets the length of the test in ms.
 #[test]
-fn the_verilog_at_500_segments_over_3_megabaud() {
+fn verilog_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
     carries::<VerilatedBoard>(3_000_000, 500, asked("CARRYSTEP_VERILOG_MS", 100) as u32);
 }
 
 #[test]
-fn six_axes_at_200_segments_over_921_600_baud() {
+fn uart_at_921_600_baud_carries_200_segments_per_second_for_six_axes() {
     carries::<Board>(921_600, 200, 1500);
 }

@@ -1,5 +1,6 @@
-//! A host that was written from docs/protocol.md alone: it shares no code with `crates/link`. It streams moves of all axes
-//! with segments of different lengths over a line that loses answers, keeps to the page's credits, and lands exactly.
+//! A host written from docs/protocol.md alone; it shares no code with `crates/link`. It streams
+//! moves of all axes with segments of different lengths over a line that loses answers, observes
+//! the credits of the page, and lands exactly.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::link::Uart;
@@ -17,7 +18,8 @@ fn crc(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| step(crc)))
 }
 
-/// "A frame ends with END. Inside a frame END is sent as DB DC and DB as DB DD. Send an END before a frame too."
+/// "A frame ends with END. Inside a frame END is sent as DB DC and DB as DB DD. Send an END before
+/// a frame too."
 fn on_the_line(content: &[u8]) -> Vec<u8> {
     let mut line = vec![0xc0];
     for byte in content.iter().copied().chain(crc(content).to_le_bytes()) {
@@ -77,16 +79,16 @@ impl Answer {
     }
 }
 
-/// How the host counts the room of an axis.
+/// How the host counts the free queue places of an axis.
 #[derive(Clone, Copy, PartialEq)]
 enum Credits {
-    /// As the page says.
+    /// As the page describes it.
     Page,
-    /// The last `free`, less what is on its way now: the mistake that the page warns of.
+    /// The last `free` minus the segments unacknowledged now: the mistake that the page warns of.
     OnItsWayNow,
 }
 
-/// A write on its way, and the axis whose segment it is.
+/// An unacknowledged write, and the axis of its segment.
 struct Written {
     number: u8,
     axis: Option<usize>,
@@ -97,13 +99,13 @@ struct Stranger {
     board: Board,
     came: Vec<u8>,
     answers: u64,
-    /// Of a hundred answers so many are lost.
+    /// Number of answers lost per hundred.
     lost: u64,
     random: u64,
     next: u8,
     under_way: VecDeque<Written>,
     credits: Credits,
-    /// Of each axis: `free` of its last answer, and segments that this answer did not count.
+    /// For each axis: `free` of its last answer, and the segments that this answer did not count.
     room: [(usize, usize); AXES],
     progress: u64,
     asked: Option<u64>,
@@ -146,7 +148,8 @@ impl Stranger {
         line.iter().for_each(|&byte| self.board.say(byte));
     }
 
-    /// "At most eight reads without an answer": one, and after 2 ms it is taken for lost.
+    /// "At most eight reads without an answer": this host has one, and considers it lost after 2
+    /// ms.
     fn read(&mut self, address: u8) {
         if self.asked.is_none_or(|asked| self.board.cycle() - asked > 2 * MS) {
             self.asked = Some(self.board.cycle());
@@ -169,14 +172,14 @@ impl Stranger {
         }
     }
 
-    /// Segments that may be sent for an axis.
+    /// Number of segments that may be sent for an axis.
     fn may_send(&self, axis: usize) -> usize {
         let (free, uncounted) = self.room[axis];
         let under_way = self.under_way.iter().filter(|written| written.axis == Some(axis)).count();
         free.saturating_sub(if self.credits == Credits::Page { uncounted } else { under_way })
     }
 
-    /// A tenth of a millisecond.
+    /// Advances by a tenth of a millisecond.
     fn pass(&mut self) {
         let end = self.board.cycle() + STEP;
         while self.board.cycle() < end {
@@ -228,7 +231,7 @@ impl Stranger {
         self.last = Some(answer);
     }
 
-    /// Passes time, and asks now and then, until the last answer is so.
+    /// Advances, and reads the state from time to time, until the last answer satisfies `wish`.
     fn until(&mut self, wish: impl Fn(&Answer) -> bool) {
         for turn in 0_u32.. {
             if self.under_way.is_empty() && self.last.as_ref().is_some_and(&wish) {
@@ -243,7 +246,7 @@ impl Stranger {
     }
 }
 
-/// Segments of one axis: ticks and V. All axes have the same ticks in all.
+/// Random segments of one axis: ticks and V. All axes have the same total of ticks.
 fn segments(stranger: &mut Stranger, axis: usize, ticks: u64) -> Vec<(u32, i64)> {
     let mut left = ticks;
     let mut segments = Vec::new();
@@ -257,7 +260,8 @@ fn segments(stranger: &mut Stranger, axis: usize, ticks: u64) -> Vec<(u32, i64)>
     segments
 }
 
-/// Streams `moves` moves of so many ticks; the fault that ended it, if one did, and how many segments there were.
+/// Streams `moves` moves of `ticks` ticks. Returns the fault that ended them, if any, and the
+/// number of segments.
 fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8>, usize) {
     let mut stranger = Stranger::new(lost, credits);
     for (address, wanted) in [(0, u32::from_le_bytes(*b"CSTP")), (1, 1), (4, AXES as u32)] {
@@ -283,7 +287,7 @@ fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8
         let mut sent = [0_u64; AXES];
         let mut started = false;
         while queues.iter().any(|queue| !queue.is_empty()) {
-            // The axis that is supplied for the shortest time comes first.
+            // The axis whose sent segments last for the shortest time comes first.
             let able = (0..AXES).filter(|&axis| !queues[axis].is_empty() && stranger.may_send(axis) > 0);
             let axis = able.min_by_key(|&axis| sent[axis]).filter(|_| stranger.under_way.len() < 12);
             if let Some(axis) = axis {
@@ -313,7 +317,8 @@ fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8
     if let Some(answer) = stranger.last.filter(|answer| answer.fault) {
         return (Some(answer.cause), count);
     }
-    // P begins in the middle of a step: the position is the whole steps of that and of all that V has added.
+    // P starts at half a step: the position is the number of whole steps of that and of the sum of
+    // V.
     for (axis, sum) in sums.into_iter().enumerate() {
         stranger.last = None;
         while stranger.last.is_none_or(|answer| answer.address != 0x42 + 8 * axis as u8) {
@@ -328,23 +333,23 @@ fn streamed(lost: u64, credits: Credits, moves: usize, ticks: u64) -> (Option<u8
 }
 
 #[test]
-fn a_host_written_from_the_page_lands_exactly() {
+fn host_written_from_the_page_lands_exactly() {
     let (fault, count) = streamed(0, Credits::Page, 2, 180_000);
     assert_eq!(fault, None);
     assert!(count > 2000, "{count} segments");
 }
 
-/// What a lost answer has acknowledged is learned from another axis' answer.
+/// A write whose answer was lost is acknowledged by an answer of another axis.
 #[test]
-fn answers_may_be_lost_without_a_queue_being_overfilled() {
+fn lost_answers_do_not_overfill_a_queue() {
     let (fault, count) = streamed(10, Credits::Page, 1, 200_000);
     assert_eq!(fault, None);
     assert!(count > 500, "{count} segments");
 }
 
 #[test]
-fn credits_by_what_is_on_its_way_now_overfill_a_queue() {
+fn wrong_credits_overfill_a_queue() {
     let (fault, _) = streamed(10, Credits::OnItsWayNow, 1, 200_000);
-    // 2 is protocol.
+    // Cause 2 is `protocol`.
     assert_eq!(fault, Some(2));
 }

@@ -1,4 +1,4 @@
-//! A host and a board in one process: who it is, a move, a stop, in simulated time.
+//! A host and a board in one process, in simulated time: connecting, a move, a stop.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 mod support;
@@ -12,7 +12,7 @@ use std::convert::Infallible;
 use std::rc::Rc;
 use support::{CLOCK_HZ, Kind, build};
 
-/// The host's end: each exchange is half a millisecond of the board.
+/// The host's end. Each exchange lasts half a millisecond of the board's time.
 struct End<B>(Rc<RefCell<(B, Vec<Edge>)>>);
 
 impl<B> Clone for End<B> {
@@ -60,7 +60,7 @@ fn connected<B: Kind>(baud: u32) -> (End<B>, Host<End<B>, End<B>>) {
     (end, host)
 }
 
-/// A hundred steps forward and as many back, in pieces, on two axes.
+/// A program of a hundred steps forward and as many backward, in `pieces` segments, on two axes.
 fn commands(pieces: u32) -> Vec<Command> {
     let v = i64::MAX / 100;
     let mut commands = Vec::new();
@@ -83,7 +83,7 @@ fn moves<B: Kind>(baud: u32) -> Vec<Edge> {
     let commands = commands(41);
     let ended = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap();
     assert_eq!(ended, Ended::Done);
-    // Half of a step is behind it when it begins.
+    // The fraction of the position is half a step at the start.
     assert_eq!(host.status().positions[..6], [5, 0, 0, 5, 0, 0], "{:?}", host.status());
     let (board, edges) = &*end.0.borrow();
     assert_eq!(board.position(3), 5);
@@ -122,19 +122,19 @@ fn stops<B: Kind>() {
 }
 
 #[test]
-fn it_knows_who_it_is_and_moves() {
+fn board_reports_its_facts_and_moves() {
     for baud in [921_600, 3_000_000] {
         moves::<Board>(baud);
     }
 }
 
 #[test]
-fn it_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
+fn board_stops_on_request_and_at_a_switch() {
     stops::<Board>();
 }
 
 #[test]
-fn its_verilog_makes_the_same_pulses_in_the_same_clocks() {
+fn verilog_makes_the_same_pulses_in_the_same_clocks() {
     let baud = 3_000_000;
     let edges = moves::<VerilatedBoard>(baud);
     assert!(edges.len() > 400, "{} edges are no move", edges.len());
@@ -142,11 +142,12 @@ fn its_verilog_makes_the_same_pulses_in_the_same_clocks() {
 }
 
 #[test]
-fn its_verilog_stops_where_the_host_wishes_and_where_a_switch_is_pressed() {
+fn verilog_stops_on_request_and_at_a_switch() {
     stops::<VerilatedBoard>();
 }
 
-/// What a board says to some requests in the middle of a move, and all of it in the end; it runs so many clocks at once.
+/// The answers of a board to some requests in the middle of a move, and its final state. It runs
+/// `at_once` clocks per call.
 fn said(at_once: u64) -> (Vec<u8>, String) {
     let (end, mut host) = connected::<Board>(3_000_000);
     host.enable().unwrap();
@@ -173,7 +174,7 @@ fn said(at_once: u64) -> (Vec<u8>, String) {
 }
 
 #[test]
-fn it_is_the_same_however_it_is_run() {
+fn result_does_not_depend_on_the_clocks_per_call() {
     let slowly = said(1);
     assert!(slowly.0.len() >= 34, "{slowly:?}");
     for at_once in [7, 96, 1000, 10_000] {

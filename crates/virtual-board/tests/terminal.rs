@@ -1,5 +1,5 @@
-//! Hosts that open the pseudo-terminal of a board as their serial port, in Rust and in C: the pulses are those of a board
-//! in simulated time.
+//! Hosts in Rust and in C that open the pseudo-terminal of a board as their serial port. The pulses
+//! must equal those of a board in simulated time.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
@@ -23,12 +23,14 @@ fn uart() -> Uart {
     Uart::new(CLOCK_HZ, 3_000_000).unwrap()
 }
 
-/// All of it fits into the queues: the Verilog cannot say how far they reach, and its host may be held up.
+/// A program that fits into the queues completely: the Verilog cannot report how far its queues
+/// reach, and its host may be delayed.
 fn commands() -> Vec<Command> {
     waves(&mut Random(8), 7, 2000)
 }
 
-/// The edges from the first load on of a board whose host does this to its port.
+/// The edges from the first load on of a board whose host executes `host` with the name of its
+/// port.
 fn served<B: Kind>(host: impl FnOnce(&str)) -> Vec<Edge> {
     let terminal = Terminal::new().unwrap();
     let port = terminal.name().to_owned();
@@ -43,7 +45,7 @@ fn served<B: Kind>(host: impl FnOnce(&str)) -> Vec<Edge> {
             }
             seen.since(desk.board.loads()[0])
         });
-        // The board ends where its host fails.
+        // The board's thread ends even if its host fails.
         let _over = Over(is_over);
         host(&port);
         drop(_over);
@@ -51,7 +53,7 @@ fn served<B: Kind>(host: impl FnOnce(&str)) -> Vec<Edge> {
     })
 }
 
-/// Says so where it is dropped.
+/// Sets the flag when it is dropped.
 struct Over<'a>(&'a AtomicBool);
 
 impl Drop for Over<'_> {
@@ -62,7 +64,7 @@ impl Drop for Over<'_> {
 
 fn in_rust(port: &str) {
     let line = SerialLine::open(port, uart().baud()).unwrap();
-    // A board may be slow.
+    // A simulated board may be slow.
     let patience = Patience { silence: 60_000, lost: 60_000, change: 60_000, ..Patience::default() };
     let id = uart().build_id(&build()).0;
     let mut host: Host<_, _> = Host::connect(line, SystemClock::default(), Some(id), patience).unwrap();
@@ -81,7 +83,7 @@ fn in_c(port: &str) {
 }
 
 #[test]
-fn pulses_through_it_are_those_of_simulated_time() {
+fn pulses_through_a_terminal_equal_those_in_simulated_time() {
     let end = End::<Board>::new(uart(), Faults::default(), 0);
     let mut host = end.connect(uart());
     host.enable().unwrap();

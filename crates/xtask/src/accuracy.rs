@@ -1,4 +1,4 @@
-//! The table of `docs/accuracy.md`: written anew on demand, compared in every test run.
+//! The table of `docs/accuracy.md`: generated on demand, compared in every test run.
 
 use crate::shell::{self, Done};
 use serde_json::Value;
@@ -9,7 +9,7 @@ const PAGE: &str = "docs/accuracy.md";
 const BEGIN: &str = "<!-- `cargo xtask accuracy` writes from here ... -->";
 const END: &str = "<!-- ... to here -->";
 
-/// Fails where the page is not what the checker measures now.
+/// Fails if the page differs from the current measurements of the checker.
 pub fn check() -> Done {
     let page = fs::read_to_string(shell::root().join(PAGE)).map_err(|error| format!("{PAGE}: {error}"))?;
     if !page.contains(&block(&table()?)) {
@@ -19,7 +19,7 @@ pub fn check() -> Done {
     Ok(())
 }
 
-/// Writes the table.
+/// Writes the table into the page.
 pub fn write() -> Done {
     let path = shell::root().join(PAGE);
     let page = fs::read_to_string(&path).map_err(|error| format!("{PAGE}: {error}"))?;
@@ -45,7 +45,7 @@ fn table() -> Result<String, String> {
             let report = simulate(profile, phases)?;
             let axis = &report["check"]["axes"][0];
             let figure = |name: &str| axis[name].as_f64().unwrap_or(f64::NAN);
-            // Adding zero makes minus zero plus.
+            // Adding zero turns minus zero into plus zero.
             let whole = |name: &str| figure(name).round() + 0.0;
             let segments = &report["limits"]["axes"][0]["segments"];
             writeln!(
@@ -67,10 +67,10 @@ fn table() -> Result<String, String> {
     Ok(text)
 }
 
-/// The reference move on the model, as the command reports it.
+/// Simulates the reference move on the model, and returns the report of the command.
 fn simulate(profile: &str, phases: u32) -> Result<Value, String> {
     let file = format!("sim/out/accuracy-{profile}-{phases}.toml");
-    // A jerk limit of the sine's peak, for the seven segments.
+    // The jerk limit for the S-curve is the peak jerk of the sine profile.
     let jerk = if profile == "scurve" { "jerk_limit = 5_553_604\n" } else { "" };
     let text = format!(
         "[machine]\nclock_hz = 32_000_000\ntick_ns = 1000\nphases = {phases}\n\n[[machine.axis]]\nname = \"x\"\n\

@@ -33,7 +33,8 @@ struct Crate {
 /// All crates by folder.
 fn crates() -> Result<BTreeMap<String, Crate>, String> {
     let manifest = shell::root().join("Cargo.toml");
-    let metadata = MetadataCommand::new().manifest_path(manifest).no_deps().exec().map_err(|error| error.to_string())?;
+    let metadata =
+        MetadataCommand::new().manifest_path(manifest).no_deps().exec().map_err(|error| error.to_string())?;
     let crates = metadata.workspace_packages().into_iter().filter_map(|package| {
         let folder = package.manifest_path.parent()?;
         (folder.parent()?.file_name()? == "crates").then(|| of(folder.file_name().unwrap_or_default(), package))

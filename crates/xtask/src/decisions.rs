@@ -112,8 +112,7 @@ fn summary(before: &str, pages: &[Decision]) -> String {
 /// The files as they must be, by their path from the root.
 fn expected() -> Result<[(&'static str, String); 2], String> {
     let pages = decisions()?;
-    let before =
-        fs::read_to_string(shell::root().join(SUMMARY)).map_err(|error| format!("{SUMMARY}: {error}"))?;
+    let before = fs::read_to_string(shell::root().join(SUMMARY)).map_err(|error| format!("{SUMMARY}: {error}"))?;
     Ok([("docs/decisions/index.md", index(&pages)), (SUMMARY, summary(&before, &pages))])
 }
 

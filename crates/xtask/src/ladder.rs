@@ -1,7 +1,7 @@
 //! The ladder: tools, arrows, lints, then every rung as a test of its own.
 
 use crate::shell::{self, Done};
-use crate::{accuracy, arrows, readme, tools};
+use crate::{accuracy, arrows, decisions, readme, tools};
 
 /// Where random cases are drawn from, so that a red run is the change's doing; plain `cargo test` draws new ones.
 const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "2009");
@@ -10,6 +10,7 @@ const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "2009");
 pub fn climb() -> Done {
     tools::install()?;
     arrows::check()?;
+    decisions::check()?;
     lint()?;
     bare()?;
     shell::run_with(&[SEED], "cargo", &["test", "--release", "--workspace"])?;

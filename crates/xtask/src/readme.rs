@@ -1,4 +1,5 @@
-//! What the README and `hdl-out/` show of the demo: written anew on demand, compared in every test run.
+//! The parts of the README and of `hdl-out/` that show the demo: generated on demand, compared in
+//! every test run.
 
 use crate::shell::{self, Done};
 use std::fs;
@@ -9,11 +10,12 @@ const END: &str = "<!-- ... to here -->";
 const PLOT: &str = "docs/pictures/demo.svg";
 const WAVEFORM: &str = "docs/pictures/demo-waveform.png";
 
-/// Makes GTKWave save a picture of what it shows.
+/// Script that makes GTKWave save a picture of its window.
 const GRAB: &str =
     "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File docs/pictures/demo-waveform.png\nexit\n";
 
-/// Writes `hdl-out/` and what is made from tables anew: the register map's files, the boards' pages, the JSON Schemas.
+/// Generates `hdl-out/` and the files that are made from tables: register map, pages of boards,
+/// JSON Schemas.
 pub fn generate() -> Done {
     let write = ["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core", "--core"];
     ["parallel", "engine"].iter().try_for_each(|core| shell::run("cargo", &[write.as_slice(), &[core]].concat()))?;
@@ -21,7 +23,7 @@ pub fn generate() -> Done {
     shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-verilog", "--example", "generated"])
 }
 
-/// Fails where the README or the committed plot is not what the demo gives now.
+/// Fails if the README or the committed plot differs from the current output of the demo.
 pub fn check() -> Done {
     let (table, plot) = demo()?;
     let stale = |what: &str| Err(format!("{what} is not what the demo gives: run `cargo xtask readme`"));
@@ -38,7 +40,7 @@ pub fn check() -> Done {
     Ok(())
 }
 
-/// Writes the README's table and both pictures.
+/// Writes the table of the README and both pictures.
 pub fn write() -> Done {
     let (table, plot) = demo()?;
     let readme = read("README.md")?;
@@ -50,7 +52,7 @@ pub fn write() -> Done {
     waveform()
 }
 
-/// The demo's table, and its plot.
+/// The table of the demo, and its plot.
 fn demo() -> Result<(String, String), String> {
     let table = shell::read("cargo", &["run", "--quiet", "--release", "--", "demo"])?;
     Ok((table, read("sim/out/demo/demo.svg")?))
@@ -60,7 +62,7 @@ fn block(table: &str) -> String {
     format!("{BEGIN}\n\n```text\n$ cargo run --release -- demo\n{}\n```\n\n{END}", table.trim_end())
 }
 
-/// The waveform as GTKWave shows it with the save file that the demo writes.
+/// Saves a picture of the waveform in GTKWave with the save file that the demo writes.
 fn waveform() -> Done {
     for (tool, package) in [("gtkwave", "gtkwave"), ("xvfb-run", "xvfb xauth")] {
         if !shell::is_there(tool) {

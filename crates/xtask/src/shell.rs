@@ -1,37 +1,37 @@
-//! Running other programs from the root of the workspace.
+//! Runs other programs in the root of the workspace.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What a chore ends with: a sentence that says what failed.
+/// Result of a task; the error is a sentence that says what failed.
 pub type Done = Result<(), String>;
 
-/// The root of the workspace.
+/// The root directory of the workspace.
 pub fn root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.ancestors().nth(2).unwrap_or(here).to_owned()
 }
 
-/// A line for the person at the terminal.
+/// Prints a line to standard error for the user.
 pub fn say(line: &str) {
-    // Nobody is left to tell if this fails.
+    // If standard error cannot be written, there is nowhere to report it.
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
-/// A command that starts in the root of the workspace.
+/// A command that will run in the root of the workspace.
 pub fn command(program: &str, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);
     command.args(arguments).current_dir(root());
     command
 }
 
-/// Runs a command, its output going to the terminal.
+/// Runs a command; its output goes to the terminal.
 pub fn run(program: &str, arguments: &[&str]) -> Done {
     run_with(&[], program, arguments)
 }
 
-/// The same, with variables in its environment.
+/// As [`run`], with additional environment variables.
 pub fn run_with(variables: &[(&str, &str)], program: &str, arguments: &[&str]) -> Done {
     let set: String = variables.iter().map(|(name, value)| format!("{name}={value} ")).collect();
     say(&format!("$ {set}{program} {}", arguments.join(" ")));
@@ -41,7 +41,7 @@ pub fn run_with(variables: &[(&str, &str)], program: &str, arguments: &[&str]) -
     if status.success() { Ok(()) } else { Err(format!("`{program} {}` failed ({status})", arguments.join(" "))) }
 }
 
-/// Runs a command and takes what it prints.
+/// Runs a command and returns its standard output.
 pub fn read(program: &str, arguments: &[&str]) -> Result<String, String> {
     let output = command(program, arguments).output().map_err(|error| format!("cannot start {program}: {error}"))?;
     if !output.status.success() {

@@ -1,8 +1,9 @@
-//! The tools that the tests need beside Cargo, installed by apt where that is possible.
+//! Installs the tools that the tests need beside Cargo, by apt where possible. A new tool is a row
+//! of `NEEDED`.
 
 use crate::shell::{self, Done};
 
-/// Program, and the Debian package that brings it.
+/// Each program, and the Debian package that contains it.
 const NEEDED: [(&str, &str); 14] = [
     ("iverilog", "iverilog"),
     ("vvp", "iverilog"),
@@ -20,7 +21,7 @@ const NEEDED: [(&str, &str); 14] = [
     ("icetime", "fpga-icestorm-chipdb"),
 ];
 
-/// Installs what is missing, or says exactly what to install.
+/// Installs the missing tools, or reports which ones must be installed by hand.
 pub fn install() -> Done {
     let missing = missing();
     if missing.is_empty() {

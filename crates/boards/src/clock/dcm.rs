@@ -1,4 +1,4 @@
-//! The frequency synthesiser of a Spartan-3, 3E or 6: CLKFX of a DCM without feedback.
+//! The frequency synthesiser of a Spartan-3, 3E or 6: the output CLKFX of a DCM without feedback.
 
 use super::{ClockManager, Way};
 use schemars::JsonSchema;
@@ -14,7 +14,8 @@ pub struct Dcm {
     pub divide: u8,
 }
 
-/// All ways to set it, the smallest factors first: they lock fastest.
+/// All settings, in the order of preference: the smallest divider first, then the smallest
+/// multiplier, because small factors lock fastest.
 pub(super) fn ways(oscillator_hz: u64, least_in: u64, out: RangeInclusive<u64>) -> impl Iterator<Item = Way> {
     let f = if oscillator_hz < least_in { 0 } else { oscillator_hz.min(1 << 32) };
     (1..33_u8).flat_map(move |divide| {

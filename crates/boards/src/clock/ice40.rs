@@ -1,5 +1,5 @@
-//! The PLL of an iCE40 with simple feedback. Ranges and filter steps are those of icestorm's `icepll`, and its choice
-//! among equals too (`tests/clocks.rs` compares).
+//! The PLL of an iCE40 with simple feedback. Its ranges and filter steps are those of icestorm's
+//! `icepll`; among equal settings the same one is chosen (`tests/clocks.rs` compares them).
 
 use super::{ClockManager, Way};
 use schemars::JsonSchema;
@@ -20,20 +20,22 @@ pub struct Ice40Pll {
 
 const MHZ: u64 = 1_000_000;
 
-/// Ranges, MHz: phase detector and input, VCO, output.
+/// Ranges of frequencies, MHz: DETECTOR for the phase detector and the input, VCO, and OUT for the
+/// output.
 const DETECTOR: (u64, u64) = (10, 133);
 const VCO: (u64, u64) = (533, 1066);
 const OUT: (u64, u64) = (16, 275);
 
-/// From which frequency of the phase detector on, MHz, the filter has which range.
+/// Filter range by the frequency of the phase detector: lowest frequency, MHz, and the range from
+/// there on.
 const FILTER: [(u64, u8); 6] = [(101, 6), (66, 5), (44, 4), (26, 3), (17, 2), (0, 1)];
 
-/// Whether a / b Hz is in a range of MHz.
+/// Whether a / b Hz lies within a range given in MHz.
 const fn within(a: u64, b: u64, range: (u64, u64)) -> bool {
     a >= range.0 * MHZ * b && a <= range.1 * MHZ * b
 }
 
-/// All ways to set it, in the order in which `icepll` looks at them.
+/// All settings, in the order in which `icepll` tries them.
 pub(super) fn ways(oscillator_hz: u64) -> impl Iterator<Item = Way> {
     let f = oscillator_hz.min(DETECTOR.1 * MHZ + 1);
     let references = (0..16_u8).filter(move |&divr| within(f, 1, DETECTOR) && within(f, u64::from(divr) + 1, DETECTOR));

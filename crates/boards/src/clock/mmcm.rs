@@ -1,4 +1,4 @@
-//! The MMCM of a Spartan-7 of speed grade -1, with whole factors.
+//! The MMCM of a Spartan-7 of speed grade -1. Only whole factors are used.
 
 use super::{ClockManager, Way};
 use schemars::JsonSchema;
@@ -17,12 +17,14 @@ pub struct Mmcm {
 
 const MHZ: u64 = 1_000_000;
 
-/// Ranges: input and phase detector, VCO, output.
+/// Ranges of frequencies, Hz: DETECTOR for the input and the phase detector, VCO, and OUT for the
+/// output.
 const DETECTOR: (u64, u64) = (10 * MHZ, 450 * MHZ);
 const VCO: (u64, u64) = (600 * MHZ, 1200 * MHZ);
 const OUT: (u64, u64) = (5 * MHZ, 800 * MHZ);
 
-/// All ways to set it, the fastest VCO of the smallest reference divider first: that has the least jitter.
+/// All settings, in the order of preference: the smallest reference divider first, and with it the
+/// fastest VCO, which has the least jitter.
 pub(super) fn ways(oscillator_hz: u64) -> impl Iterator<Item = Way> {
     let f = oscillator_hz.min(OUT.1 + 1);
     let within = |a: u64, b: u64, range: (u64, u64)| a >= range.0 * b && a <= range.1 * b;

@@ -1,4 +1,5 @@
-//! Checks of a board's file: no port lies on a configuration pin without a reason, and what a gate holds.
+//! Checks of a board's file that concern configuration: a port lies on a configuration pin only
+//! with a reason, and a gate holds outputs that exist.
 
 use super::super::configuration::{Gate, Mode, Package, Shared, packages};
 use super::super::port::PORTS;
@@ -9,7 +10,7 @@ use serde::Deserialize;
 use std::collections::BTreeSet;
 use toml::Spanned;
 
-/// Pins that ports may be on although configuration uses them.
+/// Configuration pins that ports may use nevertheless, with the reason.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an [[exception]] table")]
 pub(super) struct Exception {
@@ -27,14 +28,15 @@ pub(super) struct RawGate {
     why: String,
 }
 
-/// Outputs that the top level can let go: those of the line to the host.
+/// The outputs that the top level can switch to high impedance: those of the line to the host.
 const HELD: [&str; 2] = ["uart_tx", "spi_miso"];
 
-/// What a reserved pin's use begins with.
+/// Prefix of the use of a reserved pin.
 pub(super) const RESERVED: &str = "reserved: ";
 
 impl Reader<'_> {
-    /// The gate's pin is taken, and what it holds is there.
+    /// Assigns the gate's pin, and checks that the gate holds the outputs of the host's line and no
+    /// others.
     pub(super) fn gate(&mut self, gate: RawGate, wires: &[Wire]) -> Result<Gate, InputError> {
         let RawGate { port, pin, wait_ns, holds, why } = gate;
         if PORTS.iter().any(|known| known.name == port.as_ref()) {
@@ -57,10 +59,11 @@ impl Reader<'_> {
         Ok(Gate { port: port.into_inner(), pin: pin.into_inner(), wait_ns, holds, why })
     }
 
-    /// The ports on configuration pins, and the sources of the tables that say which pins those are.
+    /// The ports on configuration pins, and the sources of the tables that list those pins.
     ///
-    /// In a mode that the board uses, such a port needs an exception. In another one the pin is the design's from the
-    /// beginning, so the port is only listed.
+    /// If the pin has a function in a mode that the board uses, the port needs an exception. If it
+    /// has one in another mode only, the design owns the pin from the start, and the port is listed
+    /// without one.
     pub(super) fn configuration(
         &self,
         own: &[Package],

@@ -1,17 +1,17 @@
-//! A pin of a board's file, or a list of them.
+//! A pin in a board's file, or a list of pins.
 
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;
 use toml::Spanned;
 
-/// A pin, or one for each axis.
+/// One pin, or one pin for each axis.
 pub(super) enum Pins {
     One(String),
     Many(Vec<Spanned<String>>),
 }
 
-/// By hand: an untagged enumeration would lose the places.
+/// Implemented by hand, because an untagged enumeration would lose the places in the file.
 impl<'de> Deserialize<'de> for Pins {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct OneOrMany;

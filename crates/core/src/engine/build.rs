@@ -1,4 +1,6 @@
-//! The build parameters of an engine: axes, pins, and what its guard watches.
+//! The build parameters of an engine: its axes, their pins, and the settings of its guard. The
+//! guard is the part of the engine that watches limits, e-stop, watchdog and faults, and stops the
+//! axes.
 
 use super::{EngineError, MAX_AXES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, check_pins, check_schedule};
 use crate::build::{Build, PinTiming, Timebase};
@@ -13,54 +15,59 @@ use serde::{Deserialize, Serialize};
 pub struct EngineBuild {
     /// Clock, tick and phases.
     pub timebase: Timebase,
-    /// Where in a step moves start.
+    /// Phase of a step in which moves start.
     pub phase: StartPhase,
-    /// Pin timing of each axis: as many as there are axes.
+    /// Pin timing of each axis, in clocks; one entry per axis.
     pub pins: Vec<PinTiming>,
-    /// What stops the axes.
+    /// Settings of the guard.
     pub guard: Guard,
 }
 
-/// What the guard watches, and how it stops the axes.
+/// Settings of the guard: what it watches, and how it stops the axes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Guard {
-    /// Ticks from one look at a limit to the next, and the unit of the times below; a power of two.
+    /// Length of a round in ticks: the time between two samples of a limit, and the unit of the
+    /// times below. A power of two from 2 to [`MAX_ROUND`].
     pub round: u32,
-    /// Looks until a limit is believed.
+    /// Number of consecutive samples with the same level after which a limit's level is accepted, 1
+    /// to [`MAX_LOOKS`].
     pub debounce: u32,
-    /// Rounds of silence until the host is missed; 0: it is not.
+    /// Time without a valid request after which the watchdog stops all axes, in rounds, up to
+    /// [`MAX_ROUNDS`]; 0 turns the watchdog off.
     pub watchdog: u32,
-    /// Rounds from ENABLE to the first start; 0: none.
+    /// Time from power at ENABLE to the first start, in rounds, up to [`MAX_ROUNDS`]; 0 for no
+    /// delay.
     pub enable: u32,
-    /// How the limit switches are wired.
+    /// Wiring of the limit switches.
     pub limits: Limits,
-    /// A limit freezes; otherwise it ramps down.
+    /// Whether a limit freezes the axes at once; otherwise they ramp down.
     pub limit_freezes: bool,
-    /// The e-stop is pressed where its pin is low.
+    /// Whether the e-stop counts as pressed while its pin is low (otherwise: while it is high).
     pub estop_low: bool,
-    /// A limit is reached where its pin is low.
+    /// Whether a limit counts as reached while its pin is low (otherwise: while it is high).
     pub limits_low: bool,
-    /// Stop acceleration of each axis, 2^-64 step per tick^2.
+    /// Stop acceleration of each axis, 2^-64 step per tick^2, 1 to 2^62.
     pub stop: Vec<u64>,
 }
 
-/// How the limit switches are wired.
+/// Wiring of the limit switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Limits {
-    /// There are none.
+    /// There are no limit switches.
     None,
-    /// Two for each axis: each stops the way that it ends.
+    /// Two for each axis. Each stops motion toward its own end only.
     #[default]
     Pair,
-    /// One for each axis, for both ends.
+    /// One input for each axis, shared by both ends.
     Each,
-    /// One for all axes.
+    /// One input for all axes.
     One,
 }
 
 impl Guard {
-    /// A guard that watches only what the engine itself can do wrong; ramps of `stop`.
+    /// The smallest guard: no watchdog, no ENABLE delay and no limits. Ramps use the accelerations
+    /// of `stop`.
     pub fn minimal(stop: Vec<u64>) -> Self {
         Self {
             round: 64,
@@ -77,22 +84,23 @@ impl Guard {
 }
 
 impl EngineBuild {
-    /// The engine of these parameters with the least guard.
+    /// An engine with these parameters and the smallest guard; every axis ramps down with `stop`,
+    /// 2^-64 step per tick^2.
     pub fn minimal(build: &Build, stop: u64) -> Self {
         let Build { timebase, phase, pins } = build;
         let guard = Guard::minimal(vec![stop; pins.len()]);
         Self { timebase: *timebase, phase: *phase, pins: pins.to_vec(), guard }
     }
 
-    /// How many axes.
+    /// Number of axes.
     pub fn axes(&self) -> usize {
         self.pins.len()
     }
 
-    /// Whether there can be such an engine.
+    /// Checks that every parameter is in its range.
     ///
     /// # Errors
-    /// [`EngineError`] names the parameter.
+    /// [`EngineError`] names the first parameter that is not, and its range.
     pub fn check(&self) -> Result<(), EngineError> {
         let (axes, guard) = (self.axes(), &self.guard);
         if !(1..=MAX_AXES).contains(&axes) {
@@ -138,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parameter_that_cannot_be_is_named() {
+    fn error_names_the_parameter_out_of_range() {
         let nine = |build: &mut EngineBuild| build.pins = vec![PinTiming::SHORTEST; 9];
         assert_eq!(refusal(nine), "9 axes: an engine has 1 to 8");
         assert!(refusal(|build| build.pins.clear()).starts_with("0 axes"));
@@ -154,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn eight_axes_fit_where_their_turns_do() {
+    fn eight_axes_need_a_tick_of_105_clocks() {
         let seven = |build: &mut EngineBuild| {
             build.pins = vec![PinTiming::SHORTEST; 8];
             build.guard.stop = vec![1; 8];

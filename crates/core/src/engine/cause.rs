@@ -1,25 +1,28 @@
-//! The stop causes: their numbers, their names, what each means and what its user does about it.
+//! The stop causes: number, name, meaning, and what the user does about each.
+//!
+//! An answer of the link has three bits for the number, so there is no room for a ninth cause.
 
 use core::fmt;
 
-/// Why the engine has stopped; the number is the port's.
+/// Cause of a stop. Its number is the value at the engine's `cause` port and in an answer of the
+/// link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Cause {
-    /// The e-stop was pressed.
+    /// The e-stop input was asserted.
     EStop = 0,
-    /// A second step was owed (promise 6).
+    /// A second step arrived on an axis that already held one back for its pin timing (promise 6).
     Overrun = 1,
-    /// The host broke the segment protocol.
+    /// The host violated the segment protocol.
     Protocol = 2,
-    /// The host was silent for too long.
+    /// No valid request arrived within the watchdog's time.
     Watchdog = 3,
-    /// V would have left (-2^63, 2^63).
+    /// V of an axis would have left (-2^63, 2^63).
     Overspeed = 4,
     /// A limit switch was reached.
     Limit = 5,
-    /// A queue was dry after a segment not marked LAST.
+    /// The queue of an axis was empty after a segment that was not marked LAST.
     Underrun = 6,
-    /// The host asked for it.
+    /// The host requested the stop.
     Stop = 7,
 }
 
@@ -51,17 +54,17 @@ pub const CAUSES: [Cause; 8] = [
 ];
 
 impl Cause {
-    /// What has happened, as a sentence without its full stop, for the person at the machine.
+    /// What has happened, in words for the operator: a sentence without its full stop.
     pub const fn meaning(self) -> &'static str {
         self.words().0
     }
 
-    /// What that person does before the machine may move again, up to `carrystep stop --clear`.
+    /// What the operator must do before the machine may move again, up to `carrystep stop --clear`.
     pub const fn remedy(self) -> &'static str {
         self.words().1
     }
 
-    /// The table of all causes: meaning and remedy.
+    /// Meaning and remedy of each cause.
     const fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::EStop => (
@@ -103,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_cause_has_its_number_and_a_remedy_that_ends_the_stop() {
+    fn every_cause_has_its_number_and_a_remedy_that_clears_the_stop() {
         for (number, cause) in CAUSES.iter().enumerate() {
             assert_eq!(*cause as usize, number);
             assert!(cause.remedy().contains("`carrystep stop --clear`"), "{cause}");

@@ -1,4 +1,5 @@
-//! Why there can be no engine with some parameters: each error names them, and what would do.
+//! Errors of the engine's build parameters. Each names the parameter, its value, and values that
+//! are possible.
 
 use super::{MAX_AXES, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS, MIN_CLOCKS_PER_PHASE, TURN};
 use crate::build::MAX_CLOCKS;
@@ -7,34 +8,34 @@ use alloc::format;
 use alloc::string::String;
 use thiserror::Error;
 
-/// Parameters that make no engine.
+/// Build parameters for which no engine can be built.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum EngineError {
-    /// No axis, or too many.
+    /// The number of axes is 0 or more than [`MAX_AXES`].
     #[error("{0} axes: an engine has 1 to {MAX_AXES}")]
     Axes(usize),
-    /// A tick is too short for the turns of all axes.
+    /// A tick has too few clocks for the turns of all axes.
     #[error(
         "{axes} axes need {TURN} clocks each and one to close the tick, {needed} in all, but a tick of {tick_ns} ns \
          at {clock_hz} Hz has {clocks}: {}, a clock of {least_hz} Hz or fewer axes would do", tick_said(.least_tick_ns)
     )]
     Schedule {
-        /// How many there are to be.
+        /// Number of axes.
         axes: usize,
-        /// Clocks of their turns.
+        /// Clocks that their turns need.
         needed: u32,
-        /// Clocks of a tick.
+        /// Clocks that the tick has.
         clocks: u32,
         /// Tick, ns.
         tick_ns: u64,
         /// Clock, Hz.
         clock_hz: u64,
-        /// The shortest tick that would do, ns.
+        /// The shortest tick that suffices at this clock, ns.
         least_tick_ns: Option<u64>,
-        /// The least clock that would do, Hz.
+        /// The slowest clock that suffices at this tick, Hz.
         least_hz: u64,
     },
-    /// Events could not be written between the phases.
+    /// A phase has too few clocks to write events between two phases.
     #[error(
         "{phases} phases in the {clocks} clocks of a tick: an engine needs {MIN_CLOCKS_PER_PHASE} clocks in each; \
          {}, fewer phases or a faster clock would do", tick_said(.least_tick_ns)
@@ -44,47 +45,48 @@ pub enum EngineError {
         phases: u32,
         /// Clocks of a tick.
         clocks: u32,
-        /// The shortest tick that would do, ns.
+        /// The shortest tick that suffices at this clock, ns.
         least_tick_ns: Option<u64>,
     },
-    /// A pin timing that the timers cannot count.
+    /// A pin time is out of the range of its timer.
     #[error("axis {axis}: {name} is {clocks} clocks: from 1 to {MAX_CLOCKS} can be counted")]
     PinTiming {
-        /// The axis.
+        /// Number of the axis.
         axis: usize,
-        /// width, gap, setup or hold.
+        /// Name of the time: width, gap, setup or hold.
         name: &'static str,
-        /// What was asked for.
+        /// The value, in clocks.
         clocks: u32,
     },
     /// A round is not a power of two.
     #[error("a round of {0} ticks: a power of two from 2 to {MAX_ROUND} is needed")]
     Round(u32),
-    /// A figure of the guard that its counter cannot hold.
+    /// A time of the guard is greater than its counter.
     #[error("{name} of {rounds} rounds: at most {MAX_ROUNDS} can be counted; a longer round would do")]
     Rounds {
-        /// watchdog or enable.
+        /// Name of the time: watchdog or enable.
         name: &'static str,
-        /// What was asked for.
+        /// The value, in rounds.
         rounds: u32,
     },
-    /// Looks that the debounce cannot count.
+    /// The number of samples for the debounce is out of its range.
     #[error("a debounce of {0} looks: from 1 to {MAX_LOOKS} can be counted; a longer round would do")]
     Debounce(u32),
-    /// A stop acceleration that is none, or that passes every speed.
+    /// A stop acceleration is 0 or greater than 2^62, above which the ramp could pass any speed in
+    /// one tick.
     #[error("the stop acceleration of axis {axis} is {units} x 2^-64 steps per tick^2: from 1 to 2^62 is needed")]
     StopAcceleration {
-        /// The axis.
+        /// Number of the axis.
         axis: usize,
-        /// What was asked for.
+        /// The value, in 2^-64 step per tick^2.
         units: u64,
     },
-    /// Not one stop acceleration for each axis.
+    /// The number of stop accelerations differs from the number of axes.
     #[error("{found} stop accelerations for {axes} axes")]
     StopCount {
-        /// Axes with pins.
+        /// Number of axes.
         axes: usize,
-        /// Stop accelerations.
+        /// Number of stop accelerations.
         found: usize,
     },
 }

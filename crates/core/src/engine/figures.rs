@@ -1,51 +1,54 @@
-//! What a guard does in seconds, as counted: the file's figures are rounded up to rounds of ticks.
+//! Times of a guard in seconds. The times of a machine file are rounded up to whole rounds of
+//! ticks; these are the times that the gateware then keeps.
 
 use super::{EngineBuild, Limits};
 use alloc::vec::Vec;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// A time as a guard keeps it.
+/// A time that the guard keeps, as a range.
 #[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct Between {
-    /// It is never shorter.
+    /// Shortest possible time.
     pub least: f64,
-    /// It is never longer.
+    /// Longest possible time.
     pub most: f64,
 }
 
-/// A guard in the units of a machine file.
+/// The settings of a guard, in the units of a machine file.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct GuardFigures {
-    /// From one look at a limit to the next, us.
+    /// Time between two samples of a limit, us.
     pub round_us: f64,
-    /// From the host's last sign to the stop, ms; `None`: it is not missed.
+    /// Time from the host's last valid request to the stop, ms; `None` if the watchdog is off.
     pub watchdog_ms: Option<Between>,
-    /// From ENABLE to the first start, ms; `None`: no time.
+    /// Time from ENABLE to the first start, ms; `None` for no delay.
     pub enable_ms: Option<Between>,
-    /// From the change of a limit's pin until it is believed, us; `None`: there are no limits.
+    /// Time from the change of a limit's pin until it is accepted, us; `None` without limits.
     pub debounce_us: Option<Between>,
-    /// The level at which the e-stop is pressed.
+    /// Level of the e-stop pin at which the e-stop counts as pressed.
     pub estop: &'static str,
-    /// How the limits are wired.
+    /// Wiring of the limits.
     pub limits: Limits,
-    /// The level at which a limit is reached.
+    /// Level of a limit pin at which the limit counts as reached.
     pub limit_level: &'static str,
-    /// How a limit stops the axes.
+    /// How a limit stops the axes: `ramp` or `freeze`.
     pub limit_stop: &'static str,
-    /// The ramp of each axis, steps/s^2.
+    /// Acceleration of each axis' stop ramp, steps/s^2.
     pub stop_accel_steps_per_s2: Vec<f64>,
 }
 
 impl EngineBuild {
-    /// What its guard comes to.
+    /// The times and ramps of this build's guard, in the units of a machine file.
     pub fn guard_figures(&self) -> GuardFigures {
         let guard = &self.guard;
         let level = |low| if low { "low" } else { "high" };
-        // Whole ns, and few of them: the floats are the nearest there are.
+        // Each argument is a whole number of ns well below 2^53, so that the conversion to a float
+        // is exact.
         let ns = |ticks: u64| (ticks * self.timebase.tick_ns()) as f64;
         let round = u64::from(guard.round);
-        // The first of the rounds may be almost over as it begins; what it finds is called a tick later.
+        // The first round may be almost over when a time begins, so up to one round is missing. The
+        // result is committed one tick after the last round.
         let between = |rounds: u32, ns_of_unit: f64| {
             let rounds = u64::from(rounds);
             let (least, most) = (round * rounds.saturating_sub(1), round * rounds + 1);

@@ -1,23 +1,24 @@
-//! Turns a program with names into what lies in the link machine's memories.
+//! Assembles a program with labels and named constants into the contents of the link machine's
+//! memories.
 
 use super::machine::{ACTS, Code, Condition, GOES, INDEXED, INX, JUMPS, SETS, STORES, Source, TAX, UNLESS, WAIT, XOR};
 use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Words of the program memory, and bytes of the data memory.
+/// Size of the program memory in words, and of the data memory in bytes.
 pub const SIZE: usize = 256;
 
-/// What lies in the memories at configuration.
+/// The contents of the memories when the FPGA has been configured.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
-    /// The program.
+    /// The program memory.
     pub program: Vec<Code>,
-    /// The data.
+    /// The data memory.
     pub data: Vec<u8>,
 }
 
-/// A program that is being written.
+/// A program that is being assembled.
 #[derive(Debug, Default)]
 pub(super) struct Assembler {
     program: Vec<Code>,
@@ -27,25 +28,26 @@ pub(super) struct Assembler {
     table: [u8; 4],
 }
 
-/// Bytes that a loop compares lie at the top of the data memory, so that its end is X7 no more.
+/// Address of the four bytes that a loop compares. They lie at the top of the data memory, so that
+/// bit 7 of X becomes 0 behind the last one.
 const TABLE: u8 = 0xfc;
-/// Constants lie downward from there.
+/// Address of the first constant; further constants follow downward.
 const TOP: u8 = TABLE - 1;
 
 impl Assembler {
-    /// The next instruction is called so.
+    /// Defines a label for the next instruction.
     pub(super) fn label(&mut self, name: &'static str) {
         let before = self.labels.insert(name, self.program.len());
         assert!(before.is_none(), "two labels {name}");
     }
 
-    /// Where a constant lies.
+    /// The address of a constant; adds the constant if the memory does not hold it yet.
     fn constant(&mut self, value: u8) -> u8 {
         let next = TOP - self.constants.len() as u8;
         *self.constants.entry(value).or_insert(next)
     }
 
-    /// X <= where these bytes lie, up to the end of the memory; takes A.
+    /// X <= the address of these bytes, which reach to the end of the memory. Changes A.
     pub(super) fn index_table(&mut self, bytes: [u8; 4]) {
         self.table = bytes;
         self.load_number(TABLE);
@@ -57,13 +59,13 @@ impl Assembler {
         self.program.push(SETS | Code::from(address));
     }
 
-    /// A <= this number.
+    /// A <= this number, from a constant in the data memory.
     pub(super) fn load_number(&mut self, number: u8) {
         let address = self.constant(number);
         self.load(address);
     }
 
-    /// A <= what this says; `operand` is the byte of a word, or the number of a port.
+    /// A <= the value of this source. `operand` is the byte of a word, or an item of the engine.
     pub(super) fn load_from(&mut self, source: Source, operand: u8) {
         self.program.push(SETS | (source as Code) << 8 | Code::from(operand));
     }
@@ -104,28 +106,28 @@ impl Assembler {
         self.program.push(STORES | INDEXED | ACTS | INX);
     }
 
-    /// A goes to the host.
+    /// Sends A to the host.
     pub(super) fn send(&mut self) {
         self.acts(GOES | WAIT);
     }
 
-    /// Does all of this.
+    /// Performs all the actions whose bits are set.
     pub(super) fn acts(&mut self, what: Code) {
         self.program.push(ACTS | what);
     }
 
-    /// Goes on there.
+    /// Jumps to a label.
     pub(super) fn jump(&mut self, to: &'static str) {
         self.jump_if(Condition::Always, to);
     }
 
-    /// Goes on there where the condition holds.
+    /// Jumps to a label if the condition holds.
     pub(super) fn jump_if(&mut self, condition: Condition, to: &'static str) {
         self.jumps.push((self.program.len(), to));
         self.program.push(JUMPS | (condition as Code) << 8);
     }
 
-    /// Goes on there where it does not.
+    /// Jumps to a label if the condition does not hold.
     pub(super) fn jump_unless(&mut self, condition: Condition, to: &'static str) {
         self.jump_if(condition, to);
         if let Some(code) = self.program.last_mut() {
@@ -133,7 +135,7 @@ impl Assembler {
         }
     }
 
-    /// The finished program.
+    /// Resolves the labels, and returns the finished memories.
     pub(super) fn finish(mut self) -> Image {
         for (at, label) in core::mem::take(&mut self.jumps) {
             self.program[at] |= self.labels[label] as Code;

@@ -1,4 +1,4 @@
-//! Which gateware this is: a driver refuses any other than it was made for.
+//! The build id: a hash by which a driver recognises the gateware that it was made for.
 
 use super::registers::{PROTOCOL_VERSION, REGISTERS};
 use super::{ANSWER, registers};
@@ -9,12 +9,12 @@ use alloc::string::String;
 use core::fmt;
 use sha2::{Digest, Sha256};
 
-/// A hash of the register map and of all build parameters: the first 64 bits of a SHA-256.
+/// The build id: the first 64 bits of a SHA-256 over the register map and all build parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct BuildId(pub u64);
 
 impl BuildId {
-    /// The id of a build; `line` says what else the link is built with (its baud rate, for one).
+    /// The id of a build. `line` describes the build parameters of the link, such as its baud rate.
     pub fn new(build: &EngineBuild, line: &str) -> Self {
         let mut hash = Sha256::new();
         for part in [protocol(), parameters(build), line.to_owned()] {
@@ -25,7 +25,8 @@ impl BuildId {
         Self(digest.iter().take(8).fold(0, |id, &byte| id << 8 | u64::from(byte)))
     }
 
-    /// As registers [`registers::BUILD_LOW`] and [`registers::BUILD_HIGH`] give it.
+    /// The two words as the registers [`registers::BUILD_LOW`] and [`registers::BUILD_HIGH`] hold
+    /// them.
     pub const fn halves(self) -> [u32; 2] {
         [self.0 as u32, (self.0 >> 32) as u32]
     }
@@ -37,7 +38,7 @@ impl fmt::Display for BuildId {
     }
 }
 
-/// The map and the answer, in words.
+/// The register map and the fields of an answer as text.
 fn protocol() -> String {
     let registers = REGISTERS.iter().map(|row| format!("{row:?}\n"));
     let answer = ANSWER.iter().map(|row| format!("{row:?}\n"));
@@ -45,7 +46,8 @@ fn protocol() -> String {
     [version].into_iter().chain(registers).chain(answer).collect()
 }
 
-/// All parameters: a field that is added to a build is in here by itself.
+/// All build parameters as text. It uses the `Debug` output, so that a field added to a build
+/// enters the hash without a change here.
 fn parameters(build: &EngineBuild) -> String {
     format!("{build:?}")
 }
@@ -56,7 +58,7 @@ mod tests {
     use crate::{AXES, Build, PinTiming, StartPhase, Timebase};
 
     #[test]
-    fn every_parameter_makes_another_build() {
+    fn every_parameter_changes_the_build_id() {
         let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
         let build = EngineBuild::minimal(&build, 1);

@@ -1,4 +1,4 @@
-//! What a gateware says of itself: the registers that hold nothing but its build.
+//! The registers that hold facts of the build, such as its id and its number of axes.
 
 use super::BuildId;
 use super::registers::{
@@ -7,7 +7,7 @@ use super::registers::{
 };
 use crate::EngineBuild;
 
-/// Each of them: its address, and what it holds.
+/// Address and value of each of these registers.
 pub fn facts(build: &EngineBuild, id: BuildId) -> [(u8, u32); 9] {
     let [low, high] = id.halves();
     let time = &build.timebase;

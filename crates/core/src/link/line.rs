@@ -1,4 +1,4 @@
-//! How the host is connected.
+//! The line between host and gateware: a UART or an SPI.
 
 use super::{BuildId, Uart};
 use crate::EngineBuild;
@@ -8,9 +8,9 @@ use core::fmt;
 /// The line of a build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Line {
-    /// A UART.
+    /// A UART with its divider.
     Uart(Uart),
-    /// An SPI, to which the gateware is the peripheral; its rate is the host's, up to a fifth of the clock.
+    /// An SPI with the gateware as peripheral. The host sets its rate, up to a fifth of the clock.
     Spi,
 }
 
@@ -27,7 +27,7 @@ impl From<Uart> for Line {
     }
 }
 
-/// What the build id is made of.
+/// The text of the line that enters the build id.
 impl fmt::Display for Line {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

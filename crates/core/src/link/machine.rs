@@ -1,81 +1,86 @@
-//! The little machine at the gateware's end of the link: its instructions, as they lie in its program memory.
+//! The link machine, a small processor in the gateware: its instructions, as they are encoded in
+//! its program memory.
 //!
-//! A byte comes every hundred clocks or so: time enough for a program, which takes a block RAM, where the same talk as
-//! gates takes hundreds of cells. It has an accumulator A, an index X, and no arithmetic but exclusive or and X + 1.
+//! At usual baud rates a byte arrives about every hundred clocks, which is time enough for a
+//! program. The program needs one block RAM; the same protocol in gates would need hundreds of
+//! cells. The machine has an accumulator A and an index X. Its only operations are exclusive or and
+//! X + 1.
 //!
 //! ```text
-//! clock     | fetch | address | execute |       three clocks an instruction; a wait and a CRC step hold the third
+//! clock     | fetch | address | execute |   three clocks per instruction; a wait and a CRC step
+//!                                           extend the third
 //!
 //! bit    15     14     13     12     11       10 9 8       7 .. 0
 //!        sets                        xor      source       operand      A <= value, or A xor value
 //!               stores                              X   operand      data[operand or X] <= A
 //!                      jumps         invert   condition    target       pc <= target
-//!                             acts   put      start go br  wait .. tax  what these bits do
+//!                             acts   put      start go br  wait .. tax  the actions of these bits
 //! ```
 //!
-//! Of `acts` the two that change X go together with a value or a store whose operand says nothing else.
+//! The two `acts` bits that change X (TAX and INX) can be combined with a value or a store that
+//! does not use its operand.
 
 /// One instruction, encoded.
 pub type Code = u16;
 
-/// A takes a value.
+/// The instruction writes a value to A.
 pub const SETS: Code = 1 << 15;
-/// A is stored.
+/// The instruction stores A.
 pub const STORES: Code = 1 << 14;
-/// The program goes on elsewhere, if the condition holds.
+/// The instruction jumps if its condition holds.
 pub const JUMPS: Code = 1 << 13;
-/// Something is done.
+/// The instruction performs the actions whose bits are set.
 pub const ACTS: Code = 1 << 12;
 
-/// Of [`SETS`]: the value is xored to A.
+/// With [`SETS`]: A receives the exclusive or of A and the value.
 pub const XOR: Code = 1 << 11;
-/// Of [`STORES`]: at X, not at the operand.
+/// With [`STORES`]: the address is X and not the operand.
 pub const INDEXED: Code = 1 << 8;
-/// Of [`JUMPS`]: if the condition does not hold.
+/// With [`JUMPS`]: jump if the condition does not hold.
 pub const UNLESS: Code = 1 << 11;
 
-/// Where a value comes from.
+/// Source of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
-    /// The data memory, at the operand.
+    /// The data memory, at the operand's address.
     Data = 0,
-    /// The data memory, at X.
+    /// The data memory, at address X.
     DataAtX = 1,
-    /// The next received byte; it is the next one's turn then.
+    /// The received byte; reading it releases the buffer for the next one.
     Received = 2,
     /// X.
     X = 3,
     /// The low byte of the CRC.
     Crc = 4,
-    /// The engine, what the operand says ([`STATE`] and so on).
+    /// The item of the engine that the operand selects ([`STATE`] and the following).
     Engine = 5,
 }
 
-/// Of [`Source::Engine`]: byte 3 of an answer.
+/// Item of [`Source::Engine`]: byte 3 of an answer.
 pub const STATE: u8 = 0;
-/// The room that the axis of A had in its last turn.
+/// Item: the free queue space that the axis of A reported in its last turn.
 pub const ROOM: u8 = 1;
-/// The axes that a stop came from, none without a fault.
+/// Item: the mask of the axes that caused a stop; 0 without a fault.
 pub const CULPRITS: u8 = 2;
-/// The axes that wait for their limit.
+/// Item: the mask of the axes that wait for their limit.
 pub const HOMING: u8 = 3;
 
-/// What a jump asks.
+/// Condition of a jump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Condition {
-    /// Nothing.
+    /// Always true.
     Always = 0,
-    /// A = 0.
+    /// A is 0.
     Zero = 1,
-    /// Bit 7 of X.
+    /// Bit 7 of X is 1.
     X7 = 2,
-    /// Bit 6 of X.
+    /// Bit 6 of X is 1.
     X6 = 3,
-    /// No byte was received.
+    /// No received byte is waiting.
     Nothing = 4,
     /// The engine has a fault.
     Fault = 5,
-    /// The engine takes a start.
+    /// The engine accepts a start.
     Startable = 6,
     /// A is 0xc0 or more, as END and ESC are.
     Special = 7,
@@ -83,40 +88,45 @@ pub enum Condition {
 
 /// X <= A.
 pub const TAX: Code = 1 << 0;
-/// X <= X + 1, when the instruction is over.
+/// X <= X + 1, at the end of the instruction.
 pub const INX: Code = 1 << 1;
-/// The CRC goes on by eight bits.
+/// The CRC advances by eight bits.
 pub const CRC_STEP: Code = 1 << 2;
-/// With [`CRC_STEP`]: A is fed to it; without, A is shifted in above it and its next byte comes down.
+/// With [`CRC_STEP`]: A enters the CRC. Without: the CRC register shifts down by a byte, and A
+/// enters it at the top.
 pub const CRC_FEED: Code = 1 << 3;
-/// The CRC begins; with [`CRC_FEED`] its register takes the facts at X instead.
+/// The CRC register is initialised. With [`CRC_FEED`] it is instead loaded with the fact at address
+/// X.
 pub const CRC_BEGIN: Code = 1 << 4;
-/// Not over before what is offered is taken, or the engine has a fault; where nothing is offered: before the
-/// scan of all axes' items comes round ([`SCAN`] turns).
+/// The instruction lasts until the engine accepts what it offers, or has a fault. If it offers
+/// nothing, it lasts until the scan of all axes' items ends ([`SCAN`] turns).
 pub const WAIT: Code = 1 << 5;
-/// With [`WAIT`]: over as soon as the axis of A has told its room, or the scan comes round.
+/// With [`WAIT`]: the instruction ends as soon as the axis of A has reported its free queue space,
+/// or the scan ends.
 pub const FOR_ROOM: Code = 1 << 3;
-/// A is the control register; with [`KICK`] the axes that wait for their limit.
+/// A is written to the control register. With [`KICK`] it is written to the mask of the axes that
+/// wait for their limit instead.
 pub const CONTROL: Code = 1 << 6;
-/// The host was heard of.
+/// The host has sent a valid request; this restarts the watchdog.
 pub const KICK: Code = 1 << 7;
-/// The segment protocol is broken.
+/// The host has violated the segment protocol.
 pub const BROKEN: Code = 1 << 8;
-/// With [`CONTROL`]: the engine shall clear, until the control register is written anew.
+/// With [`CONTROL`]: asserts the engine's `clear` until the control register is written again.
 pub const CLEARING: Code = 1 << 9;
-/// With [`WAIT`]: A goes to the host.
+/// With [`WAIT`]: sends A to the host.
 pub const GOES: Code = 1 << 9;
-/// A start of the axes of A is offered.
+/// Offers a start of the axes in A.
 pub const STARTS: Code = 1 << 10;
-/// The CRC's register is offered as a word of a segment: bits 5..3 of A are its axis, bits 4..2 of X its place.
+/// Offers the CRC register as a word of a segment. Bits 5..3 of A are the axis, bits 4..2 of X the
+/// number of the word.
 pub const PUTS: Code = 1 << 11;
 
-/// Turns of axes in which all items of all axes have been asked for once.
+/// Number of turns in which every item of every axis is read once.
 pub const SCAN: u32 = 32;
 
-/// Where the data memory keeps a request: its sequence number, then its address.
+/// Address of a request in the data memory: its sequence number, followed by its address byte.
 pub const REQUEST: u8 = 0x1e;
-/// And its words: those of a segment end where bit 6 of X begins.
+/// Address of the request's words. The words of a segment end where bit 6 of X becomes 1.
 pub const WORDS: u8 = 0x20;
-/// First address past what a request may fill.
+/// The first address behind the area that a request can fill.
 pub const REQUEST_END: u8 = 0x80;

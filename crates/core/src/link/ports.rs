@@ -1,31 +1,31 @@
-//! The ports of the link in one clock cycle, as the model and its twins in simulation see them.
+//! The ports of the link in one clock cycle, as the model and the simulators see them.
 
 use crate::engine::{EngineInputs, EngineOutputs};
 
-/// What the link sees.
+/// Input values of the link in one clock cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LinkInputs {
-    /// The line from the host: a UART's, high at rest, or MOSI.
+    /// Receive line: the UART's RX, high when idle, or the SPI's MOSI.
     pub rx: bool,
-    /// SCK and select (low) of an SPI.
+    /// SCK and the active-low chip select of an SPI.
     pub spi: [bool; 2],
-    /// What the engine shows.
+    /// Outputs of the engine.
     pub engine: EngineOutputs,
-    /// What the engine's `get` port shows.
+    /// Value at the engine's `get` port.
     pub get_data: u32,
-    /// It is the answer to what was asked.
+    /// Whether that value answers the current request.
     pub get_valid: bool,
 }
 
-/// What the link shows.
+/// Output values of the link in one clock cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LinkOutputs {
-    /// The line to the host: a UART's, or MISO.
+    /// Transmit line: the UART's TX, or the SPI's MISO.
     pub tx: bool,
-    /// What it tells the engine; the pins are not the link's.
+    /// Inputs of the engine that the link drives. The engine's pin inputs are not the link's.
     pub engine: EngineInputs,
-    /// The engine is asked about this axis,
+    /// Axis that the `get` port asks for.
     pub get_axis: u8,
-    /// this item.
+    /// Item of that axis that the `get` port asks for.
     pub get_item: u8,
 }

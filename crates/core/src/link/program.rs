@@ -1,11 +1,11 @@
-//! What the gateware's end of the link does: docs/protocol.md as a program of the link's machine.
+//! The program of the link machine: it implements the gateware's end of docs/protocol.md.
 //!
 //! ```text
 //! begin -> next <---------------.
-//!            | a byte           |   escapes are taken out, the request grows
+//!            | END              |   until then: removes escapes, appends bytes to the request
 //!            v                  |
-//!          ended: length, CRC --' damaged: not a word
-//!            | whole
+//!          ended: length, CRC --'   damaged: no answer
+//!            | valid
 //!            v
 //!          known -> execute -> done -> answer -> begin
 //!            '---- again, refused ------^
@@ -26,22 +26,24 @@ use super::{
 const SEQUENCE: u8 = REQUEST;
 const ADDRESS: u8 = REQUEST + 1;
 
-/// The answer as it grows: it ends where bit 7 of X begins. A frame that is too long may lie there; it is nothing.
+/// Address of the answer while it is assembled; the answer ends where bit 7 of X becomes 1. The
+/// bytes of an over-long frame may also be written here. Such a frame is rejected before an answer
+/// is built.
 const ANSWER: u8 = REQUEST_END - ANSWER_BYTES as u8;
-/// Its CRC.
+/// Address of the answer's CRC.
 const CHECKED: u8 = REQUEST_END - CRC_BYTES as u8;
 
-// What is remembered.
-const BYTE: u8 = 0x80; // the byte at work
-const LENGTH: u8 = 0x81; // where the request's bytes end
-const NEXT: u8 = 0x82; // the number that the next write must have
+// Addresses of the program's variables.
+const BYTE: u8 = 0x80; // a byte under examination
+const LENGTH: u8 = 0x81; // the address behind the request's last byte
+const NEXT: u8 = 0x82; // the sequence number that the next write must have
 const REFUSED: u8 = 0x83;
-const CONTROLS: u8 = 0x84; // the control register
+const CONTROLS: u8 = 0x84; // the control register without the clear bit
 
-/// Bit 3 of the answer's byte `free`.
+/// Bit 3 of the answer's byte `free`: the write was refused.
 const REFUSED_BIT: u8 = 1 << 3;
 
-/// What lies in the machine's memories at configuration.
+/// The contents of the machine's memories after configuration.
 pub fn image() -> Image {
     let mut a = Assembler::default();
     receive(&mut a);
@@ -53,7 +55,8 @@ pub fn image() -> Image {
     a.finish()
 }
 
-/// Bytes into a request, until an END: X is where the next one goes, the CRC goes along.
+/// Collects bytes into a request until an END arrives. X is the address of the next byte; the CRC
+/// includes every byte.
 fn receive(a: &mut Assembler) {
     a.label("begin");
     a.load_number(REQUEST);
@@ -63,7 +66,8 @@ fn receive(a: &mut Assembler) {
     a.load_from(Source::Received, 0);
     a.jump_if(Special, "special");
     a.label("plain");
-    // Too long: it stays as long as that, which is the length of nothing.
+    // An over-long frame leaves X at `REQUEST_END`. No valid request has that length, so `check`
+    // rejects the frame.
     a.jump_if(X7, "next");
     a.acts(CRC_STEP | CRC_FEED);
     a.store_next();
@@ -88,7 +92,8 @@ fn receive(a: &mut Assembler) {
         a.jump_if(Zero, label);
         a.load(BYTE);
     }
-    // Nothing is written so: the frame is damaged, if this does not end it.
+    // No other byte may follow an ESC. The frame is damaged; unless this byte is an END, X is set
+    // to the length of an over-long frame.
     a.xor_number(END);
     a.jump_if(Zero, "begin");
     a.load_number(REQUEST_END);
@@ -101,7 +106,7 @@ fn receive(a: &mut Assembler) {
     }
 }
 
-/// Whether the request has its length and its CRC.
+/// Checks the length and the CRC of the request.
 fn check(a: &mut Assembler) {
     let end = |words: usize| REQUEST + (REQUEST_HEAD + 4 * words + CRC_BYTES) as u8;
     a.label("ended");
@@ -127,7 +132,8 @@ fn check(a: &mut Assembler) {
     a.acts(KICK);
 }
 
-/// Whether a write is the next one, or was executed already, or one before it is missing.
+/// Decides what to do with a write: execute it if its number is `next`, answer it again if it was
+/// executed before, refuse it if a write before it is missing.
 fn order(a: &mut Assembler) {
     a.load_number(0);
     a.store(REFUSED);
@@ -138,7 +144,8 @@ fn order(a: &mut Assembler) {
     a.acts(TAX);
     a.xor(NEXT);
     a.jump_if(Zero, "execute");
-    // Counts from it to the next: less than 128 away, it was before.
+    // X counts upward from the request's number. If it reaches `next` in fewer than 128 steps, the
+    // write was executed before.
     a.label("count");
     a.acts(INX);
     a.load_x();
@@ -155,14 +162,15 @@ fn order(a: &mut Assembler) {
     a.jump("answer");
 }
 
-/// Waits until each item of each axis has been asked for since, and longer than any axis' turn is away; A and X stay.
+/// Waits until every item of every axis has been read again, which takes longer than a turn of any
+/// axis. A and X are unchanged.
 fn wait_for_all(a: &mut Assembler) {
-    // The first wait may end at once.
+    // The first wait may end at once, because it starts within a scan.
     a.acts(WAIT);
     a.acts(WAIT);
 }
 
-/// Does what the request asks for.
+/// Executes the request.
 fn execute(a: &mut Assembler) {
     a.label("execute");
     a.load(ADDRESS);
@@ -187,7 +195,7 @@ fn execute(a: &mut Assembler) {
     a.jump("done");
 
     a.label("clear");
-    // It stands for more than two ticks.
+    // The clear stays asserted during both waits, for more than two ticks.
     a.load(CONTROLS);
     a.acts(CONTROL | CLEARING);
     wait_for_all(a);
@@ -203,13 +211,13 @@ fn execute(a: &mut Assembler) {
 
     a.label("segment");
     a.jump_if(Fault, "done");
-    // The first wait may end with the scan, before the axis has told: what it told last was another's. An axis that
-    // does not exist never tells.
+    // The first wait may end with the scan before the axis of A has reported; the room would then
+    // be another axis'. An axis that does not exist never reports.
     a.acts(WAIT | FOR_ROOM);
     a.acts(WAIT | FOR_ROOM);
     a.load_from(Source::Engine, ROOM);
     a.jump_if(Zero, "broken");
-    // Ticks less one is all ones: no ticks.
+    // A segment of 0 ticks has all ones as its first word, which is ticks minus one.
     a.load_number(WORDS);
     a.acts(TAX);
     a.label("ones");
@@ -230,7 +238,7 @@ fn execute(a: &mut Assembler) {
         a.load_next();
         a.acts(CRC_STEP);
     }
-    // X stays in the word until it is taken.
+    // X stays within the word until the engine has accepted it.
     a.load_from(Source::DataAtX, 0);
     a.acts(CRC_STEP);
     a.load(ADDRESS);
@@ -245,10 +253,11 @@ fn execute(a: &mut Assembler) {
     a.store(NEXT);
 }
 
-/// Gathers the answer.
+/// Assembles the answer.
 fn answer(a: &mut Assembler) {
     a.label("answer");
-    // The register that is asked for; after a write the position of its axis.
+    // The address of the register to read: the one of the request, or after a write the position of
+    // its axis.
     a.load(ADDRESS);
     a.acts(TAX);
     a.jump_unless(X7, "place");
@@ -260,7 +269,9 @@ fn answer(a: &mut Assembler) {
     a.label("place");
     a.load_from(Source::Engine, STATE);
     a.store(ANSWER + 3);
-    // Whatever the state says has reached the facts: an axis at rest is where they say. And the axis of A has told its room.
+    // The state byte is sampled before this wait, and every fact is read again during it. The
+    // position of an axis that the state reports at rest is therefore its final one. The axis of A
+    // has also reported its room.
     a.load_x();
     wait_for_all(a);
     a.load_from(Source::Engine, ROOM);
@@ -296,7 +307,7 @@ fn answer(a: &mut Assembler) {
     a.jump_unless(X7, "its CRC");
 }
 
-/// Escapes the answer and sends it.
+/// Sends the answer with END and ESC escaped.
 fn send(a: &mut Assembler) {
     a.load_number(ANSWER);
     a.acts(TAX);
@@ -335,7 +346,7 @@ const _: () =
 #[cfg(test)]
 mod tests {
     #[test]
-    fn the_program_fits() {
+    fn program_fits_the_memory() {
         assert!(super::image().program.len() > 100);
     }
 }

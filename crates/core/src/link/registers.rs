@@ -1,45 +1,46 @@
-//! The register map. From this table come the gateware's decode, the constants in Rust and C, and docs/registers.md.
+//! The register map. The gateware's address decoder, the constants in Rust and C, and
+//! docs/registers.md are generated from this table: run `cargo xtask generate` after a change.
 //!
 //! ```text
-//! 0x00 .. 0x1f   facts of the build, read only: who it is comes first, in every version
-//! 0x20 .. 0x3f   what the host commands
+//! 0x00 .. 0x1f   facts of the build, read only; the identity comes first in every version
+//! 0x20 .. 0x3f   commands of the host
 //! 0x40 .. 0x7f   eight words for each axis: 0x40 + 8 axis + word
 //! ```
 
 use crate::engine::{MAX_AXES, QUEUE};
 
-/// Who may do what with a register.
+/// Access to a register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
-    /// It is read.
+    /// Read only.
     Read,
-    /// It is written, one word.
+    /// Written with one word.
     Write,
-    /// It is written, the eight words of a segment in one frame.
+    /// Written with the eight words of a segment in one frame.
     WriteSegment,
 }
 
-/// One row of the map.
+/// One row of the register map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Register {
-    /// Its name; in Rust and C a constant.
+    /// Name of the register; the name of its constant in Rust and C.
     pub name: &'static str,
-    /// Its address; for an axis the first axis', with eight for each next one.
+    /// Address. For a register of an axis, the address for axis 0; each further axis adds eight.
     pub address: u8,
-    /// Who may do what.
+    /// Access.
     pub access: Access,
-    /// One for each axis.
+    /// Whether each axis has one.
     pub per_axis: bool,
-    /// What it holds, with its unit.
+    /// Content, with its unit.
     pub what: &'static str,
 }
 
-/// Declares each register once: a constant with its address, and its row of the table.
+/// Declares each register once: a constant with its address, and its row of the map.
 macro_rules! registers {
     ($($name:ident = $address:literal $access:ident $what:literal;)*) => {
         $(#[doc = $what] pub const $name: u8 = $address;)*
 
-        /// The map, by address.
+        /// The register map, in the order of addresses.
         pub const REGISTERS: &[Register] = &[$(Register {
             name: stringify!($name),
             address: $address,
@@ -83,7 +84,7 @@ super::constants! {
     QUEUE_SEGMENTS: u8 = QUEUE as u8, "Segments that can wait for an axis, beside the one that runs.";
 }
 
-/// The address of an axis' register.
+/// The address of a register of an axis.
 ///
 /// ```
 /// use crate::link::registers::{POSITION, of_axis};
@@ -98,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_two_registers_share_an_address_for_the_same_access() {
+    fn addresses_are_unique_per_access() {
         for (index, one) in REGISTERS.iter().enumerate() {
             for other in &REGISTERS[..index] {
                 let reads = |register: &Register| register.access == Access::Read;
@@ -108,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn all_axes_have_addresses() {
+    fn registers_of_all_axes_have_addresses() {
         let last = REGISTERS.iter().map(|register| register.address).max().unwrap();
         assert!(last < AXES_AT + PER_AXIS);
         assert!(of_axis(last, MAX_AXES as u8 - 1) < super::super::WRITE);

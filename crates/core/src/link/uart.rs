@@ -1,23 +1,25 @@
-//! The UART of a build: its baud rate, as whole clocks a bit.
+//! The UART of a build: its baud rate, and the whole number of clocks per bit.
 
 use super::{BuildId, Line};
 use crate::EngineBuild;
 use core::fmt;
 use thiserror::Error;
 
-/// The baud rate of a machine file that names none.
+/// Baud rate of a machine file that gives none, bits per second.
 pub const DEFAULT_BAUD: u32 = 921_600;
 
-/// Fewest clocks of a bit: the line is seen two clocks late, and each byte costs the link some instructions.
+/// Fewest clocks of a bit. The receiver samples the line two clocks late, and the link needs some
+/// instructions per byte.
 pub const MIN_BIT_CLOCKS: u32 = 8;
 
-/// Most clocks of a bit: one and a half of them are counted in 16 bits.
+/// Most clocks of a bit. The receiver counts one and a half bits in 16 bits.
 pub const MAX_BIT_CLOCKS: u32 = 40_000;
 
-/// How far a baud rate may be from what was asked for, in percent: both ends together may be off by 4.
+/// Greatest deviation from the requested baud rate, percent. The two ends together may deviate by 4
+/// %.
 pub const BAUD_PERCENT: u64 = 2;
 
-/// A UART that the clock can make.
+/// A UART whose baud rate the clock can make.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Uart {
     baud: u32,
@@ -30,18 +32,18 @@ pub struct Uart {
     "a clock of {clock_hz} Hz does not make {baud} baud within {BAUD_PERCENT} %: the next ones that it makes are {below} and {above}"
 )]
 pub struct BaudError {
-    /// What was asked for.
+    /// The requested rate, bits per second.
     pub baud: u32,
     /// The clock, Hz.
     pub clock_hz: u64,
-    /// The next lower baud rate that fits.
+    /// The nearest lower rate that is possible, bits per second.
     pub below: u64,
-    /// The next higher.
+    /// The nearest higher rate that is possible, bits per second.
     pub above: u64,
 }
 
 impl Uart {
-    /// The UART of this baud rate at a clock, Hz.
+    /// The UART of this baud rate (bits per second) at a clock (Hz).
     ///
     /// ```
     /// use crate::link::Uart;
@@ -50,12 +52,13 @@ impl Uart {
     /// ```
     ///
     /// # Errors
-    /// [`BaudError`]: no number of clocks comes within 2 %; it names the baud rates beside it.
+    /// [`BaudError`] if no whole number of clocks comes within 2 %; it gives the nearest possible
+    /// rates.
     pub fn new(clock_hz: u64, baud: u32) -> Result<Self, BaudError> {
         let (least, most) = (u64::from(MIN_BIT_CLOCKS), u64::from(MAX_BIT_CLOCKS));
         let asked = u64::from(baud.max(1));
         let bit_clocks = ((2 * clock_hz + asked) / (2 * asked)).clamp(least, most);
-        // clock / bit_clocks against baud, without a division.
+        // Compares clock / bit_clocks with the baud rate without a division.
         let off = clock_hz.abs_diff(asked * bit_clocks);
         if baud == 0 || 100 * u128::from(off) > u128::from(BAUD_PERCENT) * u128::from(asked * bit_clocks) {
             let slower = clock_hz.div_ceil(asked).clamp(least, most);
@@ -65,12 +68,12 @@ impl Uart {
         Ok(Self { baud, bit_clocks: bit_clocks as u32 })
     }
 
-    /// Bits per second, as asked for: what the host sets.
+    /// The requested baud rate, bits per second, which the host must set.
     pub const fn baud(self) -> u32 {
         self.baud
     }
 
-    /// Clocks of a bit, from [`MIN_BIT_CLOCKS`] to [`MAX_BIT_CLOCKS`].
+    /// Number of clocks of a bit, from [`MIN_BIT_CLOCKS`] to [`MAX_BIT_CLOCKS`].
     pub const fn bit_clocks(self) -> u32 {
         self.bit_clocks
     }
@@ -81,7 +84,8 @@ impl Uart {
     }
 }
 
-/// What the build id is made of: two baud rates of one divider are one build.
+/// The text of the UART that enters the build id. Two baud rates with the same divider have the
+/// same id.
 impl fmt::Display for Uart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "uart, {} clocks a bit", self.bit_clocks)
@@ -94,7 +98,7 @@ mod tests {
     use alloc::string::ToString as _;
 
     #[test]
-    fn the_nearest_divider_is_taken_and_a_far_one_refused() {
+    fn nearest_divider_is_used_and_a_far_one_refused() {
         let clocks = |clock_hz, baud| Uart::new(clock_hz, baud).map(Uart::bit_clocks);
         assert_eq!(clocks(48_000_000, 3_000_000), Ok(16));
         assert_eq!(clocks(48_000_000, 115_200), Ok(417));

@@ -40,12 +40,12 @@ pub(super) struct RawAxis {
 }
 
 impl RawAxis {
-    /// Takes out what is checked when the guard is known.
+    /// Removes the entries that can only be checked when the guard is known.
     pub(super) fn place(&mut self) -> RawPlace {
         RawPlace { travel: self.travel.take(), home: self.home.take() }
     }
 
-    /// The axis; `table` is where its table stands.
+    /// Checks the axis. `table` is the place of its table in the file.
     pub(super) fn check(self, source: &Source, table: Range<usize>, timebase: &Timebase) -> Result<Axis, InputError> {
         let name = self.name.as_ref().clone();
         let fit = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -96,7 +96,8 @@ impl RawAxis {
         Ok(axis)
     }
 
-    /// Width, gap, set-up and hold, from the driver's preset and what overrides it.
+    /// STEP width, gap, set-up and hold, from the driver's preset and the values that override it;
+    /// in ns and in clocks.
     fn pins(&self, source: &Source, timebase: &Timebase) -> Result<([u64; 4], PinTiming), InputError> {
         let preset = match &self.driver {
             None => None,
@@ -139,7 +140,8 @@ impl RawAxis {
     }
 }
 
-/// Limits under a thousandth of a step ask for plans of months, and are too coarse in units of 2^-64 step per tick.
+/// Rejects a limit below a thousandth of a step (per second or its powers). A plan would last
+/// months, and the value would be too coarse in units of 2^-64 step per tick.
 fn not_too_slow(
     source: &Source,
     span: Range<usize>,
@@ -158,7 +160,8 @@ fn not_too_slow(
 }
 
 impl Axis {
-    /// Under half a step per tick, and a period that the driver's width and gap allow.
+    /// Checks the speed limit: below half a step per tick, and with a step period that the driver's
+    /// width and gap allow.
     fn check_speed(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
         let limit = self.unit.both(decimal::to_f64(&self.speed_limit), 1);
         let doubled = &self.speed_limit * BigDecimal::from(2 * timebase.tick_ns());
@@ -184,7 +187,7 @@ impl Axis {
         Ok(())
     }
 
-    /// Under half a step per tick squared, so that A fits its register.
+    /// Checks the acceleration limit: below half a step per tick^2, so that A fits its register.
     fn check_acceleration(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
         let tick = BigDecimal::from(timebase.tick_ns());
         if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {

@@ -1,7 +1,8 @@
-//! `[machine.guard]`: what stops the axes, in the units of the file, counted in rounds of ticks.
+//! `[machine.guard]`: the settings of the engine's guard, converted from the units of the file to
+//! rounds of ticks.
 //!
-//! Every time is rounded up. The round is the shortest that can count all of them, because it is also the
-//! time from one look at a limit to the next.
+//! Every time is rounded up. The round is also the interval at which limits are sampled, so the
+//! shortest round is chosen in which all times can be counted.
 
 use crate::error::{InputError, Source};
 use crate::number::not_negative;
@@ -11,7 +12,7 @@ use carrystep_core::engine::{Guard, Limits, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS};
 use serde::Deserialize;
 use toml::Spanned;
 
-/// The table as the file has it.
+/// The table as it is written.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, expecting = "a [machine.guard] table")]
 pub(super) struct RawGuard {
@@ -28,7 +29,7 @@ pub(super) struct RawGuard {
     limit_stop: LimitStop,
 }
 
-/// The level of a pin that means something.
+/// The level of a pin at which it is active.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Active {
@@ -46,13 +47,14 @@ enum LimitStop {
     Freeze,
 }
 
-/// A time of the guard: its key, the ns of its unit, its default in that unit, and how far it can be counted.
+/// A time of the guard: its key in the file, the ns of its unit, its default in that unit, and its
+/// greatest count of rounds.
 struct Key {
     name: &'static str,
     unit_ns: u64,
     default: u64,
     most: u32,
-    /// Zero means that there is none; otherwise one is counted at least.
+    /// Whether 0 turns the function off. Otherwise 0 is counted as at least one round.
     can_be_off: bool,
 }
 
@@ -61,13 +63,13 @@ const ENABLE: Key = Key { name: "enable_ms", unit_ns: 1_000_000, default: 1, mos
 const DEBOUNCE: Key = Key { name: "debounce_us", unit_ns: 1000, default: 500, most: MAX_LOOKS, can_be_off: false };
 
 impl RawGuard {
-    /// The guard, with the ramps of `stop`.
+    /// Checks the table. `stop` holds the stop acceleration of each axis.
     pub(super) fn check(self, source: &Source, timebase: &Timebase, stop: Vec<u64>) -> Result<Guard, InputError> {
         let time = |key: Key, given: &Option<Spanned<f64>>| Time::new(source, timebase, key, given.as_ref());
         let watchdog = time(WATCHDOG, &self.watchdog_ms)?;
         let enable = time(ENABLE, &self.enable_ms)?;
         let debounce = time(DEBOUNCE, &self.debounce_us)?;
-        // Each can be counted in the longest.
+        // The longest round fits every time, because `Time::new` has checked that.
         let fits = |round: &u32| [&watchdog, &enable, &debounce].iter().all(|time| time.fits(*round));
         let round =
             (1..).map(|power| 1 << power).take_while(|&round| round < MAX_ROUND).find(fits).unwrap_or(MAX_ROUND);
@@ -85,7 +87,7 @@ impl RawGuard {
     }
 }
 
-/// A time that can be counted, if the round is long enough.
+/// A time that can be counted if the round is long enough.
 struct Time {
     key: Key,
     ns: BigDecimal,
@@ -112,7 +114,8 @@ impl Time {
         Ok(Self { key, ns, tick_ns: timebase.tick_ns() })
     }
 
-    /// Rounds that last this long at least. The first one may be almost over when they begin, so one more.
+    /// The number of rounds that last at least this time. One round is added, because the first one
+    /// may be almost over when the time begins.
     fn rounds(&self, round: u32) -> u32 {
         if self.key.can_be_off && self.ns.is_zero() {
             return 0;

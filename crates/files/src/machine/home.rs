@@ -1,6 +1,8 @@
-//! `travel`, `home` and `home_order`: how each axis finds its limit switch, as integers of the engine.
+//! `travel`, `home` and `home_order`: the homing parameters of each axis, converted to the integers
+//! of the engine.
 //!
-//! Speeds and accelerations are rounded down to 2^-64 step per tick (and tick^2), distances to the nearest step.
+//! Speeds and accelerations are rounded down to 2^-64 step per tick (and tick^2), distances to the
+//! nearest step.
 
 use super::{Axis, stop};
 use crate::decimal;
@@ -21,46 +23,48 @@ pub(super) use order::RawOrder;
 pub use overrun::overrun;
 use overrun::{accepted, per_tick, steps_up};
 
-/// Most steps of a distance or of a machine coordinate: what a position register counts.
+/// Greatest distance or machine coordinate, steps: the range of a position register.
 const MOST_STEPS: i64 = i32::MAX as i64;
 
-/// Most ticks that a search may plan for: a segment holds 2^32 - 1 ticks.
+/// Greatest length of a search, ticks. A segment holds up to 2^32 - 1 ticks.
 const MOST_TICKS: u128 = (u32::MAX / 4) as u128;
 
 /// An end of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum End {
-    /// The low end: its switch is `limit_min`, and the way there is negative.
+    /// The low end, whose switch is `limit_min`; the axis moves toward it in the negative
+    /// direction.
     Min,
-    /// The high end.
+    /// The high end, whose switch is `limit_max`; the axis moves toward it in the positive
+    /// direction.
     Max,
 }
 
-/// How an axis homes; every distance is 1 step or more.
+/// Homing parameters of an axis. Every distance is 1 step or more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Home {
-    /// The end whose switch is searched for.
+    /// The end whose switch the axis searches.
     pub toward: End,
-    /// Speed from which the axis starts, 2^-64 step per tick.
+    /// Speed at which the axis starts, 2^-64 step per tick.
     pub start: u64,
     /// Acceleration, 2^-64 step per tick^2, 1 or more.
     pub accel: u64,
-    /// Speed of the search, 2^-64 step per tick.
+    /// Speed of the search, 2^-64 step per tick; 1 or more.
     pub seek: u64,
-    /// Speed of the approach that sets the position, 2^-64 step per tick.
+    /// Speed of the approach that sets the position, 2^-64 step per tick; 1 or more.
     pub slow: u64,
-    /// How far the axis moves away from the switch before a search, steps.
+    /// Distance by which the axis moves away from the switch before a search, steps.
     pub move_off: u32,
-    /// How far it searches at the most, steps.
+    /// Greatest distance of the search, steps.
     pub max_travel: u32,
-    /// How far from the switch it rests at the end, steps.
+    /// Distance from the switch at which the axis rests at the end, steps.
     pub pull_off: u32,
-    /// The machine coordinate of the place where the switch closes, steps.
+    /// Machine coordinate of the place where the switch closes, steps.
     pub position: i64,
 }
 
-/// `home = { ... }` as the file has it.
+/// The `home = { ... }` table as it is written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table, as in home = { toward = \"min\", seek_speed = 20 }")]
 pub(super) struct RawHome {
@@ -73,13 +77,13 @@ pub(super) struct RawHome {
     position: Spanned<f64>,
 }
 
-/// What an axis' table says of its place.
+/// The entries of an axis' table that depend on the guard.
 pub(super) struct RawPlace {
     pub(super) travel: Option<Spanned<Vec<Spanned<f64>>>>,
     pub(super) home: Option<Spanned<RawHome>>,
 }
 
-/// Gives the axes their travel and their homing, and returns the order in which they home, by their numbers.
+/// Sets travel and homing of each axis, and returns the homing order as numbers of axes.
 pub(super) fn check(
     source: &Source,
     timebase: &Timebase,
@@ -107,7 +111,7 @@ pub(super) fn check(
     }
 }
 
-/// One home table on its way to integers.
+/// A home table while it is checked, with everything that the checks depend on.
 struct Checked<'a> {
     source: &'a Source,
     timebase: &'a Timebase,
@@ -158,7 +162,7 @@ impl Checked<'_> {
         Ok(Home { toward: raw.toward, start, accel, seek, slow, move_off, max_travel, pull_off, position })
     }
 
-    /// An error at a number of the table.
+    /// Makes an error at a number of the table.
     fn at(&self, value: &Spanned<f64>, message: impl Into<String>) -> InputError {
         InputError::at(self.source, value.span(), message)
     }
@@ -167,7 +171,8 @@ impl Checked<'_> {
         format!("at least {} are needed", self.axis.unit.both(steps as f64, 0))
     }
 
-    /// A speed of the file, at most another one in steps/s.
+    /// Converts a speed of the file to 2^-64 step per tick. It must not exceed `most`, in steps/s,
+    /// which the message calls `of`.
     fn speed(&self, value: &Spanned<f64>, key: &str, most: &BigDecimal, of: &str) -> Result<u64, InputError> {
         let steps = positive(self.source, value, key)? * &self.axis.steps_per_unit;
         if steps > *most {
@@ -181,7 +186,7 @@ impl Checked<'_> {
         Ok(speed)
     }
 
-    /// A distance of the file, in steps.
+    /// Converts a distance of the file to steps.
     fn distance(&self, value: &Spanned<f64>, key: &str) -> Result<u32, InputError> {
         let steps = positive(self.source, value, key)? * &self.axis.steps_per_unit;
         let steps = decimal::round_half_away(&steps).unwrap_or(i64::MAX);
@@ -203,7 +208,8 @@ impl Checked<'_> {
         .help(format!("give {key}, or travel = [LOW, HIGH] in the axis' table, from which it follows"))
     }
 
-    /// What a limit stop at full speed runs over its switch, and a hundredth of the travel.
+    /// Default of `move_off`, steps: the distance by which a limit stop from full speed overruns
+    /// the switch, plus a hundredth of the travel.
     fn usual_move_off(&self) -> Result<u32, InputError> {
         let Some([low, high]) = self.axis.travel else { return Err(self.missing("move_off")) };
         let full = overrun(per_tick(&self.axis.speed_limit, self.timebase), self.axis.stop, self.guard);
@@ -219,7 +225,8 @@ impl Checked<'_> {
         }
     }
 
-    /// A switch that closes at the speed of the search must open again when the axis moves off.
+    /// Checks `move_off`: when the switch has closed at the speed of the search, moving off must
+    /// open it again.
     fn moves_off(&self, raw: &RawHome, seek: u64, move_off: u32) -> Result<(), InputError> {
         let least = overrun(seek, self.axis.stop, self.guard) + 1;
         if u64::from(move_off) >= least {
@@ -235,7 +242,9 @@ impl Checked<'_> {
         Err(InputError::at(self.source, span, message).help(help))
     }
 
-    /// A limit is looked at once a round: the axis must not pass over a step meanwhile, or two homes differ by more than one.
+    /// Checks the speed of the approach. A limit is sampled once per round, and the axis must move
+    /// at most one step between two samples; otherwise two homing runs could differ by more than
+    /// one step.
     fn looks_often_enough(&self, raw: &RawHome, slow: u64) -> Result<(), InputError> {
         let ticks = u128::from(self.guard.round) + 2;
         if u128::from(slow) * ticks <= 1 << 64 {
@@ -251,7 +260,7 @@ impl Checked<'_> {
         )))
     }
 
-    /// A segment counts to 2^32 - 1 ticks.
+    /// Checks that a search at this speed ends within the ticks that a segment can count.
     fn ends(&self, value: &Spanned<f64>, units: u128, speed: u64, accel: u64) -> Result<(), InputError> {
         let ticks = units / u128::from(speed) + u128::from(speed / accel);
         if ticks <= MOST_TICKS {
@@ -262,7 +271,8 @@ impl Checked<'_> {
         Err(self.at(value, message).help(format!("at most {:.0} s can be counted", seconds(MOST_TICKS))))
     }
 
-    /// The coordinate of the switch, and of the place where the axis rests then, inside of the travel.
+    /// Machine coordinate of the switch, steps. The switch and the place where the axis rests must
+    /// lie within the travel.
     fn position(&self, raw: &RawHome, pull_off: u32) -> Result<i64, InputError> {
         let steps = exact(self.source, &raw.position, "position")? * &self.axis.steps_per_unit;
         let position = decimal::round_half_away(&steps)

@@ -1,4 +1,4 @@
-//! `[machine.link]`: how the gateware talks to its host.
+//! `[machine.link]`: the line between the gateware and its host.
 
 use crate::error::{InputError, Source};
 use carrystep_core::build::Timebase;
@@ -6,7 +6,7 @@ use carrystep_core::link::{DEFAULT_BAUD, Uart};
 use serde::Deserialize;
 use toml::Spanned;
 
-/// The table as the file has it.
+/// The table as it is written.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, expecting = "a [machine.link] table")]
 pub(super) struct RawLink {
@@ -15,7 +15,7 @@ pub(super) struct RawLink {
 }
 
 impl RawLink {
-    /// Whether the line is an SPI; it has no baud rate then.
+    /// Whether the line is an SPI. An SPI has no baud rate; giving one is an error.
     pub(super) fn spi(&self, source: &Source) -> Result<bool, InputError> {
         match (&self.spi, &self.baud) {
             (Some(spi), Some(_)) if *spi.as_ref() => Err(InputError::at(
@@ -27,7 +27,7 @@ impl RawLink {
         }
     }
 
-    /// The baud rate, which the clock can make where the file names it.
+    /// The baud rate, bits per second. If the file gives it, the clock must be able to make it.
     pub(super) fn baud(&self, source: &Source, timebase: &Timebase) -> Result<u32, InputError> {
         let Some(baud) = &self.baud else { return Ok(DEFAULT_BAUD) };
         Uart::new(timebase.clock_hz(), *baud.as_ref())

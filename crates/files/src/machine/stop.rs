@@ -1,4 +1,5 @@
-//! `stop_accel`: how fast the engine ramps an axis down, as the integer that it subtracts from V in each tick.
+//! `stop_accel`: the acceleration with which the engine ramps an axis down, as the integer that it
+//! subtracts from V in each tick.
 
 use crate::decimal;
 use crate::error::{InputError, Source};
@@ -8,10 +9,11 @@ use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
 use carrystep_core::build::Timebase;
 use toml::Spanned;
 
-/// Greatest stop acceleration, 2^-64 step per tick^2: a quarter of a step, so that any speed takes two ticks.
+/// Greatest stop acceleration, 2^-64 step per tick^2: a quarter of a step, so that a stop from the
+/// greatest speed lasts two ticks.
 const MOST: u64 = 1 << 62;
 
-/// The stop acceleration of a file, from units/s^2.
+/// Converts a stop acceleration of the file, in units/s^2.
 pub(super) fn units(
     source: &Source,
     value: &Spanned<f64>,
@@ -35,15 +37,16 @@ pub(super) fn units(
         )))
 }
 
-/// The stop acceleration where the file gives none: the acceleration limit in steps/s^2, as far as it goes.
+/// The stop acceleration of a file that gives none: the axis' acceleration limit in steps/s^2, at
+/// most [`MOST`].
 pub(super) fn at_the_limit(accel_limit: &BigDecimal, timebase: &Timebase) -> u64 {
     counted(accel_limit, timebase).to_u64().unwrap_or(MOST).clamp(1, MOST)
 }
 
-/// steps/s^2 in units of 2^-64 step per tick^2, rounded toward zero.
+/// Converts steps/s^2 to 2^-64 step per tick^2, rounded toward zero.
 fn counted(steps: &BigDecimal, timebase: &Timebase) -> BigDecimal {
     let tick_ns = BigDecimal::from(timebase.tick_ns());
-    // A division by a power of ten is exact.
+    // The factor 10^-18 converts ns^2 to s^2; it is exact in decimals.
     let per_tick = steps * &tick_ns * &tick_ns * BigDecimal::new(1.into(), 18);
     (per_tick * BigDecimal::from(1_u128 << 64)).with_scale_round(0, RoundingMode::Down)
 }

@@ -1,4 +1,5 @@
-//! `unit`, `lead`, `steps_per_rev`, `microsteps` and speeds per minute: an axis in the words of its mechanics.
+//! `unit`, `lead`, `steps_per_rev`, `microsteps` and speeds per minute: the parameters of an axis
+//! in terms of its mechanics.
 
 use super::axis::RawAxis;
 use crate::decimal;
@@ -9,29 +10,30 @@ use bigdecimal::{BigDecimal, RoundingMode, Signed};
 use std::ops::Range;
 use toml::Spanned;
 
-/// Digits behind the point that are kept of a quotient.
+/// Number of decimals that are kept of a quotient.
 const PLACES: i64 = 60;
 
-/// Most characters in the name of a unit.
+/// Greatest number of characters in the name of a unit.
 const LONGEST_NAME: usize = 12;
 
 const MECHANICS: &str =
     "give steps_per_unit, or lead (units that one turn of the motor moves), steps_per_rev and microsteps";
 
-/// A speed of the file in steps/s, and where it stands.
+/// A speed of the file, in steps/s, and its place.
 pub(super) struct Speed {
-    /// Of a speed per minute that is no finite decimal per second, what is over 60 places is cut off.
+    /// The speed in steps/s. A speed per minute that is not a finite decimal per second is cut off
+    /// after 60 decimals.
     pub steps: BigDecimal,
     pub span: Range<usize>,
-    /// Its key, as it was given.
+    /// The key that the file uses.
     pub key: &'static str,
 }
 
 impl RawAxis {
-    /// Steps in a unit: as given, or `steps_per_rev` x `microsteps` / `lead`.
+    /// Steps per unit, as given or computed as `steps_per_rev` x `microsteps` / `lead`.
     ///
-    /// Where that is no finite decimal, it is rounded up in the 60th place behind the point: targets of half a step then
-    /// stay at or over the half, and no whole number of steps is missed.
+    /// A quotient that is not a finite decimal is rounded up at its 60th decimal. A target of
+    /// exactly half a step therefore stays at or above the half and rounds as the fraction would.
     pub(super) fn steps_per_unit(&self, source: &Source, table: Range<usize>) -> Result<BigDecimal, InputError> {
         let turns = [
             ("lead", self.lead.as_ref().map(Spanned::span)),
@@ -64,7 +66,7 @@ impl RawAxis {
         }
     }
 
-    /// The unit that the axis is shown in.
+    /// The unit in which the axis is displayed.
     pub(super) fn unit(&self, source: &Source, steps_per_unit: &BigDecimal) -> Result<Unit, InputError> {
         let name = self.unit.as_ref().map(|name| name.as_ref().as_str());
         let fits = |c: char| c.is_alphanumeric() || "°'\"%_".contains(c);
@@ -101,7 +103,7 @@ impl RawAxis {
 type Reader = fn(&Source, &Spanned<f64>, &str) -> Result<BigDecimal, InputError>;
 type Number = Option<Spanned<f64>>;
 
-/// A speed per second or per minute, in steps/s.
+/// A speed per second or per minute, converted to steps/s.
 fn speed(
     source: &Source,
     keys: (&'static str, &'static str),
@@ -128,7 +130,7 @@ fn speed(
     }
 }
 
-/// A whole number over zero.
+/// A whole number greater than zero.
 fn whole(source: &Source, value: &Spanned<u32>, key: &str) -> Result<BigDecimal, InputError> {
     let exact = BigDecimal::from(*value.as_ref());
     if exact.is_positive() {

@@ -1,12 +1,13 @@
-/* An RP2040 (Raspberry Pi Pico) drives the gateware over SPI: connects, powers the drivers, makes one move, stops.
+/* An RP2040 (Raspberry Pi Pico) drives the gateware over SPI: it connects, powers the drivers,
+ * makes one move and removes the power.
  *
  *     Pico GP16 (SPI0 RX)  <- MISO        CMakeLists.txt:
- *     Pico GP17            -> CS              add_executable(move rp2040_spi.c carrystep_frame.c carrystep_session.c carrystep_feeder.c)
- *     Pico GP18 (SPI0 SCK) -> SCK             target_link_libraries(move pico_stdlib hardware_spi)
- *     Pico GP19 (SPI0 TX)  -> MOSI
+ *     Pico GP17            -> CS              add_executable(move rp2040_spi.c carrystep_frame.c
+ *     Pico GP18 (SPI0 SCK) -> SCK                 carrystep_session.c carrystep_feeder.c)
+ *     Pico GP19 (SPI0 TX)  -> MOSI            target_link_libraries(move pico_stdlib hardware_spi)
  *
- * All of it that knows the RP2040 is setup(), exchange() and now(): on another microcontroller write those three.
- * The numbers of a move come from a planner on a PC, or from integers as below. */
+ * Only setup(), exchange() and now() depend on the RP2040; for another microcontroller, replace
+ * these three. The numbers of a move come from a planner on a PC, or from integers as below. */
 #include "carrystep_feeder.h"
 
 #include "hardware/gpio.h"
@@ -17,7 +18,8 @@
 #define CHIP_SELECT 17u
 #define AXES 6u
 
-/* The gateware that the move was planned for: its registers BUILD_HIGH and BUILD_LOW. */
+/* Build id of the gateware that the move was planned for: its registers BUILD_HIGH and BUILD_LOW.
+ */
 #ifndef BUILD_ID
 #define BUILD_ID UINT64_C(0x0123456789abcdef)
 #endif
@@ -25,7 +27,7 @@
 static carrystep_session session;
 static carrystep_feeder program;
 
-/* ---- what knows the microcontroller ---- */
+/* ---- functions that depend on the microcontroller ---- */
 
 static void setup(void)
 {
@@ -39,7 +41,7 @@ static void setup(void)
     gpio_put(CHIP_SELECT, false); /* low for good */
 }
 
-/* Bytes go both ways at once. */
+/* Transfers bytes in both directions at once. */
 static void exchange(const uint8_t *out, uint8_t *in, size_t length)
 {
     spi_write_read_blocking(spi0, out, in, length);
@@ -50,9 +52,9 @@ static uint32_t now(void)
     return to_ms_since_boot(get_absolute_time());
 }
 
-/* ---- what does not ---- */
+/* ---- functions that do not ---- */
 
-/* One exchange: the next request, or END while there is none. True: *answer is new. */
+/* One exchange: sends the next request, or END if there is none. True if *answer is new. */
 static bool turn(carrystep_answer *answer)
 {
     uint8_t out[CARRYSTEP_LINE_BYTES];
@@ -69,7 +71,7 @@ static bool turn(carrystep_answer *answer)
     return heard;
 }
 
-/* Reads a register; false: nobody answers. */
+/* Reads a register. False if nothing answers. */
 static bool ask(uint8_t address, carrystep_answer *answer)
 {
     uint32_t begin = now();
@@ -84,7 +86,8 @@ static bool ask(uint8_t address, carrystep_answer *answer)
     return false;
 }
 
-/* Who is there? False: not the gateware that this program was made for; nothing has been written to it. */
+/* Reads the facts of the gateware. False if this program was not made for it; nothing was written.
+ */
 static bool connect(void)
 {
     carrystep_answer identity, protocol, low, high;
@@ -101,7 +104,8 @@ static bool connect(void)
     return high.idle; /* otherwise a host before this one has left something in the queues */
 }
 
-/* Axis 0: half a second up to 5000 steps/s, half a second down, at a tick of 2 us: 2500 steps, exactly. */
+/* A move of axis 0 at a tick of 2 us: half a second of acceleration to 5000 steps/s and half a
+ * second of deceleration, exactly 2500 steps. */
 static const carrystep_segment move[] = {
     {250000u, INT64_C(368934881474), INT64_C(737869762948), 0, false},
     {40000u, INT64_C(184467071802214043), INT64_C(-737869762948), 0, false},
@@ -132,7 +136,8 @@ static bool next_start(void *context, uint8_t *mask)
     return first;
 }
 
-/* True: the move is done. False: it could not begin, or a fault has stopped it. */
+/* Powers the drivers and executes the move. True if the move was completed; false if it could not
+ * begin, or if a fault stopped it. */
 static bool run(void)
 {
     place at = {0, false};
@@ -154,7 +159,7 @@ static bool run(void)
         if (fed == CARRYSTEP_BAD_SOURCE || fed == CARRYSTEP_NO_POWER) {
             return false;
         }
-        /* A look now and then: it keeps the watchdog quiet and tells the position. */
+        /* Reads the position from time to time, which also restarts the watchdog. */
         if (now() - looked >= 10u) {
             looked = now();
             carrystep_read(&session, CARRYSTEP_POSITION);

@@ -1,4 +1,4 @@
-//! What goes wrong between a host and a gateware, by its cause.
+//! Errors between a host and a gateware, one variant for each cause.
 
 use super::homing::HomingFault;
 use crate::command::ProgramError;
@@ -8,89 +8,89 @@ use crate::window::{Foreign, OutOfStep};
 use core::fmt;
 use thiserror::Error;
 
-/// Why the driver could not do what was asked.
+/// Why the driver could not execute a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum HostError<E> {
-    /// The line itself: unplugged, for one.
+    /// The line has failed, for example because it was unplugged.
     #[error("the line to the board is gone")]
     Line(E),
-    /// Not a byte came.
+    /// No byte was received.
     #[error(
         "nothing has answered for {ms} ms: is the board powered, flashed with the gateware, and is this its port and baud rate?"
     )]
     Silence {
-        /// For so long.
+        /// Length of the silence, ms.
         ms: u32,
     },
-    /// Bytes came, and no frame.
+    /// Bytes were received, but no valid frame.
     #[error("something answers ({bytes} bytes), but not in this protocol: another device, or another baud rate")]
     Noise {
-        /// So many.
+        /// Number of bytes.
         bytes: u32,
     },
-    /// The board has answered before, and does so no more.
+    /// The board answered earlier, but not any more.
     #[error(
         "the line to the board is dead: it has answered until now, and nothing that could be understood has come for {ms} ms ({}); look at its cable and power",
         Bytes(*bytes)
     )]
     Lost {
-        /// For so long.
+        /// Length of the silence, ms.
         ms: u32,
-        /// Bytes that came meanwhile, of no frame.
+        /// Number of bytes received meanwhile that belong to no valid frame.
         bytes: u32,
     },
-    /// Someone answers whom this driver was not made for.
+    /// The gateware is not the one that this driver was made for.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// The gateware lost count.
+    /// The gateware's sequence number is not one that this host can have caused.
     #[error(transparent)]
     OutOfStep(#[from] OutOfStep),
-    /// Another host is answered on this line.
+    /// The answers belong to requests of another host on this line.
     #[error(transparent)]
     Foreign(#[from] Foreign),
-    /// The drivers' power is gone, and this host has not taken it away.
+    /// The drivers have lost power although this host did not remove it.
     #[error(
         "the drivers have lost their power without a stop: the gateware was restarted (position and queue are lost: connect again, and home), or another host has taken the power away"
     )]
     Restarted,
-    /// A program for a machine that is not at rest.
+    /// A program was given while the machine is not at rest.
     #[error("the machine moves, or another host has left segments in its queues: stop and clear it first")]
     NotIdle,
     /// The program cannot be sent.
     #[error(transparent)]
     Program(#[from] ProgramError),
-    /// The machine stopped.
+    /// A stop came into force.
     #[error("the machine has stopped: {}{}; clear resumes", CAUSES.get(usize::from(*cause)).unwrap_or(&"?"), Axes(", from", *culprits))]
     Fault {
-        /// Why: a place in [`CAUSES`].
+        /// The stop cause: an index of [`CAUSES`].
         cause: u8,
-        /// The axes that it came from, a bit each.
+        /// Mask of the axes that caused it.
         culprits: u8,
     },
-    /// A clear while the e-stop is pressed.
+    /// A clear was requested while the e-stop is pressed.
     #[error("the e-stop is still pressed, so nothing can be cleared: release it")]
     StillPressed,
-    /// What was waited for did not come.
+    /// An expected state was not reached in time.
     #[error("{what} has not come in {ms} ms{}{}", if cause.is_some() { "; the machine stands because of: " } else { "" }, cause.unwrap_or(""))]
     TooLong {
-        /// What.
+        /// Name of the state.
         what: &'static str,
-        /// Why the machine stands, where it does.
+        /// Name of the stop cause, if a stop is in force.
         cause: Option<&'static str>,
-        /// For so long.
+        /// Time waited, ms.
         ms: u32,
     },
-    /// Homing ended before the axes were at their places.
+    /// Homing ended with an error.
     #[error("homing{}: {why}", Axes(" of", *axes))]
     Homing {
-        /// The axes, a bit each.
+        /// Mask of the axes.
         axes: u8,
-        /// What was wrong.
+        /// The error.
         why: HomingFault,
     },
 }
 
-/// How many bytes came, in words.
+/// Displays a number of bytes in words.
 struct Bytes(u32);
 
 impl fmt::Display for Bytes {
@@ -102,7 +102,7 @@ impl fmt::Display for Bytes {
     }
 }
 
-/// Axes by their numbers, a bit each, behind a word; nothing where there are none.
+/// Displays a word and the numbers of the axes of a mask; displays nothing for an empty mask.
 struct Axes(&'static str, u8);
 
 impl fmt::Display for Axes {

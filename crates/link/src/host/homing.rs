@@ -1,12 +1,13 @@
-//! Homing: each axis finds the place where its limit switch closes, and rests beside it (docs/homing.md).
+//! Homing: each axis finds the place where its limit switch closes, and then rests beside it
+//! (docs/homing.md).
 //!
 //! ```text
 //! switch   closed ########|  open
-//!                    <----|-----o            1  move off: away by move_off, whatever the switch says
+//!                    <----|-----o            1  move off: away by move_off in any case
 //!                    <====|=======================o   2  seek: fast, up to max_travel
-//!                    o----|----------->      3  back off: until move_off away from where the limit was accepted
-//!                       <-|------------o     4  approach: slowly; the position is set from here
-//!                       o-|----->            5  pull off: rest pull_off away from that place
+//!                    o----|----------->      3  back off: to move_off from the accepted limit
+//!                       <-|------------o     4  approach: slow; its limit sets the position
+//!                       o-|----->            5  pull off: to pull_off from that limit, and rest
 //! ```
 
 use super::motion::{Ended, Progress, Wish};
@@ -23,17 +24,17 @@ mod request;
 use request::{AXES, each};
 pub use request::{AxisHoming, Homed, Homing, HomingFault, Stage, Wiring};
 
-/// How one move of homing ended.
+/// Result of one move of homing.
 struct Leg {
-    /// Axes that have met their limit,
+    /// Mask of the axes that met their limit.
     met: u8,
-    /// and where that was accepted.
+    /// Position of each of these axes at which its limit was accepted, steps.
     latched: [i32; AXES],
-    /// Where the move began.
+    /// Position of each axis at the start of the move, steps.
     begun: [i32; AXES],
 }
 
-/// The moves of some axes, started together.
+/// Moves of several axes that start together.
 #[derive(Clone, Default)]
 struct Moves {
     travels: [Travel; AXES],
@@ -55,25 +56,28 @@ impl Source for Moves {
     }
 }
 
-/// The element of an axis; what is out of range is zero.
+/// The element of an axis; 0 if the number is out of range.
 fn at(values: &[i32; AXES], axis: u8) -> i32 {
     values.get(usize::from(axis)).copied().unwrap_or(0)
 }
 
-/// How far it is from one position to another; a register may wrap between them.
+/// Distance between two positions, steps. The position register may wrap between them.
 fn apart(from: i32, to: i32) -> u32 {
     to.wrapping_sub(from).unsigned_abs()
 }
 
 impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
-    /// Homes the axes of all groups of a powered machine at rest. `watch` is called after each exchange with the line: with the
-    /// axes that move, and what they do. Where it ends otherwise than [`Homed::At`], no axis is homed.
+    /// Homes the axes of all groups. The machine must have power and be at rest. `watch` is called
+    /// after each exchange with the line, with the mask of the axes that move, the stage and the
+    /// progress. Unless the result is [`Homed::At`], no axis is homed.
     ///
-    /// Every axis first moves away from its switch: a switch that is closed would not be found. A switch that is still closed
-    /// then is found only in the wiring `Pair`, where its limit is met at once ([`HomingFault::StillClosed`]).
+    /// Every axis first moves away from its switch, because a switch that is already closed could
+    /// not be detected. Whether the switch is still closed after this move can be detected only
+    /// with the wiring `Pair`, where the limit is then met at once ([`HomingFault::StillClosed`]).
     ///
     /// # Errors
-    /// [`HostError::Homing`] names the axes and what was wrong; else as [`Self::stream`].
+    /// [`HostError::Homing`] gives the axes and the reason. Other errors are those of
+    /// [`Self::stream`].
     pub fn home(
         &mut self,
         homing: &Homing<'_>,
@@ -92,7 +96,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         }
     }
 
-    /// `None`: stopped.
+    /// Homes all groups; `None` if homing was stopped.
     fn find_all(
         &mut self,
         homing: &Homing<'_>,
@@ -100,7 +104,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let one = homing.wiring == Wiring::One;
-        // A switch of any axis would hide the others.
+        // With one input for all switches, a closed switch of any axis would hide the others.
         if one && self.move_off(homing, homing.mask() | homing.others & homing.known(), watch)?.is_none() {
             return Ok(None);
         }
@@ -114,7 +118,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 if self.find(homing, axes, edges, watch)?.is_none() {
                     return Ok(None);
                 }
-                // One input for all: the switch must be open while the others search. It has opened at this distance before.
+                // With one input for all switches, this switch must be open while the other axes
+                // search. It was open at the distance `move_off` before.
                 let place = |axis: &AxisHoming| if one { axis.move_off.max(axis.pull_off) } else { axis.pull_off };
                 if self.pull_off(homing, axes, edges, place, watch)?.is_none() {
                     return Ok(None);
@@ -124,8 +129,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         if one { self.pull_off(homing, homing.mask(), edges, |axis| axis.pull_off, watch) } else { Ok(Some(())) }
     }
 
-    /// The axes move away from their switches. In the wiring `Pair` an axis may meet the limit of its other end: it is far
-    /// enough from its switch then.
+    /// The axes move away from their switches. With the wiring `Pair` an axis may meet the limit at
+    /// its other end; it is then far enough from its switch.
     fn move_off(
         &mut self,
         homing: &Homing<'_>,
@@ -140,7 +145,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         Ok(Some(()))
     }
 
-    /// The axes search, back off and approach; `edges` are where the approach has met the limits.
+    /// The axes search, back off and approach. The positions at which the approach met the limits
+    /// are stored in `edges`.
     fn find(
         &mut self,
         homing: &Homing<'_>,
@@ -165,7 +171,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         if leg.met != 0 {
             return Err(HostError::Homing { axes: leg.met, why: HomingFault::Closed });
         }
-        // Not further than the search has run already, but for what the approach runs until the level is accepted.
+        // The approach need not go further than the axis has backed off, plus the distance that it
+        // moves while the level is accepted.
         let near = |number, axis: &AxisHoming| {
             let accepted = (u128::from(axis.slow) * u128::from(homing.settle())).div_ceil(1 << 64) as u32;
             let steps = axis.move_off.saturating_add(ran_on(number)).saturating_add(accepted + 2);
@@ -190,7 +197,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     ) -> Result<Option<()>, HostError<L::Error>> {
         let positions = self.status.positions;
         let pull = |number, axis: &AxisHoming| {
-            // How far it is from the switch, away from it; it may have run over it.
+            // Distance from the switch, positive away from it. It is negative if the axis has
+            // overrun the switch.
             let away = at(&positions, number).wrapping_sub(at(edges, number));
             let away = if axis.toward_max { away.wrapping_neg() } else { away };
             let wanted = i32::try_from(place(axis)).unwrap_or(i32::MAX);
@@ -204,8 +212,9 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         }
     }
 
-    /// One move of some axes, which all wait for their limits; `None` where it was stopped. A limit that is met stops its axis
-    /// only. Behind a move away the axes rest until the level of the switch is accepted.
+    /// One move of several axes, which all wait for their limits; `None` if it was stopped. A limit
+    /// stops only the axis that meets it. After a move away from the switch, the axes rest until
+    /// the level of the switch is accepted.
     fn leg(
         &mut self,
         homing: &Homing<'_>,
@@ -228,7 +237,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let ended = self.stream(moves, |progress| watch(axes, stage, progress));
         let waits = self.status.answer.homing & axes;
         if matches!(ended, Ok(_) | Err(HostError::Fault { .. })) {
-            // No axis waits for a limit from here on, whatever comes.
+            // From here on no axis waits for a limit.
             self.write(HOME, 0)?;
         }
         if ended? == Ended::Stopped {
@@ -240,7 +249,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             *place = self.register(of_axis(LATCHED, axis))?.cast_signed();
         }
         if met != 0 {
-            // An axis that has met its limit rests anywhere in a step: a clear brings it to the middle of one.
+            // An axis that has met its limit rests at any fraction of a step. A clear sets the
+            // fraction to the middle of the step.
             self.stop()?;
             self.clear()?;
         }
@@ -249,7 +259,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
 }
 
 impl Leg {
-    /// All of these axes have met their limits, and none of them at once.
+    /// Checks that all of these axes met their limits, and that no limit was already closed at the
+    /// start of the move.
     fn all<E>(
         &self,
         homing: &Homing<'_>,
@@ -264,7 +275,8 @@ impl Leg {
         if homing.wiring != Wiring::Pair {
             return Ok(());
         }
-        // A limit that was closed before is found by the first look, one that closes not before it was looked at so often.
+        // A limit that was already closed is found by the first sample after the start. One that
+        // closes during the move is accepted only after `debounce` samples.
         let at_once = |axis: &u8| {
             let Some(homes) = homing.axis(*axis) else { return false };
             let looks = u128::from(homing.round) * 2;

@@ -1,4 +1,4 @@
-//! Moving: a program into the queues and to its end, and a jog.
+//! Motion: streams a program until the machine has executed it, and jogs one axis.
 
 use super::{Clock, Host, HostError, Status};
 use crate::command::{ProgramError, Segment};
@@ -7,34 +7,34 @@ use crate::frame::{Answer, of_axis};
 use crate::line::Line;
 use crate::registers::POSITION;
 
-/// How a program goes on.
+/// Progress of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress<'a> {
-    /// The machine as of the last answers.
+    /// State of the machine, from the last answers.
     pub status: &'a Status,
-    /// Whether all of the program is in the gateware.
+    /// Whether the whole program is in the gateware.
     pub handed_over: bool,
 }
 
-/// What whoever watches a program wants.
+/// Decision of the caller who watches a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wish {
-    /// Let it run.
+    /// Continue.
     GoOn,
-    /// Down by the ramps, now.
+    /// Stop all axes by their ramps now.
     Stop,
 }
 
 /// How a program ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ended {
-    /// All of it was done.
+    /// The whole program was executed.
     Done,
-    /// It was stopped, as wished: what was queued is gone.
+    /// The caller stopped it. Segments still in the queues were discarded.
     Stopped,
 }
 
-/// One axis, one move.
+/// A program of one move of one axis.
 struct Jog<'a> {
     axis: u8,
     segments: core::slice::Iter<'a, Segment>,
@@ -52,11 +52,13 @@ impl Source for Jog<'_> {
 }
 
 impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
-    /// Streams a program to a machine at rest and waits for its end. `watch` is called after each exchange with the line.
+    /// Streams a program to a machine at rest, and waits for its end. `watch` is called after each
+    /// exchange with the line.
     ///
     /// # Errors
-    /// [`HostError::Fault`] where the machine stops by itself: all axes rest by then, and the positions are true.
-    /// [`ProgramError::NoPower`] before [`Self::enable`]: nothing was sent. Others.
+    /// [`HostError::Fault`] if the machine stops by itself. All axes rest by then, and the
+    /// positions are exact. [`ProgramError::NoPower`] if [`Self::enable`] was not called; nothing
+    /// was sent. Other errors concern the line.
     pub fn stream(
         &mut self,
         source: impl Source,
@@ -75,7 +77,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let handed_over = match self.session.feed(&mut feeder) {
                 Ok(done) => done && !self.session.writing(),
                 Err(error) => {
-                    // What is queued already must not run dry: down by the ramps first.
+                    // The queues must not run empty in the middle of a move: ramp all axes down
+                    // first.
                     self.stop()?;
                     return Err(error.into());
                 }
@@ -97,7 +100,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             }
             if watch(&Progress { status: &self.status, handed_over }) == Wish::Stop {
                 self.stop_while(|status| {
-                    // Whoever watches sees the ramps too; more than a stop there is not to be wished.
+                    // The caller watches the ramps too. Its decision has no effect here, because
+                    // the axes already stop.
                     let _ = watch(&Progress { status, handed_over });
                 })?;
                 return Ok(Ended::Stopped);
@@ -107,14 +111,15 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 looked = now;
                 self.listen();
                 for axis in 0..self.session.axes() {
-                    // A refusal only means that enough is being asked already.
+                    // An error only means that enough reads are in progress.
                     let _ = self.session.read(of_axis(POSITION, axis));
                 }
             }
         }
     }
 
-    /// Moves one axis by these segments; the last is marked so. Otherwise as [`Self::stream`].
+    /// Moves one axis by these segments; the last of them is marked `last`. Otherwise as
+    /// [`Self::stream`].
     ///
     /// # Errors
     /// As [`Self::stream`].

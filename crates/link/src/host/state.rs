@@ -1,25 +1,26 @@
-//! What a machine is in: powered, stopped, cleared; and waiting for that.
+//! Changes the state of the machine (power, stop, clear) and waits until the change is complete.
 
 use super::{Clock, Ended, Host, HostError, Progress, Status, Wish};
 use crate::frame::{Answer, of_axis};
 use crate::line::Line;
 use crate::registers as map;
 
-/// The e-stop's place in [`map::CAUSES`].
+/// Index of the e-stop in [`map::CAUSES`].
 const ESTOP: u8 = 0;
-/// For so long after its release an e-stop may bounce, ms.
+/// Time for which an e-stop may bounce after its release, ms.
 const RELEASED_MS: u32 = 20;
 
 impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
-    /// Powers the drivers, and waits until starts are taken.
+    /// Powers the drivers, and waits until the gateware accepts starts.
     ///
     /// # Errors
-    /// [`HostError::TooLong`] where that does not come; others.
+    /// [`HostError::TooLong`] if it does not accept them in time. Other errors concern the line.
     pub fn enable(&mut self) -> Result<(), HostError<L::Error>> {
         self.enable_while(|_| Wish::GoOn).map(drop)
     }
 
-    /// The same; `watch` is called after each exchange with the line, and may have it stopped.
+    /// As [`Self::enable`]. `watch` is called after each exchange with the line and can stop the
+    /// machine.
     ///
     /// # Errors
     /// As [`Self::enable`].
@@ -42,27 +43,28 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         Ok(Ended::Done)
     }
 
-    /// Takes the drivers' power away, as soon as all axes are done.
+    /// Removes the drivers' power as soon as all axes have finished.
     ///
     /// # Errors
-    /// [`HostError`].
+    /// [`HostError`] if the connection fails.
     pub fn disable(&mut self) -> Result<(), HostError<L::Error>> {
         self.powered = false;
         self.write(map::CONTROL, 0)
     }
 
-    /// Stops all axes by their ramps, and waits until they rest. What was queued is gone; [`Self::clear`] resumes.
+    /// Stops all axes by their ramps, and waits until they rest. Segments in the queues are
+    /// discarded. [`Self::clear`] ends the stop.
     ///
     /// # Errors
-    /// [`HostError`].
+    /// [`HostError`] if the connection fails or the axes do not rest in time.
     pub fn stop(&mut self) -> Result<Status, HostError<L::Error>> {
         self.stop_while(|_| ())
     }
 
-    /// The same; `watch` sees the machine ramp down.
+    /// As [`Self::stop`]. `watch` is called with each state while the axes ramp down.
     ///
     /// # Errors
-    /// [`HostError`].
+    /// As [`Self::stop`].
     pub fn stop_while(&mut self, mut watch: impl FnMut(&Status)) -> Result<Status, HostError<L::Error>> {
         self.session.withdraw();
         self.write(map::CONTROL, self.power() | map::CONTROL_STOP)?;
@@ -77,10 +79,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.look()
     }
 
-    /// Resumes after a stop of any cause; queues are empty then. Does nothing where there was none.
+    /// Ends a stop of any cause; the queues are empty then. Does nothing if no stop is in force.
     ///
     /// # Errors
-    /// [`HostError::StillPressed`], some 20 ms after the first try; [`HostError::TooLong`] where the fault stays for another reason.
+    /// [`HostError::StillPressed`] if the e-stop is still asserted some 20 ms after the first try.
+    /// [`HostError::TooLong`] if the fault remains for another reason.
     pub fn clear(&mut self) -> Result<(), HostError<L::Error>> {
         let begin = self.clock.milliseconds();
         self.look()?;
@@ -93,8 +96,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             self.write(map::CLEAR, 0)?;
             self.look()?;
             let Answer { fault, cause, .. } = self.status.answer;
-            // A CLEAR forgets every cause that is over: an e-stop that is there again at once is pressed. A released
-            // one may bounce for some milliseconds.
+            // A CLEAR removes every cause that is over. If the e-stop comes back at once, it is
+            // still pressed; after its release it may bounce for some milliseconds.
             let tried = self.clock.milliseconds().wrapping_sub(first);
             if fault && cause == ESTOP && tried > RELEASED_MS {
                 return Err(HostError::StillPressed);
@@ -107,7 +110,8 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         Ok(())
     }
 
-    /// Stops and clears a machine that another host left in the middle of something; one at rest stays as it is.
+    /// Stops and clears a machine that another host left in motion or with segments in its queues.
+    /// Does nothing to a machine at rest.
     ///
     /// # Errors
     /// As [`Self::stop`] and [`Self::clear`].
@@ -119,12 +123,12 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.clear()
     }
 
-    /// The drivers keep the power that they have, whoever gave it.
+    /// The bit of CONTROL that keeps the drivers' power as it is.
     const fn power(&self) -> u32 {
         if self.powered || self.status.answer.ready { map::CONTROL_ENABLE } else { 0 }
     }
 
-    /// Looks at the machine until it is as wished.
+    /// Reads the state until it is as wanted.
     pub(super) fn wait(
         &mut self,
         what: &'static str,
@@ -133,7 +137,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.wait_while(what, wish, |_| Wish::GoOn)
     }
 
-    /// The same, or until `watch`, which is called after each exchange, does not want to wait any longer.
+    /// As `wait`. Ends earlier if `watch`, which is called after each exchange, asks for it.
     fn wait_while(
         &mut self,
         what: &'static str,

@@ -1,14 +1,14 @@
-//! Where a host's time comes from, and how long it waits.
+//! Time for a host: its clock, and how long it waits for what.
 
 use crate::session::Timing;
 
-/// Where time comes from.
+/// A clock.
 pub trait Clock {
-    /// Milliseconds since any moment; wraps.
+    /// Milliseconds since an arbitrary moment; the value wraps.
     fn milliseconds(&mut self) -> u32;
 }
 
-/// The system's clock.
+/// The clock of the operating system.
 #[cfg(feature = "std")]
 #[derive(Debug, Clone, Copy)]
 pub struct SystemClock(std::time::Instant);
@@ -27,19 +27,21 @@ impl Clock for SystemClock {
     }
 }
 
-/// How a host waits.
+/// Waiting times of a host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Patience {
-    /// For single answers.
+    /// For the answers to single requests.
     pub timing: Timing,
-    /// Without any answer, until a port is given up at which nothing has answered yet, ms.
+    /// For the first answer at a port, until the port is given up, ms.
     pub silence: u32,
-    /// Without any answer, until a gateware is given up that has answered before, ms. Its watchdog is far quicker, so
-    /// nothing is won by haste, and a computer may be busy.
+    /// For any answer of a gateware that has answered before, until it is given up, ms. The
+    /// gateware's watchdog is far shorter, so a short time here has no advantage, and a computer
+    /// may be busy.
     pub lost: u32,
-    /// For what takes its time: power, a stop by ramps, a clear; ms.
+    /// For a change that takes time (power, a stop by ramps, a clear), ms.
     pub change: u32,
-    /// From one look at the machine to the next while there is nothing to send, ms; less than the watchdog's time.
+    /// Between two reads of the state while there is nothing to send, ms. It must be shorter than
+    /// the watchdog's time.
     pub look: u32,
 }
 

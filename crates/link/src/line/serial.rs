@@ -1,4 +1,4 @@
-//! A serial port of the system, and why it cannot be opened.
+//! A serial port of the operating system, and the reasons why it cannot be opened.
 
 use super::{Exchanged, Line};
 use serialport::{ErrorKind, SerialPort};
@@ -10,97 +10,100 @@ use std::string::{String, ToString};
 use std::time::Duration;
 use thiserror::Error;
 
-/// So long a read waits where nothing was sent.
+/// Time for which a read waits if nothing was sent.
 const WAIT: Duration = Duration::from_millis(1);
 
 /// Why a port cannot be opened.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum OpenError {
-    /// There is none of this name.
+    /// No port has this name.
     #[error("there is no serial port {port}: is the board plugged in?{others}")]
     Absent {
-        /// The name.
+        /// Name of the port.
         port: String,
-        /// The ports that there are, as a sentence.
+        /// The ports that exist, as a sentence.
         others: String,
     },
-    /// Another program has it.
+    /// Another program uses the port.
     #[error("serial port {port} is in use by another program: close that first")]
     Busy {
-        /// The name.
+        /// Name of the port.
         port: String,
     },
-    /// The system does not allow it.
+    /// The operating system denies access.
     #[error(
         "serial port {port} may not be opened by this user: on Linux, add yourself to its group (`sudo usermod -aG dialout $USER`) and log in again"
     )]
     NotPermitted {
-        /// The name.
+        /// Name of the port.
         port: String,
     },
-    /// It is a file or a folder.
+    /// The name belongs to a file or a directory.
     #[error("{port} is no serial port.{others}")]
     NoPort {
-        /// The name.
+        /// Name of the port.
         port: String,
-        /// The ports that there are, as a sentence.
+        /// The ports that exist, as a sentence.
         others: String,
     },
-    /// It is there but cannot be used as a serial port, or be set to this baud rate.
+    /// The device exists but is not a serial port, or does not support this baud rate.
     #[error("serial port {port} cannot be used at {baud} baud: {why}")]
     Unusable {
-        /// The name.
+        /// Name of the port.
         port: String,
-        /// The baud rate.
+        /// Baud rate, bits per second.
         baud: u32,
-        /// What the system says.
+        /// Message of the operating system.
         why: String,
     },
 }
 
-/// Most of the line's time that bytes may wait in the system, ms: a stop goes out behind them.
+/// Greatest transmission time of the bytes that may wait in the system's buffer, ms. A stop is sent
+/// behind them.
 const AHEAD_MS: u64 = 20;
-/// So many bytes may always wait: more than a frame.
+/// Number of bytes that may wait in any case; it is more than a frame.
 const LEAST_AHEAD: usize = 96;
 
-/// Most bytes that are written at full speed while not one comes back: three windows of the longest frames. A
-/// pseudo-terminal that nobody reads holds some 20 000, and may block whoever writes more.
+/// Greatest number of bytes written at full speed while no byte is received: three windows of the
+/// longest frames. A pseudo-terminal that nobody reads holds about 20 000 bytes, and may block a
+/// program that writes more.
 const UNHEARD: usize = 8_192;
-/// Beyond that so many bytes are written in each exchange that hears nothing, about a millisecond: a line that comes back is
-/// noticed.
+/// Number of bytes written per exchange (about a millisecond) beyond [`UNHEARD`] while no byte is
+/// received, so that a line that works again is noticed.
 const TRICKLE: usize = 4;
 
-/// An open serial port: 8 data bits, no parity, one stop bit, of this program alone. On Unix it is locked twice: by
-/// `TIOCEXCL`, which keeps away every program but the administrator's, and by an advisory lock (`flock`) on the
-/// device's file, which every carrystep host tries; both hold for all symbolic links to the device.
+/// An open serial port: 8 data bits, no parity, one stop bit, used by this program alone. On Unix
+/// it is locked in two ways: by `TIOCEXCL`, which excludes every program except those of the
+/// administrator, and by an advisory lock (`flock`) on the device file, which every carrystep host
+/// tries to take. Both apply to all symbolic links to the device.
 pub struct SerialLine {
     port: Box<dyn SerialPort>,
-    /// Bytes that may wait in the system.
+    /// Number of bytes that may wait in the system's buffer.
     ahead: usize,
-    /// Bytes that were written since the last one came.
+    /// Number of bytes written since the last one was received.
     unheard: usize,
 }
 
 impl SerialLine {
-    /// Opens a port by its name and throws away what has come before.
+    /// Opens a port at a baud rate in bits per second, and discards the bytes received earlier.
     ///
     /// # Errors
-    /// [`OpenError`] names the cause.
+    /// [`OpenError`] gives the cause.
     pub fn open(port: &str, baud: u32) -> Result<Self, OpenError> {
         let opened = serialport::new(port, baud).timeout(WAIT).open().map_err(|error| refusal(port, baud, &error))?;
-        // Old answers do no harm, so a port that cannot be emptied is as good.
+        // Old answers are harmless, so an error of this call is ignored.
         let _ = opened.clear(serialport::ClearBuffer::Input);
         Ok(Self { port: opened, ahead: ahead(baud), unheard: 0 })
     }
 
-    /// A port that is open already.
+    /// Uses a port that is open already.
     pub fn from_port(port: Box<dyn SerialPort>) -> Self {
         let ahead = port.baud_rate().map_or(usize::MAX, ahead);
         Self { port, ahead, unheard: 0 }
     }
 }
 
-/// Bytes of [`AHEAD_MS`] at this baud rate, ten bits each.
+/// Number of bytes that take [`AHEAD_MS`] at this baud rate, with ten bits per byte.
 fn ahead(baud: u32) -> usize {
     usize::try_from(u64::from(baud) * AHEAD_MS / 10_000).unwrap_or(usize::MAX).max(LEAST_AHEAD)
 }
@@ -112,14 +115,14 @@ fn refusal(port: &str, baud: u32, error: &serialport::Error) -> OpenError {
         _ if is_file(port) => OpenError::NoPort { port: name(), others: others() },
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => OpenError::NotPermitted { port: name() },
         ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Absent { port: name(), others: others() },
-        // What is there and cannot be locked, another has locked.
+        // A device that exists and cannot be locked is locked by another program.
         ErrorKind::NoDevice if exists() => OpenError::Busy { port: name() },
         ErrorKind::NoDevice => OpenError::Absent { port: name(), others: others() },
         _ => OpenError::Unusable { port: name(), baud, why: error.to_string() },
     }
 }
 
-/// Whether this is there and no device.
+/// Whether this exists and is not a device.
 fn is_file(port: &str) -> bool {
     std::fs::metadata(port).is_ok_and(|there| there.is_file() || there.is_dir())
 }
@@ -137,7 +140,7 @@ impl Line for SerialLine {
     type Error = io::Error;
 
     fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> io::Result<Exchanged> {
-        // Where the system does not say how much waits, it is trusted.
+        // If the system does not report how many bytes wait, none are assumed.
         let waits = if out.is_empty() { 0 } else { self.port.bytes_to_write().map_or(0, |count| count as usize) };
         let most = self.ahead.saturating_sub(waits).min(UNHEARD.saturating_sub(self.unheard));
         let out = out.get(..most).unwrap_or(out);
@@ -152,7 +155,7 @@ impl Line for SerialLine {
     }
 }
 
-/// No byte in time is no error.
+/// Converts a timeout to 0 bytes.
 fn nothing_yet(done: io::Result<usize>) -> io::Result<usize> {
     match done {
         Err(error)
@@ -172,13 +175,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_waits_in_the_system_takes_20_ms_of_the_line() {
+    fn bytes_in_the_system_buffer_take_20_ms_of_the_line() {
         assert_eq!([9_600, 115_200, 921_600, 3_000_000].map(ahead), [96, 230, 1843, 6000]);
     }
 
-    /// What a port's driver says of a port that is there, but for the last.
+    /// The errors of the operating system for a port that exists, except in the last row.
     #[test]
-    fn the_cause_of_a_refusal_is_named() {
+    fn open_error_names_the_cause() {
         let refused = |port: &str, kind| refusal(port, 9600, &serialport::Error::new(kind, "so it is"));
         let denied = ErrorKind::Io(io::ErrorKind::PermissionDenied);
         assert!(matches!(refused("/dev/null", denied), OpenError::NotPermitted { .. }));

@@ -1,28 +1,29 @@
-//! SPI, mode 0, through embedded-hal: bytes go both ways at once, END where there is nothing to say.
+//! SPI, mode 0, through embedded-hal. Bytes are transferred in both directions at once; END is sent
+//! when there is nothing else to send.
 
 use super::{Exchanged, Line};
 use crate::registers::END;
 use embedded_hal::spi::{MODE_0, Mode, SpiDevice};
 
-/// What the bus must be set to; the clock at most a fifth of the gateware's.
+/// Mode of the bus. Its clock may be at most a fifth of the gateware's.
 pub const MODE: Mode = MODE_0;
 
-/// Bytes that are clocked when there is nothing to say: about an answer.
+/// Number of bytes that are clocked when there is nothing to send: about an answer.
 const LISTEN: usize = 16;
 
-/// A gateware behind an SPI device.
+/// A gateware on an SPI bus.
 #[derive(Debug)]
 pub struct SpiLine<D> {
     device: D,
 }
 
 impl<D: SpiDevice> SpiLine<D> {
-    /// The device, set to [`MODE`].
+    /// Uses this device, which must be set to [`MODE`].
     pub const fn new(device: D) -> Self {
         Self { device }
     }
 
-    /// The device again.
+    /// Returns the device.
     pub fn free(self) -> D {
         self.device
     }

@@ -1,4 +1,4 @@
-/* The C client behind the words of tests/support/client.rs: a line in, a line out. */
+/* The C client: it reads the commands of tests/support/client.rs, and prints a line for each. */
 #include "carrystep_feeder.h"
 
 #include <inttypes.h>
@@ -139,7 +139,7 @@ static void send_all(uint32_t now)
     }
 }
 
-/* The first words of a program behind a loaded one begin a new one. */
+/* The first command of a program that follows a loaded one begins a new program. */
 static command *add(void)
 {
     if (loaded) {

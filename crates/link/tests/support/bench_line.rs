@@ -1,4 +1,4 @@
-//! A line and a clock with a gateware in miniature behind them, or with something else.
+//! A line and a clock for tests, with a gateware in miniature or another device at the far end.
 
 use super::device::{Device, Done};
 use super::soak::TICKS;
@@ -8,15 +8,15 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::rc::Rc;
 
-/// What is at the other end.
+/// The device at the far end.
 pub enum Peer {
-    /// The gateware.
+    /// The gateware in miniature.
     Gateware,
-    /// Nobody.
+    /// No device.
     Nobody,
-    /// Something that talks, whatever it is told.
+    /// A device that sends these bytes, regardless of what it receives.
     Chatter(Vec<u8>),
-    /// The host's own bytes come back.
+    /// The host's own bytes return.
     Echo,
 }
 
@@ -24,13 +24,13 @@ pub struct World {
     pub device: Device,
     pub peer: Peer,
     pub now: u32,
-    /// When the gateware executed a stop.
+    /// Time when the gateware executed a stop, ms.
     pub stopped: Option<u32>,
-    /// What has come and was not taken yet.
+    /// Bytes received and not read yet.
     inbox: VecDeque<u8>,
 }
 
-/// One end of it, to be a line and a clock.
+/// One end of the bench; it serves as line and as clock.
 #[derive(Clone)]
 pub struct End(pub Rc<RefCell<World>>);
 
@@ -56,7 +56,7 @@ impl Clock for End {
 impl Line for End {
     type Error = Infallible;
 
-    /// A millisecond, in which at most 300 bytes go out.
+    /// An exchange lasts one millisecond, in which at most 300 bytes are sent.
     fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> Result<Exchanged, Infallible> {
         let World { device, peer, now, stopped, inbox } = &mut *self.0.borrow_mut();
         *now += 1;

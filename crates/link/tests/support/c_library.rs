@@ -1,4 +1,5 @@
-//! The C library, compiled with a strict compiler into a client that is told what to do through a pipe.
+//! The C library, compiled with strict warnings into a client that receives its commands through a
+//! pipe.
 
 use super::client::{Client, SLOTS};
 use carrystep_link::C_LIBRARY;
@@ -11,11 +12,11 @@ use tempfile::TempDir;
 pub const FLAGS: [&str; 8] =
     ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion", "-Wshadow"];
 
-/// A folder with the library, in which something is compiled.
+/// A temporary directory with the library, in which programs are compiled.
 pub struct Folder(TempDir);
 
 impl Folder {
-    /// The library as it is, but for what `change` makes of each file.
+    /// Copies the library; `change` may alter the text of each file.
     pub fn new(change: impl Fn(&str, &str) -> String) -> Self {
         let folder = Self(tempfile::tempdir().expect("a temporary folder"));
         for (name, text) in C_LIBRARY {
@@ -30,7 +31,7 @@ impl Folder {
         std::fs::write(path, text).expect("a file is written");
     }
 
-    /// Compiles; the compiler's words where it refuses.
+    /// Compiles; returns the compiler's messages if it fails.
     pub fn compile(&self, arguments: &[&str]) -> Result<PathBuf, String> {
         let compiler = std::env::var("CC").unwrap_or_else(|_| "gcc".to_owned());
         let program = self.0.path().join("program");
@@ -50,7 +51,7 @@ fn build(arguments: &[&str], change: impl Fn(&str, &str) -> String) -> (Folder, 
     (folder, program)
 }
 
-/// The C client, running.
+/// The running C client.
 pub struct CClient {
     child: Child,
     to: ChildStdin,
@@ -59,14 +60,14 @@ pub struct CClient {
 }
 
 impl CClient {
-    /// As it is, compiled once for all.
+    /// A client of the unchanged library, which is compiled once for all tests.
     pub fn shared() -> Self {
         static PROGRAM: OnceLock<(Folder, PathBuf)> = OnceLock::new();
         let (_, program) = PROGRAM.get_or_init(|| build(&[], |_, text| text.to_owned()));
         Self::run(program, None)
     }
 
-    /// With more compiler's arguments, and files changed.
+    /// A client with additional compiler arguments and changed files.
     pub fn with(arguments: &[&str], change: impl Fn(&str, &str) -> String) -> Self {
         let (folder, program) = build(arguments, change);
         Self::run(&program, Some(folder))
@@ -93,7 +94,7 @@ impl Client for CClient {
 
 impl Drop for CClient {
     fn drop(&mut self) {
-        // It ends by itself when its input does; one that hangs is ended here.
+        // The client ends by itself when its input is closed; this ends one that hangs.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

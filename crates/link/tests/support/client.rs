@@ -1,19 +1,21 @@
-//! A client that is told what to do, a line at a time, and says what came of it. The one in C
-//! (`tests/bench/link_bench.c`) understands the same words.
+//! A test client that reads commands line by line and prints their results. The client in C
+//! (`tests/bench/link_bench.c`) understands the same commands.
 //!
 //! ```text
 //! begin RESEND PAUSE          a new session
 //! adopt NEXT AXES
-//! read ADDRESS                yes or no                     addresses, words and masks in hex
-//! write ADDRESS WORD          yes or no
-//! segment AXIS TICKS V A J LAST     of the program; start MASK likewise; load: the program is whole
-//! feed                        feeding, fed, bad or unpowered
+//! read ADDRESS                replies yes or no; addresses, words and masks are hexadecimal
+//! write ADDRESS WORD          replies yes or no
+//! segment AXIS TICKS V A J LAST     adds a segment to the program
+//! start MASK                  adds a start to the program
+//! load                        ends the program
+//! feed                        replies feeding, fed, bad or unpowered
 //! withdraw
-//! send NOW                    bytes of one request, or -
-//! take NOW BYTES              one word for each frame: the answer's fields, `damaged` or `step`
-//! step NOW BYTES              take, feed, and send until there is nothing to send; answers | feed | bytes
-//! check IDENTITY PROTOCOL BUILD WANTED      fine, device, protocol or build
-//! busy                        which of `waiting` and `writing` it is
+//! send NOW                    replies the bytes of one request, or -
+//! take NOW BYTES              replies a word per frame: the answer's fields, `damaged` or `step`
+//! step NOW BYTES              take, feed, and send until nothing is left; answers | feed | bytes
+//! check IDENTITY PROTOCOL BUILD WANTED      replies fine, device, protocol or build
+//! busy                        replies which of `waiting` and `writing` hold
 //! ```
 
 use super::{hex, unhex};
@@ -23,7 +25,7 @@ pub trait Client {
     fn say(&mut self, words: &str) -> String;
 }
 
-/// Writes on their way, as in the C bench.
+/// Size of the window of unacknowledged writes, as in the C bench.
 pub const SLOTS: usize = 64;
 
 pub struct RustClient {
@@ -33,7 +35,7 @@ pub struct RustClient {
     feeder: Option<Feeder<Owned>>,
 }
 
-/// The program, by value.
+/// A program that owns its commands.
 struct Owned {
     segments: Vec<std::collections::VecDeque<Segment>>,
     starts: std::collections::VecDeque<u8>,
@@ -50,7 +52,7 @@ impl carrystep_link::Source for Owned {
 }
 
 impl Owned {
-    /// Not through `Program`, which would refuse what a source may get wrong.
+    /// Does not use `Program`, because that would refuse the mistakes that these tests make.
     fn new(commands: &[Command]) -> Self {
         let own = |axis: u8| {
             commands.iter().filter_map(move |command| match *command {

@@ -1,9 +1,9 @@
-//! The conversations of `tests/conversations`.
+//! Reads the conversations of `tests/conversations`, and plays them to a client.
 
 use super::client::Client;
 use std::path::Path;
 
-/// Name and text of each.
+/// Name and text of each conversation.
 pub fn scripts() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/conversations");
     let mut paths: Vec<_> =
@@ -16,7 +16,8 @@ pub fn scripts() -> Vec<(String, String)> {
     paths.iter().map(read).collect()
 }
 
-/// Says every `>` and compares with every `<`; where they differ, which line.
+/// Sends every `>` line to the client, and compares its replies with the `<` lines. An error names
+/// the first line that differs.
 pub fn converse(client: &mut dyn Client, text: &str) -> Result<(), String> {
     let mut said = String::new();
     for (number, line) in text.lines().enumerate() {

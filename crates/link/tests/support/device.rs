@@ -1,8 +1,9 @@
-//! The gateware's side of the link in miniature, written from docs/protocol.md and from nothing of this crate.
+//! The gateware's end of the link in miniature, written from docs/protocol.md without use of this
+//! crate.
 
 use std::collections::VecDeque;
 
-/// CRC-32 bit by bit.
+/// CRC-32, computed bit by bit.
 pub fn crc(bytes: &[u8]) -> u32 {
     let mut crc = u32::MAX;
     for byte in bytes {
@@ -14,7 +15,7 @@ pub fn crc(bytes: &[u8]) -> u32 {
     !crc
 }
 
-/// Escapes a frame whose CRC is still missing.
+/// Appends the CRC to a frame and escapes it for the line.
 pub fn on_the_line(frame: &[u8]) -> Vec<u8> {
     let mut line = vec![0xc0];
     for byte in frame.iter().copied().chain(crc(frame).to_le_bytes()) {
@@ -28,14 +29,14 @@ pub fn on_the_line(frame: &[u8]) -> Vec<u8> {
     line
 }
 
-/// What a write did, in order.
+/// Effects of the writes, in the order of their execution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Done {
     Write(u8, u32),
     Segment(u8, [u32; 8]),
 }
 
-/// Bugs to be planted.
+/// Bugs for the mutation tests.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Bugs {
     pub no_crc: bool,
@@ -73,7 +74,7 @@ impl Device {
         Self { axes, next, facts, ..Self::default() }
     }
 
-    /// A byte from the host; the answer that it brings.
+    /// Processes a byte from the host; returns the bytes of the answer that it causes.
     pub fn byte(&mut self, byte: u8) -> Vec<u8> {
         if byte != 0xc0 {
             match (self.escaped, byte) {
@@ -132,7 +133,7 @@ impl Device {
         self.answer(sequence, address, refused)
     }
 
-    /// False: busy.
+    /// Executes a write; returns false if the device is busy.
     fn execute(&mut self, address: u8, words: &[u32]) -> bool {
         let axis = usize::from(address >> 3 & 7);
         if address == 0x21 && self.armed.is_some() {
@@ -173,7 +174,7 @@ impl Device {
         true
     }
 
-    /// Presses the e-stop, or releases it.
+    /// Asserts or releases the e-stop.
     pub fn press(&mut self, pressed: bool) {
         self.pressed = pressed;
         if pressed {
@@ -181,7 +182,7 @@ impl Device {
         }
     }
 
-    /// Ramps are over at once.
+    /// Stops the motion. A ramp takes no time here.
     pub fn stop(&mut self, cause: u8) {
         self.fault.get_or_insert(cause);
         self.armed = None;
@@ -208,7 +209,8 @@ impl Device {
         self.armed.is_none() && self.running.iter().all(Option::is_none) && self.queues.iter().all(VecDeque::is_empty)
     }
 
-    /// Time passes: starts, segments, ends, dry queues. A segment's V of so many steps a tick moves the position.
+    /// Advances time by `ticks`: starts moves, runs segments, and stops on empty queues. V moves
+    /// the position by its whole steps per tick.
     pub fn elapse(&mut self, mut ticks: u32) {
         while ticks > 0 && self.fault.is_none() {
             if let Some(mask) = self.armed {

@@ -2,7 +2,7 @@
 
 use carrystep_link::{Command, Segment};
 
-/// SplitMix64.
+/// The generator SplitMix64.
 #[derive(Debug, Clone)]
 pub struct Random(pub u64);
 
@@ -19,12 +19,12 @@ impl Random {
         self.next() % end
     }
 
-    /// Happens so many times in a million.
+    /// True with a probability of `per_million` in a million.
     pub fn happens(&mut self, per_million: u32) -> bool {
         self.below(1_000_000) < u64::from(per_million)
     }
 
-    /// A word that likes END, ESC and what follows them.
+    /// A random word in which END, ESC and the escaped codes are frequent.
     fn word(&mut self) -> i64 {
         let bytes = [0; 8].map(|_| {
             let any = self.next() as u8;
@@ -34,7 +34,8 @@ impl Random {
     }
 }
 
-/// At least so many segments in moves of all axes together, in the order of a planner; each about `ticks` long.
+/// A program of at least `segments` segments, in moves of all axes together, in the order in which
+/// a planner emits them. A segment lasts about `ticks` ticks.
 pub fn program(random: &mut Random, axes: u8, segments: usize, ticks: u32) -> Vec<Command> {
     let mut commands = Vec::new();
     let mut so_far = 0;

@@ -1,4 +1,4 @@
-//! A client, a faulty line each way and a gateware: a whole program, to its end.
+//! Runs a whole program with a client, a faulty line in each direction, and a gateware.
 
 use super::client::Client;
 use super::device::{Bugs, Device, Done};
@@ -7,13 +7,13 @@ use super::{hex, unhex};
 use carrystep_link::Command;
 use std::collections::VecDeque;
 
-/// Ticks of the device in a millisecond.
+/// Number of the device's ticks per millisecond.
 pub const TICKS: u32 = 500;
 
-/// Milliseconds without progress after which a talk is called dead.
+/// Time without progress, ms, after which a run is considered stalled.
 const STALLED: u32 = 4000;
 
-/// How a program is run.
+/// Parameters of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Soak {
     pub faults: Faults,
@@ -22,22 +22,23 @@ pub struct Soak {
     pub bugs: Bugs,
 }
 
-/// What came of it.
+/// Result of a run.
 #[derive(Debug)]
 pub struct Outcome {
     pub milliseconds: u32,
-    /// Requests that the device took, damaged ones, and those that it had executed before.
+    /// Number of requests that the device accepted, of damaged ones, and of those that it had
+    /// executed before.
     pub frames: u64,
     pub damaged: u64,
     pub repeated: u64,
     pub out_of_turn: u64,
-    /// Pieces and bytes that the line harmed, both ways.
+    /// Number of pieces and bytes that the line damaged, in both directions.
     pub harmed: u64,
-    /// The motion stopped, with this cause.
+    /// The stop cause, if the motion stopped.
     pub fault: Option<u8>,
 }
 
-/// Runs a program; what is wrong where something is.
+/// Runs a program. The error says which property was violated.
 pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result<Outcome, String> {
     let Soak { faults, seed, axes, bugs } = soak;
     let first = seed as u8;
@@ -100,7 +101,8 @@ pub fn soak(client: &mut dyn Client, commands: &[Command], soak: Soak) -> Result
     Err(format!("nothing more is done after {since} ms, {done} of {}", commands.len()))
 }
 
-/// An answer that the client took is one that the device gave, and none older than one that it took before.
+/// Checks that an answer that the client accepted is one that the device sent, and not older than
+/// one accepted before.
 fn check_answer(answer: &str, sent: &mut VecDeque<Vec<u8>>) -> Result<(), String> {
     let bytes = |text: &str| {
         let parts: Vec<&str> = text.split(':').collect();
@@ -125,7 +127,7 @@ fn check_answer(answer: &str, sent: &mut VecDeque<Vec<u8>>) -> Result<(), String
             == wanted
     };
     match sent.iter().position(same) {
-        // It stays, for the line may double it.
+        // The answer remains in the list, because the line may repeat it.
         Some(place) => {
             sent.drain(..place);
             Ok(())
@@ -134,7 +136,8 @@ fn check_answer(answer: &str, sent: &mut VecDeque<Vec<u8>>) -> Result<(), String
     }
 }
 
-/// Every segment and start was executed once, those of an axis in their order; all, or none after a fault.
+/// Checks that every segment and start was executed once, and those of an axis in their order.
+/// After a fault a prefix is sufficient.
 fn compare(device: &Device, commands: &[Command]) -> Result<(), String> {
     let wanted = |axis: u8| {
         commands.iter().filter_map(move |command| match *command {

@@ -1,24 +1,25 @@
-//! One direction of a line that flips, drops, doubles, cuts and delays bytes; what comes out stays in order.
+//! One direction of a line that flips, drops, repeats, cuts and delays bytes. Their order is kept.
 
 use super::random::Random;
 use std::collections::VecDeque;
 
-/// How often, in a million: each byte, but for `again`, `cut` and `delay`, which are for each piece that is sent.
+/// Probabilities in millionths: `flip`, `drop` and `double` for each byte, the others for each
+/// piece that is sent.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Faults {
     pub flip: u32,
     pub drop: u32,
     pub double: u32,
-    /// The whole piece comes twice.
+    /// The whole piece is repeated.
     pub again: u32,
     /// The rest of the piece is lost.
     pub cut: u32,
-    /// Some milliseconds more.
+    /// The piece is delayed by some milliseconds.
     pub delay: u32,
 }
 
 impl Faults {
-    /// A line that no one would accept: every twentieth frame suffers.
+    /// A very bad line: every twentieth frame is damaged.
     pub const BAD: Self = Self { flip: 800, drop: 400, double: 400, again: 5000, cut: 10_000, delay: 20_000 };
 }
 
@@ -28,7 +29,7 @@ pub struct Wire {
     random: Random,
     bytes: VecDeque<(u32, u8)>,
     due: u32,
-    /// Bytes or pieces that were changed in any way but delayed.
+    /// Number of bytes or pieces that were changed in any way other than a delay.
     pub harmed: u64,
 }
 

@@ -1,4 +1,4 @@
-//! The fast engine under its host, which waits for many cycles at once.
+//! Runs the fast engine under its host, which can wait for many cycles at once.
 
 use super::run::{EngineJob, EngineObserver, EngineOutcome};
 use super::{EngineHost, replay};
@@ -8,15 +8,15 @@ use crate::{LevelError, halted, how_far};
 use carrystep_core::engine::EngineOutputs;
 use carrystep_model::FastEngine;
 
-/// A host and its engine, from cycle to cycle or over many of them.
+/// A host and its engine, advanced by one cycle or by many.
 struct Fed {
     core: FastEngine,
     host: EngineHost,
 }
 
 impl Fed {
-    /// Goes on by a cycle at least, `most` at the most, or `most_at_rest` where nothing is left to be done; how many
-    /// cycles, and the outputs in the first of them.
+    /// Advances by at least one cycle, and by at most `most`, or `most_at_rest` if nothing is left
+    /// to do. Returns the number of cycles and the outputs in the first of them.
     fn advance(
         &mut self,
         most: u64,
@@ -24,7 +24,8 @@ impl Fed {
         listener: &mut impl Listener<EngineOutputs>,
     ) -> (u64, EngineOutputs) {
         let (inputs, outputs) = self.host.meet(|inputs| self.core.outputs(inputs));
-        // They change several times a tick, or while nothing else does, whether or not anybody offers anything.
+        // These outputs change several times per tick, or while nothing else does, whether or not
+        // the host offers anything.
         let quiet = EngineOutputs { put_ready: false, start_ready: false, ready: false, ..outputs };
         let told = EngineOutputs { latch: None, room: None, ..quiet };
         listener.outputs(self.core.cycle(), &told);
@@ -46,10 +47,10 @@ impl EngineJob<'_> {
         Fed { core: FastEngine::new(self.build), host: self.host() }
     }
 
-    /// Runs it on the fast engine; the edges stream by.
+    /// Runs the program on the fast engine; `listener` receives the edges as they occur.
     ///
     /// # Errors
-    /// [`LevelError::Endless`]: the run does not end; [`LevelError::Halted`]: it is to.
+    /// [`LevelError::Endless`] if the run does not end; [`LevelError::Halted`] if it was halted.
     pub fn run_fast(&self, listener: &mut impl Listener<EngineOutputs>) -> Result<EngineOutcome, LevelError> {
         let mut fed = self.fed();
         let settle = replay::settle(self.build);
@@ -69,8 +70,8 @@ impl EngineJob<'_> {
         Err(LevelError::Endless(self.max_clocks))
     }
 
-    /// The same for an observer, who hears of each cycle in which any output changed but the two `ready`s,
-    /// which are told to be 0.
+    /// As [`Self::run_fast`], for an observer. It is called for each cycle in which any output
+    /// changed except `put_ready` and `start_ready`, which are reported as 0.
     pub(super) fn observe_fast(&self, observer: &mut EngineObserver<'_>) -> Result<EngineOutcome, LevelError> {
         let mut replay = Replay::new(&self.build.pins, observer);
         let end = self.run_fast(&mut replay);
@@ -78,15 +79,16 @@ impl EngineJob<'_> {
         end
     }
 
-    /// The cycle in which the first segments are loaded: the same at every level, so the fast model is asked.
+    /// The cycle in which the first segments are loaded. It is the same at every level, so the fast
+    /// model computes it.
     ///
     /// # Errors
-    /// [`LevelError::Endless`]: nothing starts.
+    /// [`LevelError::Endless`] if no start is executed.
     pub fn origin(&self) -> Result<u64, LevelError> {
         let mut fed = self.fed();
         while fed.core.cycle() < self.max_clocks {
             let most = self.max_clocks - fed.core.cycle();
-            // A leap starts nothing.
+            // A leap over several cycles contains no start.
             if fed.advance(most, most, &mut EdgesOnly(())).1.started {
                 return Ok(fed.core.cycle());
             }

@@ -1,8 +1,9 @@
-//! Planned moves in the order in which an engine has room for them: the queues are filled before the first start,
-//! and each later segment is sent as its axis takes one out.
+//! Orders the commands of planned moves by the time at which an engine has room for them. The
+//! queues are filled before the first start; each later segment is sent when its axis takes one out
+//! of its queue.
 //!
 //! ```text
-//! x  1 2 3 4 5 6 7    8    9        10       room for segment k: at the begin of segment k - 7
+//! x  1 2 3 4 5 6 7    8    9        10       there is room for segment k when segment k - 7 begins
 //! y  1 2 3 4 5 6 7        8     9
 //!                  ^ start
 //! ```
@@ -11,11 +12,12 @@ use super::{Act, puts};
 use carrystep_core::engine::{Put, QUEUE, SEGMENT_WORDS};
 use carrystep_core::{Command, Program, Segment};
 
-/// A command, and when it can be taken.
+/// A command, and the time at which the engine can accept it.
 struct Due {
     /// 0: before the first move; n: once tick n has begun.
     room: u64,
-    /// Starts after the segments that are due with them; these in the order of their queues.
+    /// Order among commands of the same time: segments in the order of their queues, and then
+    /// starts.
     place: usize,
     command: Command,
 }
@@ -25,14 +27,14 @@ struct Due {
 struct Lane {
     begins: Vec<u64>,
     end: u64,
-    /// When there was room for the last of them.
+    /// Time at which there was room for the last of them.
     room: u64,
 }
 
-/// What a host does that never waits for one axis while another could be served.
+/// The actions of a host that never waits for one axis while it could serve another.
 pub(super) fn acts(program: &Program) -> Vec<Act> {
     let mut due = due(program);
-    // Stable: what is due at once stays in the plan's order.
+    // The sort is stable: commands of the same time remain in the plan's order.
     due.sort_by_key(|due| (due.room, due.place));
     let mut acts = Vec::new();
     let mut row: Vec<(u64, u8, Segment)> = Vec::new();
@@ -63,7 +65,8 @@ fn alone(command: Command) -> Option<Act> {
     }
 }
 
-/// When there is room for each command of planned moves, in which all axes' segments add up to the same ticks.
+/// The time at which there is room for each command. In a planned move the segments of all axes
+/// have the same total of ticks.
 fn due(program: &Program) -> Vec<Due> {
     let mut lanes = vec![Lane::default(); 8];
     let mut started = 0;
@@ -78,7 +81,8 @@ fn due(program: &Program) -> Vec<Due> {
                 lane.end += u64::from(segment.ticks);
                 Due { room: lane.room, place, command }
             }
-            // It is armed as soon as the move before has begun and each axis has its first segment.
+            // A start can be armed as soon as the move before has begun and each axis has its first
+            // segment.
             _ => {
                 let room = lanes.iter().map(|lane| lane.room).fold(started, u64::max);
                 let begins = lanes.iter().filter_map(|lane| lane.begins.last());
@@ -90,7 +94,7 @@ fn due(program: &Program) -> Vec<Due> {
     program.iter().map(place).collect()
 }
 
-/// Segments of different axes at once: a word for each in a tick.
+/// Sends segments of different axes in parallel: one word for each in a tick.
 fn side_by_side(row: &[(u64, u8, Segment)]) -> Vec<Act> {
     let words: Vec<Vec<Put>> = row.iter().map(|(_, axis, segment)| puts(*axis, segment)).collect();
     let word = |k: usize| words.iter().filter_map(move |words| words.get(k)).map(|put| Act::Put(*put));
@@ -139,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn queues_are_full_before_the_start_and_keep_their_order() {
+    fn queues_are_filled_before_the_start_in_order() {
         let acts = acts(&program(&[vec![vec![1; 9], vec![9]], vec![vec![5], vec![5]]]));
         let start = acts.iter().position(|act| matches!(act, Act::Start(_))).unwrap();
         let commits = |acts: &[Act], of: u8| {
@@ -151,15 +155,15 @@ mod tests {
     }
 
     #[test]
-    fn short_segments_are_there_in_time() {
-        // A sixteenth of a step a tick, from half a step on.
+    fn short_segments_arrive_in_time() {
+        // A sixteenth of a step per tick, starting at half a step.
         let moved = |ticks: i32| (ticks + 8) / 16;
         let begun = program(&[vec![vec![1, 1, 1, 1, 1, 1, 834], vec![840]]]);
         assert_eq!(steps(&begun, 840), ([[moved(840); 2].as_slice(), &[0; 4]].concat(), None));
         let rows = [vec![28; 30], vec![40; 21], vec![60; 14], vec![84; 10], vec![120; 7], vec![840]];
         let three = program(&[rows.to_vec(), vec![vec![40]; 6], rows.to_vec()]);
         assert_eq!(steps(&three, 1720), (vec![moved(1720); 6], None));
-        // A host that takes one command after the other is late.
+        // A host that waits for each command in turn is too late.
         let build = build();
         let late = EngineHost::new(&build.guard, &begun, &Vec::new());
         let fault =
@@ -168,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn moves_follow_without_a_gap() {
+    fn moves_follow_each_other_without_a_gap() {
         let moves = program(&[vec![vec![160]; 6], vec![vec![16]; 6], vec![vec![160]; 6]]);
         let build = build();
         let mut starts = Vec::new();

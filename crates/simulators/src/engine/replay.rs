@@ -1,7 +1,8 @@
-//! What a host did to the engine, replayed on the exported Verilog in Icarus or Verilator.
+//! Replays the inputs of a run of the model to the exported Verilog in Icarus or Verilator.
 //!
-//! The host runs once, against the model. Its every cycle is then played to the Verilog as it was: the
-//! outputs must be those of the model in each clock, and what the engine keeps at the end too.
+//! The host runs once, with the model. Its inputs are then applied to the Verilog cycle by cycle.
+//! The outputs must equal those of the model in every clock, and so must the contents of the engine
+//! at the end.
 
 use crate::engine::{EngineHost, Events};
 use crate::tool::{self, ICARUS};
@@ -18,30 +19,30 @@ use std::process::{Command, Stdio};
 const ICARUS_BENCH: &str = include_str!("../../bench/engine_bench.v");
 const VERILATOR_BENCH: &str = include_str!("../../bench/engine_bench.cpp");
 
-/// P low, P high, position and discarded steps of each axis.
+/// P (low and high word), position and discarded steps of each axis.
 pub type Kept = Vec<[u32; 4]>;
 
-/// A run of the model: what went in, what came out.
+/// A recorded run of the model: its inputs and its outputs.
 #[derive(Debug, Clone)]
 pub struct Recording {
-    /// Inputs, each with its number of cycles.
+    /// Inputs, each with the number of cycles for which it was applied.
     pub stimuli: Vec<(u64, EngineInputs)>,
-    /// Outputs of each cycle in which any changed.
+    /// Outputs of each cycle in which any of them changed.
     pub outputs: Vec<(u64, EngineOutputs)>,
-    /// Cycles in all.
+    /// Total number of cycles.
     pub clocks: u64,
     /// What is kept at the end.
     pub kept: Kept,
 }
 
 impl Recording {
-    /// Runs a program, and what happens around it, on the model until it is over and all is quiet, or for `max_clocks`; whichever comes first,
-    /// then so many ticks of rest that all is counted.
+    /// Runs a program with its events on the model until the program is over and all axes rest, or
+    /// for `max_clocks`. Adds the ticks of rest after which every step has been counted.
     pub fn new(build: &EngineBuild, program: &Program, events: &Events, max_clocks: u64) -> Self {
         Self::of(build, EngineHost::new(&build.guard, program, events), max_clocks, &[], None)
     }
 
-    /// The same of any host; as far as it goes until it is halted.
+    /// As [`Self::new`], for any host; ends early if `halt` is set.
     pub(super) fn of(
         build: &EngineBuild,
         mut host: EngineHost,
@@ -67,7 +68,7 @@ impl Recording {
         recording
     }
 
-    /// How many axes the engine has.
+    /// Number of axes of the engine.
     fn axes(&self) -> usize {
         self.kept.len()
     }
@@ -83,9 +84,9 @@ impl Recording {
         self.clocks += 1;
     }
 
-    /// `count put_valid put_axis put_word put_data start_valid start_mask clear stop broken home_valid home_mask kick enable
-    /// estop limit_min limit_max`,
-    /// a line each.
+    /// The stimuli as text, a line for each: `count put_valid put_axis put_word put_data
+    /// start_valid start_mask clear stop broken home_valid home_mask kick enable estop limit_min
+    /// limit_max`.
     fn text(&self) -> String {
         let mut text = String::new();
         for (count, inputs) in &self.stimuli {
@@ -107,17 +108,18 @@ impl Recording {
     }
 }
 
-/// Cycles of rest after which all is counted.
+/// Number of cycles of rest after which every step has been counted.
 pub(super) fn settle(build: &EngineBuild) -> u64 {
     12 * u64::from(build.timebase.clocks_per_tick())
 }
 
-/// The first difference between a recording and its replay on the Verilog of an engine.
+/// The first difference between a recording and its replay on the Verilog of an engine; `None` if
+/// there is none.
 ///
-/// `kept` is compared where the run came to rest without a fault or a block.
+/// The contents at the end are compared if the run came to rest without a fault or a block.
 ///
 /// # Errors
-/// [`LevelError`]: a tool is missing or fails, or the level has no Verilog.
+/// [`LevelError`] if a tool is missing or fails, or if the level has no Verilog.
 pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<Option<String>, LevelError> {
     match level {
         Level::Icarus => {
@@ -132,10 +134,11 @@ pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<
     }
 }
 
-/// The same in Verilator; of Verilog that holds many mutants, for the one of this number, 0 being none.
+/// As [`difference`], in Verilator. If the Verilog contains mutants, `mutant` selects one; 0
+/// selects none.
 ///
 /// # Errors
-/// [`LevelError`]: a tool is missing or fails.
+/// [`LevelError`] if a tool is missing or fails.
 pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording) -> Result<Option<String>, LevelError> {
     let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
     tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
@@ -144,13 +147,13 @@ pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording)
     first_difference(&mut simulation, recording)
 }
 
-/// Runs a simulation as far as it agrees with a recording.
+/// Runs a simulation until it differs from the recording, or to its end.
 fn first_difference(simulation: &mut Command, recording: &Recording) -> Result<Option<String>, LevelError> {
     let mut running = simulation.stdout(Stdio::piped()).spawn().map_err(tool::io("cannot start the simulation"))?;
     let lines = running.stdout.take().map(|output| BufReader::new(output).lines());
     let mut found = lines.into_iter().flatten().map_while(Result::ok);
     let difference = compare(&mut found, recording);
-    // It may have more to say than anyone reads, or be over by now.
+    // The simulation may have ended, or may still print lines that nobody reads.
     let _ = running.kill();
     running.wait().map_err(tool::io("cannot end the simulation"))?;
     Ok(difference)
@@ -176,13 +179,13 @@ fn compare(found: &mut impl Iterator<Item = String>, recording: &Recording) -> O
     found.next().map(|line| format!("expected nothing more, found {line}"))
 }
 
-/// A line of a bench: cycle and outputs.
+/// Parses a line of a bench: cycle and packed outputs.
 fn parsed(line: &str) -> Option<(u64, u64)> {
     let (cycle, bits) = line.split_once(' ')?;
     Some((cycle.parse().ok()?, u64::from_str_radix(bits, 16).ok()?))
 }
 
-/// The outputs as the benches write them.
+/// Packs the outputs in the order of the benches.
 fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
     let EngineOutputs { put_ready, start_ready, step, dir, enabled, idle, fault, halted, started, .. } = *outputs;
     let EngineOutputs { armed, ready, homing, latch, room, .. } = *outputs;
@@ -206,7 +209,7 @@ fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelErr
     Ok(simulation)
 }
 
-/// The compiled simulation of this Verilog, from the cache or made now.
+/// The compiled simulation of this Verilog, from the cache or newly compiled.
 fn verilated(verilog: &str, axes: usize) -> Result<PathBuf, LevelError> {
     let flags = format!("-DAXES={axes}");
     let options: &[&str] = &["-CFLAGS", &flags];

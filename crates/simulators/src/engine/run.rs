@@ -1,4 +1,4 @@
-//! Planned moves on the engine, at any level that has one.
+//! Runs planned moves on the engine, at any level that has one.
 
 use super::replay::{self, Recording};
 use super::{EngineCore, EngineHost};
@@ -8,41 +8,42 @@ use carrystep_core::{Command, EngineBuild, Program};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 
-/// What `get` calls the position.
+/// Index of the position in the items of the `get` port.
 const POSITION: usize = 2;
 
-/// Planned moves for an engine, fed by a host that keeps its queues full.
+/// Planned moves for an engine, with a host that keeps its queues full.
 #[derive(Debug, Clone, Copy)]
 pub struct EngineJob<'a> {
     /// Build parameters of the engine.
     pub build: &'a EngineBuild,
-    /// The moves.
+    /// Commands of the moves.
     pub program: &'a Program,
-    /// The run fails after this many cycles.
+    /// The run fails after this number of cycles.
     pub max_clocks: u64,
-    /// Ends it before its end.
+    /// Flags that end the run early.
     pub halt: Halt<'a>,
-    /// Hears how far it is.
+    /// Receives the progress of the run.
     pub how_far: Option<&'a HowFar>,
 }
 
-/// How a run ended.
+/// Result of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EngineOutcome {
-    /// Clock cycles run.
+    /// Number of clock cycles run.
     pub clocks: u64,
-    /// Position registers, steps.
+    /// Position registers, in steps.
     pub positions: Vec<i32>,
-    /// Why the axes were stopped, where they were, and the axes that it came from.
+    /// The stop in force at the end: its cause, and the mask of the axes that caused it.
     pub fault: Option<(Cause, u8)>,
 }
 
-/// Hears of each cycle in which any output changed; from the fast level not of the two `ready`s, which it
-/// tells to be 0.
+/// Called for each cycle in which any output changed. At the fast level, changes of `put_ready` and
+/// `start_ready` are ignored, and both are reported as 0.
 pub type EngineObserver<'a> = dyn FnMut(u64, &EngineOutputs) + 'a;
 
 impl<'a> EngineJob<'a> {
-    /// A job that may take `ticks` ticks of motion, with time for the drivers' power and for the words of all segments.
+    /// A job of `ticks` ticks of motion. Its limit of cycles includes time for the drivers' power
+    /// and for the words of all segments.
     pub fn new(build: &'a EngineBuild, program: &'a Program, ticks: u64) -> Self {
         let segments = program.iter().filter(|command| matches!(command, Command::Segment { .. })).count() as u64;
         let warm = u64::from(build.guard.enable + 1) * u64::from(build.guard.round);
@@ -56,12 +57,14 @@ impl<'a> EngineJob<'a> {
         EngineHost::feeding(&self.build.guard, self.program)
     }
 
-    /// Runs it at a level.
+    /// Runs the job at a level.
     ///
-    /// The Verilog of an engine is compared with the model in every output of every clock, so that what is told is both.
+    /// The Verilog of an engine is compared with the model in every output of every clock, so that
+    /// the reported outputs are those of both.
     ///
     /// # Errors
-    /// [`LevelError`]: a tool is missing or fails, the run does not end or is halted, or the Verilog differs.
+    /// [`LevelError`] if a tool is missing or fails, if the run does not end or is halted, or if
+    /// the Verilog differs.
     pub fn run(&self, level: Level, observer: &mut EngineObserver<'_>) -> Result<EngineOutcome, LevelError> {
         let axes = 0..self.build.axes();
         let gateware = |error: &dyn std::fmt::Display| LevelError::Gateware(error.to_string());
@@ -103,7 +106,8 @@ impl<'a> EngineJob<'a> {
         }
     }
 
-    /// To the end, and so many ticks of rest that all is counted.
+    /// Runs to the end, and for as many ticks of rest as are needed until every step has been
+    /// counted.
     fn drive(
         &self,
         core: &mut impl EngineCore,

@@ -1,4 +1,5 @@
-//! `hdl-out/boards.md`: what the gateware of each board takes, and the clock that it reaches.
+//! Writes `hdl-out/boards.md`: the resources that the gateware of each board uses, and the clock
+//! that it reaches.
 
 use super::{Built, Job, build};
 use crate::resources::failed;
@@ -7,13 +8,13 @@ use carrystep_boards::{AllMeasured, Board, Mapped, Measured, Placed, boards};
 use carrystep_core::tick::mhz;
 use carrystep_verilog::Gateware;
 
-/// Where it is, seen from the root of the workspace.
+/// Path of the page, from the root of the workspace.
 pub const PAGE: &str = "hdl-out/boards.md";
 
-/// The committed gateware of a board, built.
+/// Builds the committed gateware of a board.
 ///
 /// # Errors
-/// [`SynthesisError`]: there is no such gateware, or a tool is missing or refuses it.
+/// [`SynthesisError`] if there is no such gateware, or if a tool is missing or refuses it.
 pub fn built(board: &Board) -> Result<Built, SynthesisError> {
     let gateware = gateware(board)?;
     let files = gateware.files().map_err(failed)?;
@@ -31,7 +32,8 @@ pub fn built(board: &Board) -> Result<Built, SynthesisError> {
     build(&job, &mut |_| {})
 }
 
-/// What an iCE40 board takes, as it is written down: to a tenth of a MHz, but not up to a clock that is missed.
+/// The figures of an iCE40 board as they are published: clocks are rounded to 0.1 MHz, but a missed
+/// clock is not rounded up to the required one.
 pub fn placed(board: &Board, built: &Built) -> Placed {
     let reached = built.reaches(board.clocks[0].clock_hz);
     let tenths = |mhz: f64| if reached { (mhz * 10.0).round() } else { (mhz * 10.0).floor() } / 10.0;
@@ -44,7 +46,7 @@ pub fn placed(board: &Board, built: &Built) -> Placed {
     }
 }
 
-/// Builds all boards; `say` hears of each.
+/// Builds all boards; `say` is called with a line for each.
 ///
 /// # Errors
 /// As [`built`].
@@ -61,7 +63,7 @@ pub fn measure(say: &mut dyn FnMut(&str)) -> Result<AllMeasured, SynthesisError>
     Ok(all)
 }
 
-/// A board's row.
+/// The row of a board in the table.
 pub fn row(board: &Board, measured: &Measured) -> String {
     let (part, clock) = (&board.parts[0], &board.clocks[0]);
     let time = format!("{} | {} | {}", mhz(clock.clock_hz), clock.tick_ns, clock.phases);
@@ -128,7 +130,7 @@ mod tests {
     use carrystep_boards::board;
 
     #[test]
-    fn a_clock_that_is_nearly_reached_is_not() {
+    fn clock_that_is_narrowly_missed_is_not_rounded_up() {
         let icebreaker = board("icebreaker").expect("a board");
         for (mhz, reached) in [(37.46, false), (37.5, true), (37.56, true)] {
             let size = Size { logic_cells: 1, block_rams: 1 };

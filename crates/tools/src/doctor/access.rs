@@ -1,4 +1,4 @@
-//! Whether a device may be used, and if not, the real cause.
+//! Checks whether the user may open a device, and finds the reason if not.
 
 use crate::doctor::Host;
 use schemars::JsonSchema;
@@ -11,38 +11,38 @@ use std::path::Path;
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Access {
-    /// It may.
+    /// The user may open the device.
     Granted,
-    /// A program has it open.
+    /// Another program has the device open.
     InUse {
         /// Its process.
         pid: u32,
         /// Its name.
         program: String,
     },
-    /// The system forbids it.
+    /// The operating system denies access.
     Refused(Refusal),
 }
 
-/// Why the system forbids it.
+/// Why the operating system denies access.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case", tag = "reason")]
 pub enum Refusal {
-    /// Its group may use it, and the user is not in that.
+    /// The device's group may use it, but the user is not a member of the group.
     NotInGroup {
         /// The group.
         group: String,
     },
-    /// The user is in its group, but was not when this session began.
+    /// The user is a member of the group, but was not when this session began.
     LogInAgain {
         /// The group.
         group: String,
     },
-    /// Not even its group may use it: a rule of udev is missing.
+    /// Not even the device's group may use it, because a udev rule is missing.
     NoRule,
 }
 
-/// Whether this device may be used.
+/// Whether the user may open this device.
 pub(crate) fn access(host: &Host, device: &Path) -> Access {
     if !(host.may)(device) {
         return Access::Refused(refusal(host, device));
@@ -50,7 +50,8 @@ pub(crate) fn access(host: &Host, device: &Path) -> Access {
     user_of(host, device).unwrap_or(Access::Granted)
 }
 
-/// Why this device of this machine may not be used, where that can be told; links are followed.
+/// Why the user may not open this device of this machine, if a reason can be found. Symbolic links
+/// are followed.
 pub fn obstacle(device: &Path) -> Option<Access> {
     let device = fs::canonicalize(device).ok()?;
     Some(access(&Host::this(), &device)).filter(|access| *access != Access::Granted)
@@ -60,11 +61,11 @@ pub fn obstacle(device: &Path) -> Option<Access> {
 fn refusal(host: &Host, device: &Path) -> Refusal {
     use std::os::unix::fs::MetadataExt;
     let Ok(there) = fs::metadata(device) else { return Refusal::NoRule };
-    // Read and write for the group; root's own group is for nobody.
+    // The group must be able to read and write. The group of root does not count.
     let for_group = there.mode() & 0o060 == 0o060;
     match host.group(there.gid()).filter(|(name, _)| for_group && name != "root") {
         None => Refusal::NoRule,
-        // Neither is it the group.
+        // The group is not the reason either.
         Some(_) if host.user.groups.contains(&there.gid()) => Refusal::NoRule,
         Some((group, true)) => Refusal::LogInAgain { group },
         Some((group, false)) => Refusal::NotInGroup { group },
@@ -76,7 +77,7 @@ fn refusal(_: &Host, _: &Path) -> Refusal {
     Refusal::NoRule
 }
 
-/// Who has it open, of the processes that this user may look into.
+/// The process that has the device open, among the processes that this user may inspect.
 fn user_of(host: &Host, device: &Path) -> Option<Access> {
     let numbered = |path: &Path| path.file_name()?.to_str()?.parse::<u32>().ok();
     host.list("proc").into_iter().find_map(|process| {

@@ -1,4 +1,5 @@
-//! The machine that is looked at: its root, its search path, its user. A test makes one of a temporary folder.
+//! The machine that is inspected: its root directory, its search path and its user. Tests use a
+//! temporary directory as the root.
 
 use std::ffi::OsString;
 use std::fs;
@@ -7,39 +8,39 @@ use std::path::{Path, PathBuf};
 /// A machine.
 #[derive(Debug, Clone)]
 pub struct Host {
-    /// Folder in which `dev`, `sys`, `proc` and `etc` are.
+    /// Directory that contains `dev`, `sys`, `proc` and `etc`.
     pub root: PathBuf,
-    /// Where programs are, as in PATH.
+    /// Search path of programs, as in PATH.
     pub path: OsString,
-    /// Who asks.
+    /// The current user.
     pub user: User,
-    /// Whether the user may read and write a file.
+    /// Function that returns whether the user may read and write a file.
     pub may: fn(&Path) -> bool,
 }
 
 /// A user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct User {
-    /// Login name, where it is known.
+    /// Login name, if it is known.
     pub name: Option<String>,
-    /// Groups of this session.
+    /// Group ids of this session.
     pub groups: Vec<u32>,
 }
 
 impl Host {
-    /// This machine.
+    /// The machine on which this process runs.
     pub fn this() -> Self {
         let path = std::env::var_os("PATH").unwrap_or_default();
         let name = std::env::var("USER").or_else(|_| std::env::var("LOGNAME")).ok();
         Self { root: "/".into(), path, user: User { name, groups: groups() }, may }
     }
 
-    /// A program's file, where the search path has one.
+    /// The file of a program, if the search path contains it.
     pub(crate) fn program(&self, name: &str) -> Option<PathBuf> {
         std::env::split_paths(&self.path).map(|folder| folder.join(name)).find(|file| file.is_file())
     }
 
-    /// What is in a folder, sorted by name; nothing where there is none.
+    /// The entries of a directory, sorted by name; empty if there is no such directory.
     pub(crate) fn list(&self, folder: &str) -> Vec<PathBuf> {
         let entries = fs::read_dir(self.root.join(folder)).into_iter().flatten().flatten();
         let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
@@ -47,7 +48,7 @@ impl Host {
         paths
     }
 
-    /// A group's name, and whether its entry names the user.
+    /// Name of a group, and whether its entry lists the user.
     pub(crate) fn group(&self, gid: u32) -> Option<(String, bool)> {
         let text = fs::read_to_string(self.root.join("etc/group")).ok()?;
         let mut rows = text.lines().map(|line| line.split(':').collect::<Vec<_>>());
@@ -70,7 +71,7 @@ fn groups() -> Vec<u32> {
     Vec::new()
 }
 
-/// As the system sees it, access lists included.
+/// As the system decides it, with access control lists.
 #[cfg(unix)]
 fn may(path: &Path) -> bool {
     use rustix::fs::Access;

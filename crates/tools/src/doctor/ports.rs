@@ -1,4 +1,4 @@
-//! Serial ports of USB devices, and USB devices that are a board: what programmers want to open.
+//! Finds serial ports of USB devices, and USB devices that may be a board; programmers open these.
 
 use crate::doctor::Host;
 use crate::doctor::access::{Access, access};
@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 /// A serial port.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct SerialPort {
-    /// `/dev/ttyUSB0`.
+    /// Path of the port, such as `/dev/ttyUSB0`.
     pub path: PathBuf,
-    /// Vendor and product of its USB device, where the system tells.
+    /// Vendor and product id of its USB device, if the system reports them.
     pub usb: Option<String>,
-    /// Boards with that USB chip; so have many other things.
+    /// Boards that have this USB chip. Many other devices have the same chip.
     pub maybe: Vec<String>,
     /// Whether it may be opened.
     pub access: Access,
@@ -24,11 +24,11 @@ pub struct SerialPort {
 /// A USB device with the vendor and product of a board.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct UsbDevice {
-    /// `/dev/bus/usb/001/004`.
+    /// Path of the device, such as `/dev/bus/usb/001/004`.
     pub path: PathBuf,
-    /// Vendor and product.
+    /// Vendor and product id.
     pub usb: String,
-    /// Boards with that USB chip.
+    /// Boards that have this USB chip.
     pub maybe: Vec<String>,
     /// Whether a programmer may open it.
     pub access: Access,
@@ -43,7 +43,7 @@ pub fn serial_ports(host: &Host) -> Vec<SerialPort> {
     let port = |path: PathBuf| {
         let usb = path.file_name().and_then(|name| {
             let device = host.root.join("sys/class/tty").join(name).join("device");
-            // The interface is a link; its device is a folder or two above.
+            // The interface is a symbolic link; its device is one or two directories above.
             fs::canonicalize(device).ok()?.ancestors().find_map(usb_id)
         });
         let access = access(host, &path);
@@ -65,13 +65,13 @@ pub fn usb_devices(host: &Host) -> Vec<UsbDevice> {
     host.list("sys/bus/usb/devices").into_iter().filter_map(device).collect()
 }
 
-/// Vendor and product in a folder of `sys`.
+/// Vendor and product id in a directory of `sys`.
 fn usb_id(folder: &Path) -> Option<String> {
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok().map(|text| text.trim().to_owned());
     Some(format!("{}:{}", read("idVendor")?, read("idProduct")?))
 }
 
-/// Names of the boards with this USB chip.
+/// Names of the boards that have this USB chip.
 fn with(usb: Option<&str>) -> Vec<String> {
     let same = boards().iter().filter(|board| usb.is_some() && board.usb.as_deref() == usb);
     same.map(|board| board.name.clone()).collect()

@@ -1,4 +1,4 @@
-//! The tools that are wanted: where they are, which version, and the line that installs what is missing.
+//! Finds the tools: their paths, their versions, and the commands that install missing ones.
 
 use crate::doctor::Host;
 use crate::programs::{
@@ -10,22 +10,22 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A tool, there or not.
+/// A tool, installed or not.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Found {
-    /// What one types.
+    /// Name of the command.
     pub name: &'static str,
-    /// Where it is.
+    /// Path of the program, if it is installed.
     pub path: Option<PathBuf>,
-    /// The first line that it says of its version.
+    /// The first line that it prints about its version.
     pub version: Option<String>,
-    /// What it is wanted for.
+    /// Purpose of the tool.
     pub purpose: &'static str,
-    /// How to get it.
+    /// The ways to install it.
     pub install: String,
 }
 
-/// What a board needs; without one, simulators and the open tools.
+/// The tools that a board needs; without a board, the simulators and the open tools.
 pub fn tools(host: &Host, board: Option<&Board>) -> Vec<Found> {
     let wanted: Vec<Tool> = match board {
         None => vec![ICARUS, VERILATOR, Z3, YOSYS, NEXTPNR, ICEPACK, ICETIME, ICEBOX_VLOG],
@@ -43,13 +43,13 @@ pub fn tools(host: &Host, board: Option<&Board>) -> Vec<Found> {
 }
 
 fn tool(host: &Host, Tool { name, version: option, purpose, install }: Tool) -> Found {
-    // The same tools from pip have a name of their own.
+    // The packages of pip install the same tools under another name.
     let path = host.program(name).or_else(|| host.program(&format!("yowasp-{name}")));
     let version = path.as_deref().zip(option).and_then(|(path, option)| version(path, option));
     Found { name, path, version, purpose, install: install.join(", or ") }
 }
 
-/// The first line that a tool says, wherever it says it.
+/// The first line that a tool prints, on standard output or standard error.
 fn version(path: &Path, option: &str) -> Option<String> {
     let output = Command::new(path).arg(option).output().ok()?;
     let text = [output.stdout, output.stderr].concat();
@@ -63,7 +63,7 @@ mod tests {
     use carrystep_boards::boards;
 
     #[test]
-    fn every_board_s_programmer_is_known() {
+    fn programmer_of_every_board_is_known() {
         for board in boards() {
             let first = board.flash.split(' ').next().unwrap_or_default();
             assert!(PROGRAMMERS.iter().any(|tool| tool.name == first), "{}: {first}", board.name);

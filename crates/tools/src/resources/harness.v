@@ -1,5 +1,5 @@
-// Carries every port of carrystep_engine on two pins, through registers, so that any package holds it and
-// only paths inside the engine are timed.
+// Connects every port of carrystep_engine to two pins by way of registers. Any package then has
+// enough pins, and only paths within the engine are timed.
 module budget_harness (input wire clock, input wire in, output reg out);
     localparam AXES = 6;
     localparam INPUTS = 53 + 4 * AXES;

@@ -1,4 +1,4 @@
-//! What the host link costs, line included.
+//! The resources of the host link with its line.
 
 use super::measure::{failed, machine};
 use super::rows::ROWS;
@@ -7,16 +7,16 @@ use crate::ice40::{self, Size};
 use carrystep_core::link::{Line, Uart};
 use carrystep_verilog::{LINK_NAME, line_name, line_verilog, link_verilog};
 
-/// Cells and memories that it may take.
+/// Budget of the link: logic cells and block RAMs.
 pub const LINK_BUDGET: Size = Size { logic_cells: 300, block_rams: 7 };
 
-/// The line of each row, and how the page calls it.
+/// Name of the line of each row on the page.
 pub const LINES: [&str; 2] = ["UART, 3 Mbaud", "SPI"];
 
-/// The size of each line with its link, for the engine of the first row.
+/// The resources of each line with its link, for the engine of the first row.
 ///
 /// # Errors
-/// [`SynthesisError`]: a tool is missing or fails.
+/// [`SynthesisError`] if a tool is missing or fails.
 pub fn links() -> Result<[Size; LINES.len()], SynthesisError> {
     let row = &ROWS[0];
     let build = machine(row)?;

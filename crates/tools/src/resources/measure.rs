@@ -1,4 +1,4 @@
-//! The engine of a row, and what the tools say of it.
+//! Measures the engine of a row.
 
 use super::rows::{Row, SEEDS};
 use crate::SynthesisError;
@@ -7,26 +7,26 @@ use carrystep_core::EngineBuild;
 use carrystep_files::{Machine, Source};
 use carrystep_verilog::{ENGINE_NAME, engine_verilog};
 
-/// The machine whose engine is measured; clock and tick are those of the row.
+/// The machine whose engine is measured. Clock and tick are those of the row.
 const MACHINE: &str = include_str!("../../../../sim/engine.toml");
 
-/// Carries all ports of the engine on two pins, through registers.
+/// A top level that connects all ports of the engine to two pins by way of registers.
 const HARNESS: &str = include_str!("harness.v");
 
-/// What was found for a row.
+/// Measurements of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
-    /// Of the engine alone.
+    /// Resources of the engine alone.
     pub size: Size,
     /// Clock in MHz that each of the [`SEEDS`] reaches, between registers of engine and harness.
     pub mhz: [f64; SEEDS.len()],
 }
 
 impl Measured {
-    /// Size and speed of a row.
+    /// Measures resources and clock of a row.
     ///
     /// # Errors
-    /// [`SynthesisError`]: a tool is missing or fails.
+    /// [`SynthesisError`] if a tool is missing or fails.
     pub fn of(row: &Row) -> Result<Self, SynthesisError> {
         let size = ice40::synthesise(&verilog(row)?, ENGINE_NAME)?.size(row.part)?;
         let mut mhz = [0.0; SEEDS.len()];
@@ -36,12 +36,12 @@ impl Measured {
         Ok(Self { size, mhz })
     }
 
-    /// The best of the seeds, in MHz.
+    /// Clock of the best seed, MHz.
     pub fn best(&self) -> f64 {
         self.mhz.into_iter().fold(0.0, f64::max)
     }
 
-    /// The seed in the middle, in MHz.
+    /// Median of the clocks of all seeds, MHz.
     pub fn median(&self) -> f64 {
         let mut mhz = self.mhz;
         mhz.sort_by(f64::total_cmp);
@@ -52,31 +52,31 @@ impl Measured {
 /// The engine of a row as Verilog.
 ///
 /// # Errors
-/// [`SynthesisError::Gateware`]: there is no such engine.
+/// [`SynthesisError::Gateware`] if there is no such engine.
 pub fn verilog(row: &Row) -> Result<String, SynthesisError> {
     engine_verilog(&machine(row)?, "sim/engine.toml").map_err(failed)
 }
 
-/// The engine of a row.
+/// Build parameters of a row's engine.
 pub(super) fn machine(row: &Row) -> Result<EngineBuild, SynthesisError> {
     let text = MACHINE.replace("48_000_000", &row.clock_hz.to_string()).replace("2000", &row.tick_ns.to_string());
     let source = Source { path: "sim/engine.toml".into(), text: text.into() };
     let mut build = Machine::from_source(&source).map_err(failed)?.engine();
-    // More axes than the machine has are its first ones once more.
+    // If the row has more axes than the machine, the machine's axes are repeated.
     build.pins = build.pins.into_iter().cycle().take(row.axes).collect();
     build.guard.stop = build.guard.stop.into_iter().cycle().take(row.axes).collect();
     Ok(build)
 }
 
-/// Gateware that cannot be made.
+/// The error for gateware that cannot be generated.
 pub(crate) fn failed(error: impl Into<Box<dyn std::error::Error>>) -> SynthesisError {
     SynthesisError::Gateware(error.into().to_string())
 }
 
-/// The clock in MHz that each seed reaches, one after the other as they are asked for.
+/// The clock in MHz that each seed reaches. Each is measured when the iterator is advanced.
 ///
 /// # Errors
-/// [`SynthesisError`]: a tool is missing or fails.
+/// [`SynthesisError`] if a tool is missing or fails.
 pub fn placed(row: &Row) -> Result<impl Iterator<Item = Result<f64, SynthesisError>>, SynthesisError> {
     let harness = HARNESS.replace("AXES = 6", &format!("AXES = {}", row.axes));
     let netlist = ice40::synthesise(&(verilog(row)? + &harness), "budget_harness")?;

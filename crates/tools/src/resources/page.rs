@@ -1,4 +1,5 @@
-//! `hdl-out/resources.md`: written from measurements, and read again by the test that guards it.
+//! Writes `hdl-out/resources.md` from measurements, and reads it in the test that checks the
+//! budgets.
 
 use super::link::{LINES, LINK_BUDGET};
 use super::measure::Measured;
@@ -7,10 +8,10 @@ use super::rows::{FAMILIES, Family, ROWS, Row, SEEDS};
 use crate::ice40::Size;
 use carrystep_boards::Mapped;
 
-/// Where it is, from the root of the workspace.
+/// Path of the page, from the root of the workspace.
 pub const PAGE: &str = "hdl-out/resources.md";
 
-/// The page, from what was found for each of the [`ROWS`], the [`LINES`] and the [`FAMILIES`].
+/// The page, from the measurements of the [`ROWS`], the [`LINES`] and the [`FAMILIES`].
 pub fn page(rows: &[Measured], links: &[Size], families: &[Mapped]) -> String {
     let mut text = format!(
         "# What the engine costs\n\n\
@@ -51,7 +52,7 @@ pub fn page(rows: &[Measured], links: &[Size], families: &[Mapped]) -> String {
 
 const ICE40: &str = "| part | axes | tick | clock, MHz: has, needs | clocks per tick: has, needs | logic cells (budget) | block RAM | Fmax, MHz (each seed) | clock reached |";
 
-/// What a row's line begins with.
+/// Beginning of a row's line.
 fn key(row: &Row) -> String {
     let (part, axes, us) = (row.part, row.axes, row.tick_ns / 1000);
     let [mhz, least] = [row.clock_hz, row.clock_needed_hz()].map(|hz| hz / 1_000_000);
@@ -83,7 +84,7 @@ fn cells_line(family: &Family, found: &Mapped) -> String {
     )
 }
 
-/// Ours among the others, by size.
+/// The table of our engines beside other cores, sorted by size.
 fn beside(rows: &[Measured]) -> String {
     let mut lines: Vec<(u32, String)> = PEERS
         .iter()
@@ -107,10 +108,10 @@ fn beside(rows: &[Measured]) -> String {
     lines.into_iter().map(|(_, line)| line).collect()
 }
 
-/// Whether a page is of these rows, and within their budgets; what is wrong if not.
+/// Checks that a page contains exactly these rows, within their budgets.
 ///
 /// # Errors
-/// A sentence that says which row is missing, over budget, or not as its `met` says.
+/// A sentence that names the row that is missing, over budget, or different from its `met`.
 pub fn check(page: &str) -> Result<(), String> {
     for row in &ROWS {
         let key = key(row);
@@ -145,7 +146,7 @@ pub fn check(page: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The first number of a line.
+/// The first number in a line.
 fn number(text: &str) -> Option<u32> {
     let digits = text.trim_start().split(|c: char| !c.is_ascii_digit()).next()?;
     digits.parse().ok()
@@ -155,14 +156,14 @@ fn number(text: &str) -> Option<u32> {
 mod tests {
     use super::*;
 
-    /// Measurements with nothing to spare.
+    /// Measurements that use the whole budget of a row.
     fn found(row: &Row) -> Measured {
         let mhz = row.clock_hz as f64 / 1e6 + if row.met { 0.0 } else { -1.0 };
         Measured { size: row.budget, mhz: [mhz - 2.0, mhz, mhz - 1.0] }
     }
 
     #[test]
-    fn a_page_is_of_its_rows() {
+    fn page_is_checked_against_rows_and_budgets() {
         let mut rows = ROWS.map(|row| found(&row));
         let families = FAMILIES.map(|family| family.budget);
         let links = [LINK_BUDGET; LINES.len()];

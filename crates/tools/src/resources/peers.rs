@@ -1,11 +1,12 @@
-//! Step generators of others, measured once on this flow: yosys 0.23, nextpnr 0.4, HX8K, three seeds, median, the core alone.
+//! Step generators of other projects, measured once with this flow: yosys 0.23, nextpnr 0.4, HX8K,
+//! median of three seeds, the core alone.
 
-/// Somebody else's core, for six axes.
+/// A core of another project, for six axes.
 pub(super) struct Peer {
     pub core: &'static str,
-    /// What the hardware does by itself between two commands.
+    /// What the hardware does without the host between two commands.
     pub ramp: &'static str,
-    /// Which timings of the driver it enforces.
+    /// The driver timings that the core ensures.
     pub pins: &'static str,
     pub queue: &'static str,
     pub logic_cells: u32,

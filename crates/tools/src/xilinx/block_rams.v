@@ -1,28 +1,31 @@
-// Block RAMs of Spartans, of which yosys has no models, as far as yosys makes use of them: one port writes, both read, on one clock;
-// no output registers, no resets, nothing inverted. Strict where silicon promises nothing: what is read is x before the first clock, and
-// where a byte is read and written at once, unless that is READ_FIRST; an enable that is x writes x.
+// Models of the block RAMs of Spartans, for which yosys has none. They cover only what yosys uses:
+// one port writes, both read, all on one clock, without output registers, resets or inversion.
+//
+// The models are strict where the data sheets guarantee nothing. A word read before the first clock
+// is x. A byte that is read and written in the same clock reads x, unless the mode is READ_FIRST.
+// An enable of x writes x.
 
 module bench_block_ram #(
     parameter BYTES = 2048,
     parameter [8*BYTES-1:0] INIT = 0,
     parameter [BYTES-1:0] INITP = 0,
-    parameter READ_A = 0, READ_B = 0, WRITE = 0, // bits of a word, parity included; 0: never
+    parameter READ_A = 0, READ_B = 0, WRITE = 0, // bits of a word with parity; 0: the port is not used
     parameter READ_FIRST = 0
 ) (
     input clock, writes,
-    input [1:0] reads, // B, A
-    input [14:0] address, address_a, address_b, // of bits, parity not counted; the first is that of what is written
-    input [7:0] mask, // a bit a byte
+    input [1:0] reads, // ports B, A
+    input [14:0] address, address_a, address_b, // in bits without parity; `address` is that of the write
+    input [7:0] mask, // a bit for each byte
     input [63:0] data,
     input [7:0] parity,
     output [63:0] value_a, value_b,
     output [7:0] parity_a, parity_b
 );
-    reg [8:0] bytes [0:BYTES-1]; // parity on top
+    reg [8:0] bytes [0:BYTES-1]; // the parity bit is the highest
     integer i, j;
     initial for (i = 0; i < BYTES; i = i + 1) bytes[i] = {INITP[i], INIT[8*i +: 8]};
 
-    // Bytes of a word, or 1 where it is less; and the first of them.
+    // Number of bytes of a word (1 for words shorter than a byte), and index of its first byte.
     localparam MANY = WRITE < 9 ? 1 : WRITE / 9;
     wire [11:0] first = address[14:3] / MANY * MANY;
     wire any = writes && WRITE != 0;
@@ -54,7 +57,7 @@ module bench_block_ram #(
     assign parity_b = reader[1].odd;
 endmodule
 
-// Spartan-6, 9 kbit. As SDP, A writes and B reads words of both ports' width.
+// Spartan-6, 9 kbit. In SDP mode, port A writes and port B reads words of the width of both ports.
 module RAMB8BWER #(
     INITS(32, 4)
     parameter DATA_WIDTH_A = 0, DATA_WIDTH_B = 0, DOA_REG = 0, DOB_REG = 0, EN_RSTRAM_A = "TRUE", EN_RSTRAM_B = "TRUE",
@@ -113,7 +116,7 @@ module RAMB16BWER #(
     always @(WEB) if (|WEB) $display("port B of %m writes");
 endmodule
 
-// Spartan-7, 18 kbit. As SDP, A reads and B writes words of both ports' width.
+// Spartan-7, 18 kbit. In SDP mode, port A reads and port B writes words of the width of both ports.
 module RAMB18E1 #(
     INITS(64, 8)
     parameter DOA_REG = 0, DOB_REG = 0, INIT_A = 0, INIT_B = 0, RAM_MODE = "TDP",

@@ -1,5 +1,6 @@
-// Cells of a Spartan's clock that yosys has no models of. A DCM and an MMCM are one model of the bench at every stage: they hand
-// their reference on, locked. A BUFGCE looks at CE while its clock is low.
+// Models of the clock cells of Spartans, for which yosys has none. A DCM and an MMCM pass their
+// reference through and are always locked, at every stage. A BUFGCE samples CE while its clock is
+// low.
 
 module DCM #(
     parameter CLKFX_MULTIPLY = 4, CLKFX_DIVIDE = 1, CLKIN_PERIOD = 0, CLK_FEEDBACK = "1X", DFS_FREQUENCY_MODE = "LOW"

@@ -1,13 +1,15 @@
-//! EDIF, as a vendor's tools get it, read back as Verilog of cells: what is in the file and nothing else.
+//! Reads EDIF, as the tools of a vendor receive it, and converts it to Verilog of cells without
+//! adding anything.
 //!
-//! EDIF counts the bits of a port from the left. Which bit of the port that is, only its name says: `step[5:0]`, which yosys
-//! writes with `-pvector bra`. A port of many bits whose name does not say it is refused here; ISE guesses.
+//! EDIF counts the bits of a port from the left. Only the port's name says which bits these are:
+//! `step[5:0]`, as yosys writes it with `-pvector bra`. A port of several bits whose name does not
+//! contain the range is refused here; ISE would guess.
 
 use crate::SynthesisError;
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
 
-/// One level of brackets, a name or number, a string.
+/// A list in parentheses, a name or number, or a string.
 #[derive(Debug)]
 enum Node<'a> {
     List(Vec<Node<'a>>),
@@ -15,7 +17,7 @@ enum Node<'a> {
     Text(&'a str),
 }
 
-/// No bracket is deeper in any file of yosys', and no port wider.
+/// Greatest depth of parentheses and greatest width of ports; no file of yosys exceeds it.
 const DEEPEST: usize = 64;
 const WIDEST: u32 = 1024;
 
@@ -23,7 +25,7 @@ fn unread(what: impl Into<String>) -> SynthesisError {
     SynthesisError::Unread { tool: "yosys' EDIF", what: what.into() }
 }
 
-/// All brackets of a file.
+/// Parses a whole file.
 fn parsed(edif: &str) -> Result<Node<'_>, SynthesisError> {
     let mut open = vec![Vec::new()];
     let mut rest = edif;
@@ -69,22 +71,22 @@ impl<'a> Node<'a> {
         if let Self::Word(word) = self { Some(word) } else { None }
     }
 
-    /// What a bracket begins with.
+    /// The first word of a list.
     fn head(&self) -> Option<&'a str> {
         self.list().first()?.word()
     }
 
-    /// The brackets in it that begin with a word.
+    /// The lists within it that begin with a word.
     fn all<'b>(&'b self, head: &'b str) -> impl Iterator<Item = &'b Self> {
         self.list().iter().filter(move |node| node.head() == Some(head))
     }
 
-    /// The first of them.
+    /// The first of these lists.
     fn one(&self, head: &str) -> Result<&Self, SynthesisError> {
         self.list().iter().find(|node| node.head() == Some(head)).ok_or_else(|| unread(head))
     }
 
-    /// `X` or `(rename X "Y")`: by what it is called in the file, and by what before it.
+    /// The name in the file and the original name: `X` or `(rename X "Y")`.
     fn name(&self) -> Result<(&'a str, &'a str), SynthesisError> {
         match self {
             Self::Word(name) => Ok((name, name)),
@@ -96,21 +98,21 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// The second thing in a bracket, `(head THIS ...)`.
+    /// The second element of a list, `(head THIS ...)`.
     fn second(&self) -> Result<&Self, SynthesisError> {
         self.list().get(1).ok_or_else(|| unread("what a bracket is about"))
     }
 }
 
-/// A port of a cell, or of the design.
+/// A port of a cell or of the design.
 struct Port {
     is_input: bool,
-    /// Number of the leftmost bit and of the rightmost, where it has many.
+    /// Numbers of the leftmost and of the rightmost bit, if the port has several bits.
     range: Option<(u32, u32)>,
 }
 
 impl Port {
-    /// `(port NAME (direction D))`, NAME being `(array NAME COUNT)` where it has many bits.
+    /// Reads `(port NAME (direction D))`; with several bits NAME is `(array NAME COUNT)`.
     fn of<'a>(node: &Node<'a>) -> Result<(&'a str, Self), SynthesisError> {
         let is_input = node.one("direction")?.second()?.word() == Some("INPUT");
         let what = node.second()?;
@@ -129,7 +131,7 @@ impl Port {
         }
     }
 
-    /// `[5:0] `, or nothing for a single bit.
+    /// The range of a vector, `[5:0] `; empty for a single bit.
     fn verilog(&self) -> String {
         self.range.map_or_else(String::new, |(left, right)| format!("[{left}:{right}] "))
     }
@@ -146,24 +148,25 @@ fn ports<'a>(cell: &Node<'a>) -> Result<Ports<'a>, SynthesisError> {
     cell.one("view")?.one("interface")?.all("port").map(Port::of).collect()
 }
 
-/// `(property NAME (integer 8))` or `(property NAME (string "64'h..."))`, as a parameter.
+/// Reads `(property NAME (integer 8))` or `(property NAME (string "64'h..."))` as a Verilog
+/// parameter.
 fn parameter(property: &Node<'_>) -> Result<String, SynthesisError> {
     let name = property.second()?.name()?.0;
     let value = property.list().get(2).map(|value| (value.head(), value.list().get(1)));
     match value {
         Some((Some("integer"), Some(Node::Word(number)))) => Ok(format!(".{name}(64'd{number})")),
-        // ISE takes a string as what the parameter wants: a Verilog number, or words.
+        // ISE interprets a string by the type of the parameter: as a Verilog number, or as text.
         Some((Some("string"), Some(Node::Text(text)))) if text.contains("'h") => Ok(format!(".{name}({text})")),
         Some((Some("string"), Some(Node::Text(text)))) => Ok(format!(".{name}(\"{text}\")")),
         _ => Err(unread(format!("the property {name}"))),
     }
 }
 
-/// Which net each bit of a port is on.
+/// The net of each bit of a port.
 struct Nets<'a> {
-    /// Instance, or "" for the design; port; bit from the left.
+    /// Key: instance (empty for the design), port, and number of the bit from the left.
     places: HashMap<(&'a str, &'a str, u32), u32>,
-    /// Nets so far.
+    /// Number of nets so far.
     count: u32,
 }
 
@@ -189,7 +192,7 @@ impl<'a> Nets<'a> {
         Ok(nets)
     }
 
-    /// The wire of a bit, once; a new one where it was left open.
+    /// The wire of a bit, which is used once; a new wire if the bit is not connected.
     fn take(&mut self, of: &'a str, port: &'a str, bit: u32) -> String {
         let net = self.places.remove(&(of, port, bit)).unwrap_or_else(|| {
             self.count += 1;
@@ -199,10 +202,11 @@ impl<'a> Nets<'a> {
     }
 }
 
-/// The design in a file, as Verilog of cells.
+/// Converts the design of a file to Verilog of cells.
 ///
 /// # Errors
-/// [`SynthesisError::Unread`]: it is no EDIF of yosys', or does not say which bit is which.
+/// [`SynthesisError::Unread`] if the text is not EDIF as yosys writes it, or if the order of a
+/// port's bits is not given.
 pub fn from_edif(edif: &str) -> Result<String, SynthesisError> {
     let root = parsed(edif)?;
     let mut cells = HashMap::new();
@@ -253,7 +257,8 @@ pub fn from_edif(edif: &str) -> Result<String, SynthesisError> {
             format!("    {way} wire {}{name}", port.verilog())
         })
         .collect();
-    // One vector of all would be handed on whole by a simulator wherever one bit changes.
+    // Each net is a wire of its own. With one vector of all nets, a simulator would propagate the
+    // whole vector whenever one bit changes.
     let wires: Vec<String> = (0..nets.count).map(|net| format!("n{net}")).collect();
     Ok(format!("module {top} (\n{}\n);\nwire {};\n{body}endmodule\n", heads.join(",\n"), wires.join(", ")))
 }
@@ -271,22 +276,22 @@ mod tests {
         (net b (joined (portRef b) (portRef O (instanceRef id1)))))))))"#;
 
     #[test]
-    fn bits_count_from_the_left() {
+    fn bits_are_counted_from_the_left() {
         let verilog = from_edif(TWO_BUFFERS).unwrap();
-        // The right bit of I is on the left bit of a; nothing is on the other one, nor on the other of a.
+        // The right bit of I is connected to the left bit of a. The other bits of I and a are open.
         assert!(verilog.contains("assign n0 = a[1];"), "{verilog}");
         assert!(verilog.contains("BUF #(.INIT(4'h8)) id1 (.I({n3, n0}), .O({n1}));"), "{verilog}");
     }
 
     #[test]
-    fn buses_must_say_which_bits_they_have() {
-        // As `write_edif` has it without -pvector bra.
+    fn bus_without_a_range_is_refused() {
+        // The format of `write_edif` without -pvector bra.
         let error = from_edif(&TWO_BUFFERS.replace("I[1:0]", "I")).unwrap_err();
         assert!(error.to_string().contains("-pvector bra"), "{error}");
     }
 
     #[test]
-    fn no_text_hangs_or_panics() {
+    fn malformed_text_neither_hangs_nor_panics() {
         for end in 0..TWO_BUFFERS.len() {
             assert!(from_edif(&TWO_BUFFERS[..end]).is_err());
         }

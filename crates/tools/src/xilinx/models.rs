@@ -1,4 +1,5 @@
-//! Models of a Spartan's cells: yosys' own, and ours of clock cells and block RAMs, of which yosys has none.
+//! Simulation models of a Spartan's cells: those of yosys, and our own of clock cells and block
+//! RAMs, for which yosys has none.
 
 use crate::SynthesisError;
 use crate::cells::{self, XILINX, pattern};
@@ -12,15 +13,16 @@ const SPARTAN_3: &str = include_str!("spartan_3_block_ram.v");
 /// Verilog with the models of all its cells, for simulators.
 ///
 /// # Errors
-/// [`SynthesisError`]: yosys' models are not found.
+/// [`SynthesisError`] if yosys' models are not found.
 pub fn simulated(verilog: &str) -> Result<String, SynthesisError> {
-    // yosys' models of block RAMs have ports and times, and do nothing.
+    // yosys' models of block RAMs have ports and timings, but no function.
     let others = pattern(r"\bRAMB\w+").replace_all(verilog, "");
     let models = cells::models(&XILINX, &others)?;
     Ok(format!("{models}{CLOCKS}{}{}{verilog}", with_inits(BLOCK_RAMS), spartan_3(verilog)))
 }
 
-/// `INITS(32, 4)` declares `INIT_00` to `INIT_1F` and `INITP_00` to `INITP_03`; `ALL_INITS(32)` is all of them as one number.
+/// Expands macros: `INITS(32, 4)` declares `INIT_00` to `INIT_1F` and `INITP_00` to `INITP_03`;
+/// `ALL_INITS(32)` is all of them as one number.
 fn with_inits(models: &str) -> String {
     let count = |found: &Captures<'_>, group: usize| found[group].parse().unwrap_or(0);
     let text = pattern(r"\bINITS\((\d+), (\d+)\)").replace_all(models, |found: &Captures<'_>| {
@@ -41,7 +43,7 @@ fn together(prefix: &str, count: u32) -> String {
     format!("{{{}}}", names.join(", "))
 }
 
-/// A Spartan-3's block RAMs, one cell for each pair of widths: those that are in a design.
+/// The models of a Spartan-3's block RAMs that a design uses: one cell for each pair of widths.
 fn spartan_3(verilog: &str) -> String {
     let cell = pattern(r"\bRAMB16_S(\d+)(?:_S(\d+))?\b");
     let used: BTreeSet<(&str, u32, Option<u32>)> = cell
@@ -61,7 +63,7 @@ fn spartan_3(verilog: &str) -> String {
                     .replace(&format!("LOG_{port}"), &log.to_string())
             },
         );
-        // The only port's names have no letter.
+        // The port names of a single-port RAM have no letter at their end.
         let single = |found: &Captures<'_>| found[1].trim_end_matches('_').to_owned();
         if b.is_some() { cell } else { with_letters.replace_all(&cell, single).into_owned() }
     });

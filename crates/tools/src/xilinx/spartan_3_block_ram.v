@@ -1,4 +1,5 @@
-// A Spartan-3's block RAM: NAME, with words of WIDTH_A and WIDTH_B bits. Parity ports that the cell has not are left open.
+// A Spartan-3's block RAM called NAME, with words of WIDTH_A and WIDTH_B bits. Parity ports that
+// the cell does not have are left open.
 module NAME #(
     INITS(64, 8)
     parameter INIT_A = 0, INIT_B = 0, SRVAL_A = 0, SRVAL_B = 0, WRITE_MODE_A = "WRITE_FIRST", WRITE_MODE_B = "WRITE_FIRST"

@@ -1,4 +1,4 @@
-//! The module that makes a board's clock: a PLL, a DCM, an MMCM, or a wire.
+//! Generates the module that makes a board's clock: a PLL, a DCM, an MMCM, or a wire.
 
 use crate::ExportError;
 use carrystep_boards::clock::{ClockManager, Dcm, Ice40Pll, Mmcm};
@@ -6,8 +6,9 @@ use carrystep_boards::{Board, Family, PllInput};
 use carrystep_core::tick::mhz;
 use minijinja::{Value, context};
 
-/// The clock is let through 2^10 clocks after the lock: 12 us at 84 MHz. An iCE40's block RAMs read zeros for some microseconds
-/// after configuration (YosysHQ/icestorm issue 76: 36 clocks are too few at 25 MHz).
+/// Width of the counter that enables the clock 2^10 clocks after the lock: after 12 us at 84 MHz.
+/// The block RAMs of an iCE40 read zeros for some microseconds after configuration
+/// (YosysHQ/icestorm issue 76: 36 clocks are too few at 25 MHz).
 const WAIT_BITS: u32 = 10;
 
 const TEMPLATE: &str = include_str!("../../templates/board/clock.v");

@@ -1,4 +1,5 @@
-//! All gateware of a machine for a board: a top level that connects clock, link and engine to the pins, and what goes with it.
+//! Generates the whole gateware of a machine for a board: a top level that connects clock, link and
+//! engine to the pins, and all files for the board's toolchain.
 
 use super::{CLOCK_NAME, Design, rendered};
 use crate::ExportError;
@@ -14,10 +15,11 @@ use minijinja::{Value, context};
 
 const TOP: &str = include_str!("../../templates/board/top.v");
 
-/// The machine that boards are built for where no other is asked for; clock, tick and limits are put before its axes.
+/// The machine for which a board is built by default. Clock, tick and limits are inserted before
+/// its axes.
 const SHIPPED: &str = include_str!("../../../../sim/engine.toml");
 
-/// The gateware of a machine for a board, checked.
+/// The gateware of a machine for a board, after all checks.
 #[derive(Debug, Clone)]
 pub struct Gateware<'a> {
     board: &'a Board,
@@ -25,15 +27,16 @@ pub struct Gateware<'a> {
     build: EngineBuild,
     line: Line,
     chosen_tick: Option<ChosenTick>,
-    /// The machine file: it goes with the gateware, for moves are planned from it.
+    /// The machine file. It is exported with the gateware, because moves are planned from it.
     machine: Source,
 }
 
 impl<'a> Gateware<'a> {
-    /// The gateware of this machine file.
+    /// Checks the gateware of this machine file for a board.
     ///
     /// # Errors
-    /// [`ExportError`]: the board lacks pins, makes no such clock or baud rate; the engine cannot be; or the file is no machine's.
+    /// [`ExportError`] if the board lacks pins or cannot make the clock or the baud rate, if the
+    /// engine's parameters are out of range, or if the file is no valid machine file.
     pub fn new(board: &'a Board, part: &'a Part, machine: Source) -> Result<Self, ExportError> {
         let read = Machine::from_source(&machine)?;
         let (build, line) = (read.engine(), read.line()?);
@@ -44,12 +47,12 @@ impl<'a> Gateware<'a> {
         }
         build.check().map_err(carrystep_hdl::HdlError::from)?;
         let gateware = Self { board, part, build, line, chosen_tick: read.chosen_tick, machine };
-        // A pin for each port, or the name of the one that has none.
+        // Checks that each port has a pin; the error names the first one that has none.
         gateware.design(&gateware.ports(), &[]).constraints()?;
         Ok(gateware)
     }
 
-    /// The gateware of the shipped machine, at the board's first clock.
+    /// The gateware of the shipped machine at the board's first clock.
     ///
     /// # Errors
     /// As [`Gateware::new`].
@@ -58,27 +61,27 @@ impl<'a> Gateware<'a> {
         Self::new(board, part, Source { path: "machine.toml".into(), text: text.into() })
     }
 
-    /// Its top module, `carrystep_BOARD_top`.
+    /// Name of the top module, `carrystep_BOARD_top`.
     pub fn top(&self) -> String {
         format!("carrystep_{}_top", self.board.name.replace('-', "_"))
     }
 
-    /// What the host asks for before it talks to it.
+    /// Build id, which the host compares before it uses the gateware.
     pub fn build_id(&self) -> BuildId {
         self.line.build_id(&self.build)
     }
 
-    /// The engine's parameters.
+    /// Build parameters of the engine.
     pub fn build(&self) -> &EngineBuild {
         &self.build
     }
 
-    /// How the tick was chosen, where the machine file gives none.
+    /// How the tick was chosen, if the machine file gives none.
     pub fn chosen_tick(&self) -> Option<ChosenTick> {
         self.chosen_tick
     }
 
-    /// The link's UART, if it is one.
+    /// The link's UART; `None` if the link is an SPI.
     pub fn uart(&self) -> Option<Uart> {
         match self.line {
             Line::Uart(uart) => Some(uart),
@@ -86,15 +89,15 @@ impl<'a> Gateware<'a> {
         }
     }
 
-    /// The part that it is for.
+    /// The part for which the gateware is built.
     pub fn part(&self) -> &Part {
         self.part
     }
 
-    /// The Verilog of all modules, the top level first, in files of these names.
+    /// The Verilog of all modules with their file names, the top level first.
     ///
     /// # Errors
-    /// [`ExportError`] where a module cannot be made.
+    /// [`ExportError`] if a module cannot be generated.
     pub fn verilog(&self) -> Result<Vec<TextFile>, ExportError> {
         let description = format!("{} for {}", self.machine.path.display(), self.board.title);
         let file = |name: &str, text| TextFile::new(format!("{name}.v"), text);
@@ -107,7 +110,7 @@ impl<'a> Gateware<'a> {
         ])
     }
 
-    /// Its memories where the family can have them.
+    /// Adapts the memories to the block RAMs of the board's family.
     fn placed(&self, verilog: String) -> String {
         if self.board.family.writes_parts_of_words() {
             return verilog;
@@ -117,10 +120,10 @@ impl<'a> Gateware<'a> {
         modules.map(|module| if module.contains(BIT_BY_BIT) { in_luts(module) } else { module.to_owned() }).collect()
     }
 
-    /// Everything in the board's folder.
+    /// All files of the board's directory.
     ///
     /// # Errors
-    /// [`ExportError`] where a module cannot be made.
+    /// [`ExportError`] if a module cannot be generated.
     pub fn files(&self) -> Result<Vec<TextFile>, ExportError> {
         let mut files = self.verilog()?;
         let sources: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
@@ -134,7 +137,7 @@ impl<'a> Gateware<'a> {
         Ok(files)
     }
 
-    /// The ports of the top level, bit by bit.
+    /// The bits of the top level's ports.
     fn ports(&self) -> Vec<String> {
         let axes = self.build.axes();
         let bits = |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
@@ -156,7 +159,7 @@ impl<'a> Gateware<'a> {
         .collect()
     }
 
-    /// The line's ports, and the pins that they are connected to.
+    /// The ports of the line module, and the ports of the board to which they are connected.
     fn line_pins(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         let pins: &[_] = match self.line {
             Line::Uart(_) => &[("rx", "uart_rx"), ("tx", "uart_tx")],
@@ -184,7 +187,8 @@ impl<'a> Gateware<'a> {
     fn top_level(&self) -> Result<String, ExportError> {
         let axes = self.build.axes();
         let (low, high) = limit_bits(&self.build);
-        // An output of the link is an input of the engine of the same name, or the other way round.
+        // An output of the link is connected to the engine's input of the same name, and vice
+        // versa.
         let (bytes, between) = link_ports(&self.build, self.line)?;
         let row = |(name, width): &(String, usize)| context! { name, range => range(*width) };
         let values = context! {
@@ -216,10 +220,11 @@ impl<'a> Gateware<'a> {
     }
 }
 
-/// The shipped machine at a clock of the board, and at its fastest baud rate.
+/// The text of the shipped machine file at a clock of the board and at the board's fastest baud
+/// rate.
 ///
 /// # Errors
-/// [`ExportError::Baud`]: the clock makes no usual baud rate.
+/// [`ExportError::Baud`] if the clock makes no usual baud rate.
 pub fn shipped_machine(board: &Board, clock: &Clocking) -> Result<String, ExportError> {
     let axes = SHIPPED.find("[[machine.axis]]").map_or("", |begin| &SHIPPED[begin..]);
     let Clocking { clock_hz, tick_ns, phases, .. } = clock;
@@ -231,7 +236,7 @@ pub fn shipped_machine(board: &Board, clock: &Clocking) -> Result<String, Export
     ))
 }
 
-/// Limit switches at the low ends and at the high ends.
+/// Number of limit inputs at the low ends, and at the high ends.
 fn limit_bits(build: &EngineBuild) -> (usize, usize) {
     match build.guard.limits {
         Limits::None => (0, 0),
@@ -241,12 +246,12 @@ fn limit_bits(build: &EngineBuild) -> (usize, usize) {
     }
 }
 
-/// The only bit of a port goes without a number.
+/// Name of a port's bit. If the port has one bit only, the name has no number.
 fn bit_of(name: &str, bit: usize, count: usize) -> String {
     if count == 1 { name.to_owned() } else { format!("{name}[{bit}]") }
 }
 
-/// `[5:0] `, or nothing for a single bit.
+/// The range of a vector, `[5:0] `; empty for a single bit.
 fn range(width: usize) -> String {
     if width == 1 { String::new() } else { format!("[{}:0] ", width - 1) }
 }

@@ -1,4 +1,5 @@
-//! `docs/boards/`: a page for each board and one for all; `docs/drivers.md`. All from `spec`'s data.
+//! Generates `docs/boards/` (a page for each board and one for all) and `docs/drivers.md` from the
+//! data of `spec`.
 
 use super::{kind, place, rendered};
 use crate::ExportError;
@@ -13,10 +14,10 @@ const PAGE: &str = include_str!("../../templates/board/page.md");
 const DRIVERS: &str = include_str!("../../templates/drivers.md");
 const INDEX: &str = include_str!("../../templates/board/index.md");
 
-/// The pages, by their paths in the workspace.
+/// The pages, with their paths in the workspace.
 ///
 /// # Errors
-/// [`ExportError::Template`] where a template asks for what there is not.
+/// [`ExportError::Template`] if a template uses a value that does not exist.
 pub(crate) fn pages() -> Result<Vec<TextFile>, ExportError> {
     let all: Vec<Value> = boards().iter().map(values).collect();
     let mut pages = vec![
@@ -38,7 +39,7 @@ fn all_drivers() -> Vec<Value> {
     drivers().iter().map(row).collect()
 }
 
-/// What the pages say of a board.
+/// The values of a board's page.
 fn values(board: &Board) -> Value {
     context! {
         name => &board.name,
@@ -81,7 +82,7 @@ fn shared(shared: &Shared) -> Value {
     context! { port, pin, function, modes => listed(modes), why }
 }
 
-/// Modes of configuration, one after the other.
+/// The modes of configuration as a list in words.
 fn listed(modes: &[Mode]) -> String {
     modes.iter().map(Mode::to_string).collect::<Vec<_>>().join("; ")
 }
@@ -100,7 +101,7 @@ fn clocking(clock: &Clocking) -> Value {
         mhz => mhz(*clock_hz),
         tick_ns => *tick_ns,
         phases => *phases,
-        // Whole, as the board's check has made sure.
+        // The product is a whole number of clocks; the board's check ensures it.
         clocks => clock_hz * tick_ns / 1_000_000_000,
         phase_ns => thousandths(tick_ns * 1000 / u64::from(*phases)),
         khz => 500_000 / tick_ns,
@@ -114,7 +115,7 @@ fn wire(wire: &Wire) -> Value {
     context! { port => &wire.port, pin => &wire.pin, connector, label, what => kind(wire).map_or("", |port| port.what) }
 }
 
-/// A number of thousandths, without zeros at its end.
+/// A number given in thousandths, without trailing zeros.
 fn thousandths(number: u64) -> String {
     let text = format!("{}.{:03}", number / 1000, number % 1000);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

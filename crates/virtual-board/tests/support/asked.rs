@@ -1,11 +1,11 @@
-//! What the command makes of a machine file that homes.
+//! Converts a machine file that homes to the parameters of homing, as the command does.
 
 use carrystep_core::engine::Limits;
 use carrystep_files::Machine;
 use carrystep_files::machine::End;
 use carrystep_link::{AxisHoming, Homing, Wiring};
 
-/// What the command makes of a machine file.
+/// The parameters of homing, with their groups.
 pub struct Owned {
     homing: Homing<'static>,
     groups: Vec<u8>,
@@ -17,7 +17,7 @@ impl Owned {
     }
 }
 
-/// How a machine homes.
+/// The parameters of homing of a machine.
 pub fn homing_of(machine: &Machine) -> Owned {
     let mut axes = [None; 8];
     for (place, axis) in axes.iter_mut().zip(&machine.axes) {

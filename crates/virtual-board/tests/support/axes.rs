@@ -1,4 +1,5 @@
-//! Axes with limit switches behind a clean line: each switch is a place on its axis, and time is the board's.
+//! Axes with limit switches on a clean line. Each switch has a place on its axis; time is the
+//! board's.
 
 use super::random::Random;
 use carrystep_core::EngineBuild;
@@ -17,7 +18,7 @@ pub fn read(text: &str) -> Result<Machine, InputError> {
     Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() })
 }
 
-/// Reads a machine file that is right.
+/// Reads a valid machine file.
 pub fn machine(text: &str) -> Machine {
     read(text).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -25,7 +26,7 @@ pub fn machine(text: &str) -> Machine {
 /// A kind of board.
 pub trait Make: Gateware + Sized {
     fn make(build: &EngineBuild, uart: Uart) -> Self;
-    /// Ticks between two looks of the switches at the axes.
+    /// Ticks between two updates of the switches.
     fn slice(round: u32) -> u32;
 }
 
@@ -49,23 +50,24 @@ impl Make for VerilatedBoard {
     }
 }
 
-/// Where an axis stands at first.
+/// Start of an axis relative to its switch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Start {
     /// Off its switch.
     Open,
-    /// On it, as deep as it can be moved off.
+    /// On its switch, at a depth from which moving off still opens the switch.
     Closed,
-    /// At the very edge: the switch bounces until the axis has left it.
+    /// At the edge of the switch, which bounces until the axis has left it.
     Bouncing,
 }
 
-/// The switches of one axis; positions in steps, `sign` is the way to the switch that is searched for.
+/// The switches of one axis. Positions are in steps; `sign` is the direction toward the switch that
+/// is searched.
 #[derive(Debug, Clone, Copy)]
 struct Switched {
     sign: i32,
     edge: i32,
-    /// The switch of the other end.
+    /// Position of the switch at the other end.
     far: i32,
     there: bool,
     stuck: bool,
@@ -85,13 +87,14 @@ pub struct World<B> {
     axes: Vec<Switched>,
     limits: Limits,
     estop: bool,
-    /// Cycles between two looks of the switches.
+    /// Cycles between two updates of the switches.
     slice: u64,
     ms: u64,
     random: Random,
-    /// Cycles until a switch that bounces changes, and its level.
+    /// Cycles until a bouncing switch changes, and its level.
     bounce: (u64, bool),
-    /// Seen by a look at least, and by fewer looks than it takes to be accepted.
+    /// Shortest bounce, cycles: at least one sample sees it, but fewer than are needed to accept
+    /// it.
     shortest_bounce: u64,
     bounce_range: u64,
 }
@@ -133,7 +136,7 @@ impl<B: Make> World<B> {
         let end = self.board.cycle() + self.ms;
         while self.board.cycle() < end {
             self.press();
-            // Speeds are under 10 steps a millisecond.
+            // Speeds are below 10 steps per millisecond.
             let near = |(number, axis): (usize, &Switched)| {
                 let position = self.board.position(number);
                 axis.bounces || axis.edge.abs_diff(position) < 20 || axis.far.abs_diff(position) < 20
@@ -162,7 +165,7 @@ fn uart(machine: &Machine) -> Uart {
 }
 
 impl<B: Make> Bench<B> {
-    /// All axes stand at zero; `starts` says where their switches are.
+    /// All axes stand at position zero; `starts` determines the places of their switches.
     pub fn new(machine: &Machine, starts: &[Start], seed: u64) -> Self {
         let mut random = Random(seed ^ 0x5eed);
         let guard = &machine.guard;
@@ -172,7 +175,7 @@ impl<B: Make> Bench<B> {
             let home = axis.home.unwrap();
             let sign = if home.toward == End::Max { 1 } else { -1 };
             let length = axis.travel.map_or(600, |[low, high]| (high - low) as i32);
-            // At least two steps of the way off are with an open switch.
+            // At least two steps of moving off are made with an open switch.
             let depth = match start {
                 Start::Open => -1 - random.below(length as u64 / 2) as i32,
                 Start::Closed => random.below(u64::from(home.move_off) - 2) as i32,
@@ -180,7 +183,7 @@ impl<B: Make> Bench<B> {
             };
             let edge = -depth * sign;
             let far = edge - sign * (length + home.move_off as i32);
-            // Shorter than what is accepted, whenever the looks come.
+            // A bounce is shorter than the debounce, at whatever time the samples fall.
             let bounces = *start != Start::Open && guard.debounce > 4;
             let stood = depth.max(0);
             axes.push(Switched { sign, edge, far, there: true, stuck: false, bounces, stood, deepest: depth });
@@ -203,7 +206,7 @@ impl<B: Make> Bench<B> {
         Self(Rc::new(RefCell::new(world)))
     }
 
-    /// A host of the board.
+    /// Connects a host to the board.
     pub fn connect(&self, machine: &Machine) -> Host<Self, Self> {
         let patience =
             Patience { timing: Timing { resend: 12, pause: 2 }, silence: 500, lost: 500, change: 500, look: 5 };
@@ -215,12 +218,12 @@ impl<B: Make> Bench<B> {
         Ref::map(self.0.borrow(), |world| &world.board)
     }
 
-    /// Where the switch of an axis closes.
+    /// Position at which the switch of an axis closes.
     pub fn edge(&self, axis: usize) -> i32 {
         self.0.borrow().axes[axis].edge
     }
 
-    /// How deep in its switch an axis was at the most, and how deep it stood at first.
+    /// Greatest depth of an axis within its switch, and its depth at the start, steps.
     pub fn deepest(&self, axis: usize) -> i32 {
         self.0.borrow().axes[axis].deepest
     }
@@ -234,17 +237,17 @@ impl<B: Make> Bench<B> {
         (world.slice / (world.ms * 4 / 1000)) as u32
     }
 
-    /// The axis has no switch.
+    /// Removes the switch of an axis.
     pub fn remove(&self, axis: usize) {
         self.0.borrow_mut().axes[axis].there = false;
     }
 
-    /// Its switch is always closed.
+    /// Keeps the switch of an axis closed.
     pub fn stick(&self, axis: usize) {
         self.0.borrow_mut().axes[axis].stuck = true;
     }
 
-    /// The switch of its other end is here.
+    /// Sets the position of the switch at the other end of an axis.
     pub fn far(&self, axis: usize, position: i32) {
         self.0.borrow_mut().axes[axis].far = position;
     }
@@ -261,7 +264,7 @@ impl<B: Make> Clock for Bench<B> {
     }
 }
 
-/// Nothing goes wrong with the line.
+/// The error of a line that never fails.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Never {}
 

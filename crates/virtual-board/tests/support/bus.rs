@@ -1,4 +1,5 @@
-//! A board on an SPI bus, as embedded-hal has it; time is the board's, and a transfer takes a microsecond more than its bits.
+//! A board on an SPI bus with the embedded-hal interface. Time is the board's; a transfer takes one
+//! microsecond more than its bits.
 
 use super::wire::{Faults, Wire};
 use super::{CLOCK_HZ, Kind, MS, Seen, build};
@@ -11,28 +12,28 @@ use std::cell::RefCell;
 use std::convert::Infallible;
 use std::rc::Rc;
 
-/// Six segments on their way at the most (docs/protocol.md).
+/// A host with at most six unacknowledged segments (docs/protocol.md).
 pub type BusHost<B> = Host<SpiLine<Bus<B>>, Bus<B>, 6>;
 
-/// The board, and what is looked at.
+/// The board, and the values that the tests check.
 pub struct Wired<B> {
     pub board: B,
     edges: Seen,
     sck_hz: u64,
     there: Wire,
     back: Wire,
-    /// As of [`super::World`].
+    /// As in [`super::World`].
     pub least_waiting: usize,
     pub handed_over: bool,
 }
 
 impl<B> Wired<B> {
-    /// Edges from this cycle on, their clocks counted from there.
+    /// The edges from this cycle on, with clocks counted from there.
     pub fn edges_since(&self, cycle: u64) -> Vec<Edge> {
         self.edges.since(cycle)
     }
 
-    /// Bytes that the bus has harmed.
+    /// Number of bytes that the bus has damaged.
     pub fn harmed(&self) -> u64 {
         self.there.harmed + self.back.harmed
     }
@@ -52,7 +53,8 @@ impl<B: Kind> Bus<B> {
         Self::bad(sck_hz, 0, 0)
     }
 
-    /// One that flips a bit in so many of a million bytes; bytes cannot be lost on it, nor come twice.
+    /// A bus that flips one bit in `flip` of a million bytes. An SPI can neither lose nor repeat
+    /// bytes.
     pub fn bad(sck_hz: u64, flip: u32, seed: u64) -> Self {
         let faults = Faults { flip, ..Faults::default() };
         Self(Rc::new(RefCell::new(Wired {
@@ -66,10 +68,10 @@ impl<B: Kind> Bus<B> {
         })))
     }
 
-    /// A host, which refuses any board but this.
+    /// Connects a host that refuses any other build.
     pub fn connect(&self) -> BusHost<B> {
         let id = Line::Spi.build_id(&build());
-        // No bridge holds an answer back.
+        // No USB bridge delays an answer here.
         let patience = Patience { timing: Timing { resend: 5, pause: 1 }, ..Patience::default() };
         Host::connect(SpiLine::new(self.clone()), self.clone(), Some(id.0), patience).unwrap()
     }
@@ -95,7 +97,7 @@ impl<B: Kind> SpiDevice for Bus<B> {
             };
             there.send(0, bytes);
             there.receive(0).into_iter().for_each(|byte| board.say(byte));
-            // Its bits, and half a period before and behind them.
+            // The bits of the bytes, and half a period before and behind them.
             let halves = 16 * bytes.len() as u64 + 2;
             board.reach(board.cycle() + (halves * CLOCK_HZ).div_ceil(2 * *sck_hz), edges);
             assert_eq!(board.unsaid(), 0, "the bus is slower than its clock");

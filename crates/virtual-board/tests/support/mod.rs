@@ -1,4 +1,4 @@
-//! A host and a board with a line between them that may be bad; time is the board's.
+//! A host and a board with a line between them that may be bad. Time is the board's.
 #![allow(dead_code, reason = "each test uses a part")]
 
 pub mod bus;
@@ -22,27 +22,29 @@ use wire::{Faults, Wire};
 
 pub const CLOCK_HZ: u64 = 48_000_000;
 pub const TICK_NS: u64 = 2000;
-/// Cycles of a millisecond, and of a tick.
+/// Cycles per millisecond.
 pub const MS: u64 = CLOCK_HZ / 1000;
+/// Cycles per tick.
 pub const TICK: u64 = CLOCK_HZ * TICK_NS / 1_000_000_000;
-/// Of every axis but one: it takes 8192 ticks, 16 ms, from the greatest speed of [`waves`] to rest.
+/// Stop acceleration of every axis but axis 1: a stop from [`FASTEST`] takes 8192 ticks, 16 ms.
 pub const STOP: u64 = 1 << 45;
-/// The greatest speed of [`waves`].
+/// Greatest speed of [`waves`], 2^-64 step per tick.
 pub const FASTEST: i64 = 1 << 58;
 
 pub type BoardHost<B> = Host<End<B>, End<B>>;
 
-/// A kind of board that is to do the same as every other.
+/// A kind of board; all kinds must behave the same.
 pub trait Kind: Gateware + Sized {
     fn new(uart: Uart) -> Self;
 
-    /// On an SPI of this rate, Hz.
+    /// A board with an SPI of this rate, Hz.
     fn on_spi(sck_hz: u64) -> Self;
 
-    /// Segments that wait for the axis in the middle of a move that has fewest, where that can be told.
+    /// Fewest queued segments of all axes that are in the middle of a move, if the board can report
+    /// it.
     fn least_waiting(&self) -> Option<usize>;
 
-    /// To this cycle.
+    /// Runs up to this cycle.
     fn reach(&mut self, end: u64, to: &mut impl Edges) {
         while self.cycle() < end {
             self.run(end, to).unwrap();
@@ -79,7 +81,8 @@ impl Kind for VerilatedBoard {
     }
 }
 
-/// Six axes with a watchdog of about 100 ms and limits; axis 1 stops as fast as that of docs/protocol.md.
+/// A build of six axes with a watchdog of about 100 ms and limits. Axis 1 stops as fast as in
+/// docs/protocol.md.
 pub fn build() -> EngineBuild {
     let timebase = Timebase::new(CLOCK_HZ, TICK_NS, 16).unwrap();
     let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
@@ -91,12 +94,12 @@ pub fn build() -> EngineBuild {
     build
 }
 
-/// How much a longer run asks for in its environment; else so much.
+/// The value of an environment variable that requests a longer run, or the usual value.
 pub fn asked(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |text| text.parse().expect(name))
 }
 
-/// Edges, and the sum of them all.
+/// Collects edges and a checksum of them.
 #[derive(Default)]
 pub struct Seen {
     edges: Vec<Edge>,
@@ -104,7 +107,7 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Edges from this cycle on, their clocks counted from there.
+    /// The edges from this cycle on, with clocks counted from there.
     pub fn since(&self, cycle: u64) -> Vec<Edge> {
         let since = self.edges.iter().filter(|edge| edge.clock >= cycle);
         since.map(|edge| Edge { clock: edge.clock - cycle, ..*edge }).collect()
@@ -126,17 +129,18 @@ pub struct World<B> {
     there: Wire,
     back: Wire,
     inbox: VecDeque<u8>,
-    /// Bytes that the line carries in a millisecond.
+    /// Number of bytes per millisecond that the line carries.
     bytes: usize,
-    /// The host dies in this cycle: from then on nothing goes out.
+    /// The cycle in which the host dies; nothing is sent from then on.
     pub dies: u64,
-    /// End of the last millisecond in which the board has heard a byte; a line may say some after its host's death.
+    /// End of the last millisecond in which the board received a byte. A line may deliver bytes
+    /// after its host's death.
     pub heard: u64,
-    /// The fewest segments that have waited for an axis in the middle of its move, looked at each millisecond until all of
-    /// it is handed over.
+    /// Fewest queued segments of an axis in the middle of its move, sampled each millisecond until
+    /// the whole program was sent.
     pub least_waiting: usize,
     pub handed_over: bool,
-    /// Answers and what else has come, in bytes.
+    /// Number of bytes received from the board.
     pub came: u64,
     /// Called each millisecond.
     pub meanwhile: Box<dyn FnMut(&mut B)>,
@@ -147,7 +151,7 @@ impl<B: Kind> World<B> {
         (self.board.cycle() / MS) as u32
     }
 
-    /// A millisecond.
+    /// Advances by one millisecond.
     fn pass(&mut self) {
         for byte in self.there.receive(self.milliseconds()) {
             self.board.say(byte);
@@ -172,14 +176,15 @@ impl<B: Kind> World<B> {
         self.inbox.extend(self.back.receive(self.milliseconds()));
     }
 
-    /// Everything that a line has kept goes nowhere; a host that comes later has a line of its own.
+    /// Discards everything that is still on the line, and replaces it by a new line for the next
+    /// host.
     pub fn revive(&mut self, faults: Faults, seed: u64) {
         (self.there, self.back) = (Wire::new(faults, seed), Wire::new(faults, !seed));
         self.inbox.clear();
         self.dies = u64::MAX;
     }
 
-    /// Edges from this cycle on, their clocks counted from there.
+    /// The edges from this cycle on, with clocks counted from there.
     pub fn edges_since(&self, cycle: u64) -> Vec<Edge> {
         self.edges.since(cycle)
     }
@@ -189,12 +194,12 @@ impl<B: Kind> World<B> {
         self.edges.edges.last().copied()
     }
 
-    /// Pulses forward less pulses back of each axis: what the pins have done.
+    /// Pulses forward minus pulses backward of an axis, as counted at the pins.
     pub fn travelled(&self, axis: u8) -> i32 {
         self.edges.travelled[usize::from(axis)]
     }
 
-    /// Bytes and pieces that the line has harmed.
+    /// Number of bytes and pieces that the line has damaged.
     pub fn harmed(&self) -> u64 {
         self.there.harmed + self.back.harmed
     }
@@ -227,17 +232,17 @@ impl<B: Kind> End<B> {
         })))
     }
 
-    /// A host, which refuses any board but this.
+    /// Connects a host that refuses any other build.
     pub fn connect(&self, uart: Uart) -> BoardHost<B> {
         self.connect_to(uart.build_id(&build()), Patience::default()).unwrap()
     }
 
-    /// A host, which refuses any board but this one.
+    /// Connects a host that refuses any other build than `id`.
     pub fn connect_to(&self, id: BuildId, patience: Patience) -> Result<BoardHost<B>, HostError<Died>> {
         Host::connect(self.clone(), self.clone(), Some(id.0), patience)
     }
 
-    /// Time passes without a host.
+    /// Advances without a host.
     pub fn wait(&self, milliseconds: u64) {
         (0..milliseconds).for_each(|_| self.0.borrow_mut().pass());
     }
@@ -249,14 +254,14 @@ impl<B: Kind> Clock for End<B> {
     }
 }
 
-/// The host is no more.
+/// The error of a host that has died.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Died;
 
 impl<B: Kind> Line for End<B> {
     type Error = Died;
 
-    /// A millisecond, as long as a frame of USB.
+    /// An exchange lasts one millisecond, like a frame of USB.
     fn exchange(&mut self, out: &[u8], into: &mut [u8]) -> Result<Exchanged, Died> {
         let world = &mut *self.0.borrow_mut();
         if world.board.cycle() >= world.dies {
@@ -274,8 +279,9 @@ impl<B: Kind> Line for End<B> {
     }
 }
 
-/// A move of six axes, so many segments each, each of so many ticks: speeds that swing about, never over [`FASTEST`], each
-/// segment beginning where the one before ends; from rest to about rest.
+/// A move of six axes with `segments` segments of `ticks` ticks each. Speeds swing, but stay within
+/// [`FASTEST`]. Each segment starts with the final speed of the one before; the move starts at rest
+/// and ends nearly at rest.
 pub fn waves(random: &mut Random, segments: u32, ticks: u32) -> Vec<Command> {
     let mut due = Vec::new();
     for axis in 0..AXES as u8 {
@@ -295,7 +301,7 @@ pub fn waves(random: &mut Random, segments: u32, ticks: u32) -> Vec<Command> {
     first.iter().map(of).chain([start]).chain(rest.iter().map(of)).collect()
 }
 
-/// A frame without its escapes.
+/// Removes the escapes of a frame.
 pub fn unescaped(line: &[u8]) -> Vec<u8> {
     let mut bytes = line.iter();
     let mut frame = Vec::new();

@@ -1,4 +1,5 @@
-//! A host of a client that is told words (crates/link/tests/support/client.rs), in Rust or in C, on any line.
+//! A host made from a test client (crates/link/tests/support/client.rs), in Rust or in C, on any
+//! line.
 
 use super::link::client::Client;
 use super::link::{hex, unhex};
@@ -8,15 +9,15 @@ use carrystep_link::registers::{
 use carrystep_link::{Clock, Command, Line, frame};
 use std::fmt::Debug;
 
-/// Milliseconds in which anything that is waited for has come.
+/// Time limit for anything that is waited for, ms.
 const PATIENCE: u32 = 20_000;
 
-/// An answer, as the client tells it.
+/// An answer, as the client prints it.
 #[derive(Debug, Clone, Default)]
 pub struct Heard {
     pub address: u8,
     pub next: u8,
-    /// The letters of what is set.
+    /// A letter for each flag that is set.
     pub flags: String,
     pub cause: u8,
     pub data: u32,
@@ -37,30 +38,30 @@ impl Heard {
     }
 }
 
-/// The client, and what is on its way.
+/// The client, and the state of its requests.
 pub struct WordHost<'a, L, C> {
     client: &'a mut dyn Client,
     line: L,
     clock: C,
     out: Vec<u8>,
     came: Vec<u8>,
-    /// A program is on its way.
+    /// Whether a program is being sent.
     feeds: bool,
     /// The last answer.
     pub last: Heard,
 }
 
-/// Why there is no host.
+/// Why a connection was refused.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Refused {
-    /// The client's word for it.
+    /// The client's verdict.
     pub verdict: String,
-    /// What the board is.
+    /// Build id of the board.
     pub build: u64,
 }
 
 impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
-    /// Asks who is there, and refuses any but this build.
+    /// Reads the facts of the board, and refuses any build but `wanted`.
     pub fn connect(client: &'a mut dyn Client, line: L, clock: C, resend: u32, wanted: u64) -> Result<Self, Refused> {
         client.say(&format!("begin {resend} 2"));
         let mut host =
@@ -76,7 +77,8 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
         Ok(host)
     }
 
-    /// Whatever there is to say and to hear; whether all of a program is handed over.
+    /// Exchanges all bytes that can be sent and received. Returns whether the whole program was
+    /// sent.
     fn pump(&mut self) -> bool {
         let now = self.clock.milliseconds();
         let came = hex(&self.came);
@@ -109,7 +111,7 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
         fed
     }
 
-    /// Whether an answer is still to come.
+    /// Whether an answer is outstanding.
     fn waits(&mut self) -> bool {
         self.client.say("busy") != "no no"
     }
@@ -133,7 +135,7 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
         self.last.data
     }
 
-    /// Writes a register and waits until that is done.
+    /// Writes a register, and waits until the write was executed.
     pub fn write(&mut self, address: u8, word: u32) {
         self.until("room", |host| host.client.say(&format!("write {address:02x} {word:x}")) == "yes");
         self.until("the write", |host| {
@@ -155,7 +157,8 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
         self.wait("power", |last| last.is('r'));
     }
 
-    /// Makes the moves; stops where `watch` says so. The cause where the machine has stopped.
+    /// Executes moves; stops when `watch` returns true. Returns the cause if the machine has
+    /// stopped.
     pub fn stream(&mut self, commands: &[Command], mut watch: impl FnMut() -> bool) -> Option<u8> {
         for command in commands {
             self.client.say(&match command {
@@ -185,7 +188,7 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
         None
     }
 
-    /// Takes the program back, and waits until the axes rest; with this in CONTROL.
+    /// Withdraws the program, writes `stop` to CONTROL, and waits until the axes rest.
     fn rest(&mut self, stop: u32) {
         self.feeds = false;
         self.client.say("withdraw");
@@ -193,14 +196,14 @@ impl<'a, L: Line<Error: Debug>, C: Clock> WordHost<'a, L, C> {
         self.wait("rest", |last| last.is('h'));
     }
 
-    /// Resumes after a stop.
+    /// Ends a stop.
     pub fn clear(&mut self) {
         self.write(CONTROL, CONTROL_ENABLE);
         self.write(CLEAR, 0);
         self.wait("the clear", |last| !last.is('f'));
     }
 
-    /// Where an axis is.
+    /// Position of an axis, steps.
     pub fn position(&mut self, axis: u8) -> i32 {
         self.register(frame::of_axis(POSITION, axis)).cast_signed()
     }

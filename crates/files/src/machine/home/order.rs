@@ -1,13 +1,14 @@
-//! `home_order`: which axes home one after the other, and which together.
+//! `home_order`: the groups of axes that home one after the other; the axes of a group home
+//! together.
 
 use crate::error::{InputError, Source};
 use crate::machine::Axis;
 use toml::Spanned;
 
-/// Names of axes, in the order in which they home.
+/// Names of axes in groups, in homing order.
 pub(in crate::machine) type RawOrder = Spanned<Vec<Vec<Spanned<String>>>>;
 
-/// The order of a file: every axis that homes, once.
+/// The order of a file. It must name every axis that homes exactly once.
 pub(super) fn of(source: &Source, axes: &[Axis], order: RawOrder) -> Result<Vec<Vec<usize>>, InputError> {
     let span = order.span();
     let mut seen = vec![false; axes.len()];
@@ -40,7 +41,8 @@ pub(super) fn of(source: &Source, axes: &[Axis], order: RawOrder) -> Result<Vec<
     Ok(groups)
 }
 
-/// As grbl has it: z first, for the tool must be up before the table moves; then all others together.
+/// The default order, as in grbl: z first, because the tool must be raised before the table moves;
+/// then all other axes together.
 pub(super) fn usual(axes: &[Axis]) -> Vec<Vec<usize>> {
     let homes = (0..axes.len()).filter(|&axis| axes[axis].home.is_some());
     let (first, rest): (Vec<usize>, Vec<usize>) = homes.partition(|&axis| axes[axis].name.eq_ignore_ascii_case("z"));

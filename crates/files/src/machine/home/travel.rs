@@ -1,4 +1,4 @@
-//! `travel`: the machine coordinates that an axis can reach.
+//! `travel`: the range of machine coordinates that an axis can reach.
 
 use super::MOST_STEPS;
 use crate::decimal;
@@ -7,7 +7,7 @@ use crate::machine::Axis;
 use crate::number::exact;
 use toml::Spanned;
 
-/// The lowest and the highest machine coordinate of an axis, steps.
+/// Lowest and highest machine coordinate of an axis, steps.
 pub(super) fn of(source: &Source, axis: &Axis, travel: &Spanned<Vec<Spanned<f64>>>) -> Result<[i64; 2], InputError> {
     let span = travel.span();
     let [low, high] = travel.as_ref().as_slice() else {

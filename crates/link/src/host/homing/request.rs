@@ -1,30 +1,33 @@
-//! What homing is asked for, and how it may end.
+//! The parameters of homing, and its possible results.
 
 use crate::registers::MOST_AXES;
 use crate::travel::{Gait, TooLong, Travel};
 use core::fmt;
 use thiserror::Error;
 
-/// Axes of the largest build.
+/// Number of axes of the largest build.
 pub(super) const AXES: usize = MOST_AXES as usize;
 
-/// How the limit switches are wired.
+/// Wiring of the limit switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wiring {
-    /// An input for each end of each axis. A limit counts while it is closed and the axis moves toward it.
+    /// One input for each end of each axis. A limit is reached while its input is closed and the
+    /// axis moves toward it.
     Pair,
-    /// An input for each axis, for both ends. A limit counts as it closes: one that is closed already is not seen.
+    /// One input for each axis, shared by both ends. A limit is reached when the input closes; a
+    /// switch that is closed already is not detected.
     Each,
-    /// One input for all axes. As `Each`; a switch of any axis that is closed hides all others.
+    /// One input for all axes, otherwise as `Each`. A closed switch of any axis hides all others.
     One,
 }
 
-/// How one axis homes; distances are in steps, 1 or more.
+/// Homing parameters of one axis. Distances are in steps, 1 or more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AxisHoming {
-    /// The switch is at the high end: the way to it is positive.
+    /// Whether the switch is at the high end, so that the axis moves toward it in the positive
+    /// direction.
     pub toward_max: bool,
-    /// The speed from which the axis starts, 2^-64 step per tick.
+    /// Speed at which the axis starts, 2^-64 step per tick.
     pub start: u64,
     /// Acceleration, 2^-64 step per tick^2.
     pub accel: u64,
@@ -32,43 +35,45 @@ pub struct AxisHoming {
     pub seek: u64,
     /// Speed of the approach, 2^-64 step per tick.
     pub slow: u64,
-    /// How far it moves away before each search.
+    /// Distance by which the axis moves away before each search, steps.
     pub move_off: u32,
-    /// How far it searches at the most.
+    /// Greatest distance of the search, steps.
     pub max_travel: u32,
-    /// How far from the switch it rests at the end.
+    /// Distance from the switch at which the axis rests at the end, steps.
     pub pull_off: u32,
 }
 
-/// How a machine homes.
+/// Homing parameters of a machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Homing<'a> {
-    /// How its switches are wired.
+    /// Wiring of the switches.
     pub wiring: Wiring,
-    /// The axes that home.
+    /// The axes that home, by number.
     pub axes: [Option<AxisHoming>; AXES],
-    /// Groups of axes, a bit each: one group after the other, the axes of a group together where the wiring allows it.
+    /// Groups of axes, as masks. The groups home one after the other; the axes of a group home
+    /// together if the wiring allows it.
     pub groups: &'a [u8],
-    /// In the wiring `One`: axes of no group that move off first as well, for their switches would hide the others.
+    /// For the wiring `One`: mask of axes outside of the groups that also move off first, because
+    /// their switches would hide the others.
     pub others: u8,
-    /// Ticks from one look at a limit to the next.
+    /// Time between two samples of a limit, ticks.
     pub round: u32,
-    /// Looks until a level is accepted.
+    /// Number of equal samples after which a level is accepted.
     pub debounce: u32,
 }
 
-/// What an axis does in homing.
+/// The stage of homing that an axis is in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// It moves away from its switch, before anything else.
+    /// It moves away from its switch first.
     MoveOff,
-    /// It searches, fast.
+    /// It searches the switch at the seek speed.
     Seek,
-    /// It moves away again.
+    /// It moves away from the switch again.
     BackOff,
-    /// It approaches slowly.
+    /// It approaches the switch slowly.
     Approach,
-    /// It moves to where it rests.
+    /// It moves to the place where it rests.
     PullOff,
 }
 
@@ -84,10 +89,10 @@ impl fmt::Display for Stage {
     }
 }
 
-/// Why an axis did not find its place.
+/// Why homing failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum HomingFault {
-    /// The search came to its end.
+    /// The axis met no limit within its greatest distance of search.
     #[error("no limit was met within max_travel")]
     NotFound,
     /// A limit closed while the axis moved away from its switch.
@@ -96,10 +101,10 @@ pub enum HomingFault {
     /// The switch did not open when the axis moved away from it by `move_off`.
     #[error("the limit is still closed after moving off")]
     StillClosed,
-    /// The slow approach did not find the limit that the search had found.
+    /// The slow approach did not meet the limit that the search had met.
     #[error("the slow approach did not find the limit again")]
     NotAgain,
-    /// A move takes too long.
+    /// A move needs too many ticks.
     #[error(transparent)]
     TooLong(TooLong),
 }
@@ -107,29 +112,29 @@ pub enum HomingFault {
 /// How homing ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Homed {
-    /// The positions, in steps of the register, at which the limits were accepted in the slow approach.
+    /// The positions at which the slow approach met the limits, in steps of the position register.
     At([i32; AXES]),
-    /// It was stopped, as wished.
+    /// The caller stopped homing.
     Stopped,
 }
 
-/// The axes of a mask.
+/// The numbers of the axes of a mask.
 pub(super) fn each(mask: u8) -> impl Iterator<Item = u8> {
     (0..MOST_AXES).filter(move |axis| mask >> axis & 1 == 1)
 }
 
 impl Homing<'_> {
-    /// The axes of all groups.
+    /// The mask of the axes of all groups.
     pub fn mask(&self) -> u8 {
         self.groups.iter().fold(0, |mask, group| mask | group) & self.known()
     }
 
-    /// The axes of which it is said how they home.
+    /// The mask of the axes that have homing parameters.
     pub(super) fn known(&self) -> u8 {
         (0..MOST_AXES).filter(|&axis| self.axis(axis).is_some()).fold(0, |mask, axis| mask | 1 << axis)
     }
 
-    /// Ticks after which a level is accepted that had come before them.
+    /// Number of ticks after which a level is certainly accepted.
     pub(super) fn settle(&self) -> u32 {
         self.debounce.saturating_add(2).saturating_mul(self.round)
     }
@@ -138,10 +143,11 @@ impl Homing<'_> {
         self.axes.get(usize::from(axis))?.as_ref()
     }
 
-    /// Whether all moves can be made: what [`Host::home`] would only find on its way.
+    /// Checks in advance that all moves can be made; otherwise [`Host::home`] would fail on the
+    /// way.
     ///
     /// # Errors
-    /// [`HomingFault::TooLong`], and the axis.
+    /// The number of the axis, and [`HomingFault::TooLong`].
     pub fn check(&self) -> Result<(), (u8, HomingFault)> {
         for (axis, homing) in each(self.known()).filter_map(|axis| Some((axis, self.axis(axis)?))) {
             for (steps, speed) in [
@@ -157,7 +163,8 @@ impl Homing<'_> {
 }
 
 impl AxisHoming {
-    /// Toward the switch or away from it, with so many ticks of rest before and behind.
+    /// The move of `steps` steps toward the switch or away from it, with `rest` ticks of rest
+    /// before and behind it.
     pub(super) fn travel(&self, steps: u32, toward: bool, speed: u64, rest: u32) -> Result<Travel, TooLong> {
         let steps = i32::try_from(steps).unwrap_or(i32::MAX);
         let steps = if toward == self.toward_max { steps } else { -steps };

@@ -1,4 +1,4 @@
-/* What the example uses of the RP2040's SDK, to compile it and run it on a PC. */
+/* The parts of the RP2040's SDK that the example uses, so that it compiles and runs on a PC. */
 #ifndef STUB_GPIO_H
 #define STUB_GPIO_H
 #include <stdbool.h>

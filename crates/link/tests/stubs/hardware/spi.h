@@ -1,4 +1,4 @@
-/* The bus is a pipe: a line of hex out, a line of hex in. */
+/* The bus is a pipe: a line of hexadecimal bytes out, a line of hexadecimal bytes in. */
 #ifndef STUB_SPI_H
 #define STUB_SPI_H
 #include <stddef.h>

@@ -1,4 +1,4 @@
-/* A 64th of a millisecond passes with each look at the clock. */
+/* Each read of the clock advances it by a 64th of a millisecond. */
 #ifndef STUB_STDLIB_H
 #define STUB_STDLIB_H
 #include <stdint.h>
