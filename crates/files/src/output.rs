@@ -68,6 +68,13 @@ impl Claim {
         if path.as_os_str().to_string_lossy().ends_with('/') {
             return Err(ErrorKind::IsADirectory.into());
         }
+        // A small system, or a damaged one, may lack this link. A file made in its place would take
+        // what was meant for the pipe.
+        #[cfg(unix)]
+        if path == Path::new("/dev/stdout") && !path.exists() {
+            let number = Identity::of_stdout().map(|identity| Self::register(path, identity)).transpose()?;
+            return Ok(Self { shown, at: At::Stdout, number });
+        }
         let (at, there) = match follow(path)? {
             End::Name(name) => {
                 let there = fs::metadata(&name).ok();
@@ -90,11 +97,16 @@ impl Claim {
             At::Itself(_) | At::Stdout => Identity::of(path)?,
         };
         let at = Self::stdout(at, &identity)?;
-        let number = registry::add_output(path, identity).map_err(|collision| match collision {
+        let number = Self::register(path, identity)?;
+        Ok(Self { shown, at, number: Some(number) })
+    }
+
+    /// Claims a file for this output: no input and no other output of the process may be the same.
+    fn register(path: &Path, identity: Identity) -> io::Result<u64> {
+        registry::add_output(path, identity).map_err(|collision| match collision {
             Collision::Input(input) => io::Error::other(format!("it is the input {}", input.display())),
             Collision::Output(other) => io::Error::other(format!("it is also the output {}", other.display())),
-        })?;
-        Ok(Self { shown, at, number: Some(number) })
+        })
     }
 
     /// Detects a path to the standard output of this process, so that a file to which it is
