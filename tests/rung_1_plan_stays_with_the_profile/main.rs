@@ -7,7 +7,8 @@ mod examples;
 mod slow;
 mod verify;
 
-use carrystep_files::{MoveFile, ProfileKind};
+use carrystep_core::ProfileKind;
+use carrystep_files::MoveFile;
 use carrystep_plan::{PlanError, plan};
 use carrystep_tests::random_moves::{Pace, RandomMoves, random_moves};
 use proptest::prelude::*;
@@ -37,7 +38,7 @@ fn is_too_slow(file: &MoveFile, error: &PlanError) -> bool {
 fn every_profile_lands_on_free_and_straight_paths() {
     let (file, plan) = carrystep_tests::moves::shipped("curves");
     verify(&file, &plan, Some(2e-9));
-    for kind in ProfileKind::ALL {
+    for kind in ProfileKind::ALL.iter().copied() {
         assert!(file.moves.iter().any(|moved| moved.profile == kind), "{kind}");
     }
 }

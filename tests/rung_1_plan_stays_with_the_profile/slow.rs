@@ -3,7 +3,8 @@
 //! them.
 
 use crate::verify::verify;
-use carrystep_files::{MoveFile, ProfileKind};
+use carrystep_core::ProfileKind;
+use carrystep_files::MoveFile;
 use carrystep_plan::{Plan, PlanError, plan};
 use carrystep_tests::moves;
 use carrystep_tests::random_moves::file;

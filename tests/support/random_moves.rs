@@ -1,6 +1,7 @@
 //! Generates random moves of random machines, as move files.
 
-use carrystep_files::{MoveFile, ProfileKind, Source};
+use carrystep_core::ProfileKind;
+use carrystep_files::{MoveFile, Source};
 use carrystep_plan::plan;
 use proptest::prelude::*;
 

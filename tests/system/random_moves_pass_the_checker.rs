@@ -5,7 +5,7 @@
 //! product's pins: every edge within the bound, exact count and position, straight lines, and the
 //! driver's timing.
 
-use carrystep_files::ProfileKind;
+use carrystep_core::ProfileKind;
 use carrystep_plan::plan;
 use carrystep_tests::moves;
 use carrystep_tests::random_moves::{Pace, RandomMoves, random_moves};

@@ -15,6 +15,7 @@ pub mod fault;
 pub mod fixed;
 pub mod link;
 pub mod ports;
+mod profile_kind;
 pub mod segment;
 pub mod tick;
 
@@ -22,5 +23,6 @@ pub use build::{AXES, Build, PinTiming, Timebase};
 pub use engine::EngineBuild;
 pub use fault::Faults;
 pub use fixed::StartPhase;
+pub use profile_kind::ProfileKind;
 pub use segment::{Command, Program, Segment};
 pub use tick::ChosenTick;

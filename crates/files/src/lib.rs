@@ -27,7 +27,7 @@ pub use bigdecimal::BigDecimal;
 pub use error::{InputError, Source};
 pub use input::{InputFailure, MAX_TEXT_BYTES, open, read_text};
 pub use machine::{Axis, Machine, TooManyAxes};
-pub use move_file::{Move, MoveFile, PathKind, ProfileKind};
+pub use move_file::{Move, MoveFile, PathKind};
 pub use names::{did_you_mean, nearest};
 pub use output::{Claim, NewFile, OutputFailure};
 pub use unit::Unit;

@@ -9,57 +9,14 @@ use crate::error::{InputError, Source, quoted};
 use crate::machine::{Machine, RawMachine};
 use crate::number::{exact, positive};
 use bigdecimal::{BigDecimal, Zero};
+use carrystep_core::ProfileKind;
 use carrystep_core::build::AXES;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
-
-/// The speed profiles that a move file can name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum ProfileKind {
-    /// Ranade (2009): a triangle if possible, otherwise a trapezoid at the speed limit.
-    Ranade,
-    /// From rest to rest at the acceleration limit.
-    Trapezoid,
-    /// Seven segments within limits of speed, acceleration and jerk.
-    Scurve,
-    /// Along a logistic curve, with small accelerations at both ends; never quite at rest.
-    Logistic,
-    /// Acceleration proportional to 1 - cos, so that the jerk is continuous too.
-    Sine,
-    /// One constant speed, at most the start speed.
-    Constant,
-}
-
-impl ProfileKind {
-    /// Every kind.
-    pub const ALL: [Self; 6] =
-        [Self::Ranade, Self::Trapezoid, Self::Scurve, Self::Logistic, Self::Sine, Self::Constant];
-
-    /// Whether cubic segments can only approximate this profile. They follow the other profiles
-    /// exactly.
-    pub const fn is_fitted(self) -> bool {
-        matches!(self, Self::Logistic | Self::Sine)
-    }
-}
-
-impl fmt::Display for ProfileKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Ranade => "ranade",
-            Self::Trapezoid => "trapezoid",
-            Self::Scurve => "scurve",
-            Self::Logistic => "logistic",
-            Self::Sine => "sine",
-            Self::Constant => "constant",
-        })
-    }
-}
 
 /// How the axes of a move are combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, JsonSchema, Serialize, Deserialize)]

@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_files::{MoveFile, ProfileKind, Source};
+use carrystep_core::ProfileKind;
+use carrystep_files::{MoveFile, Source};
 
 const MACHINE: &str = "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\n\
     accel_limit = 5000\ndriver = \"a4988\"\n[[machine.axis]]\nname = \"y\"\nsteps_per_unit = 1\nspeed_limit = 1000\n\

@@ -1,14 +1,14 @@
 //! Determines how long a move takes, and the profile of each axis in that time.
 //!
-//! A new kind of profile is added to `least_time` and `profile` in this file.
+//! The rules of each kind of profile are in `kinds.rs` of the crate `profile`.
 
 use crate::error::PlanError;
 use crate::limits::float_limits;
 use crate::line;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_core::{StartPhase, Timebase};
-use carrystep_files::{MoveFile, PathKind, ProfileKind};
-use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, rule};
+use carrystep_files::{MoveFile, PathKind};
+use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, kinds};
 use std::sync::Arc;
 
 /// The greatest number of ticks of a move: 2^42, which is 1.1 x 10^6 s at 250 ns. Up to there the
@@ -69,7 +69,7 @@ pub(crate) fn demand<F: Real>(
 
     let mut least = F::zero();
     for (axis, (steps, limits)) in axes.iter().enumerate().filter(|(_, (steps, _))| !steps.is_zero()) {
-        let time = least_time(moved.profile, *steps, limits).map_err(|refusal| refused(axis, refusal, None))?;
+        let time = kinds::least_time(moved.profile, *steps, limits).map_err(|refusal| refused(axis, refusal, None))?;
         least = least.max(time);
     }
     let clock = match time {
@@ -86,7 +86,7 @@ pub(crate) fn demand<F: Real>(
             profiles.push(Arc::new(Constant::rest(clock.seconds)));
             continue;
         }
-        match profile(moved.profile, *steps, clock.seconds, limits) {
+        match kinds::whole(moved.profile, *steps, clock.seconds, limits) {
             Ok(profile) => profiles.push(profile),
             Err(refusal) => {
                 if worst.is_none_or(|(_, other)| other.least_time < refusal.least_time) {
@@ -102,28 +102,6 @@ pub(crate) fn demand<F: Real>(
             Err(refused(axis, refusal, Some(seconds(ticks, &timebase))))
         }
     }
-}
-
-fn least_time<F: Real>(kind: ProfileKind, steps: F, limits: &Limits<F>) -> Result<F, Refusal> {
-    match kind {
-        ProfileKind::Ranade => Ok(rule::ranade_least_time(steps, limits)),
-        ProfileKind::Trapezoid => Ok(rule::trapezoid_least_time(steps, limits)),
-        ProfileKind::Scurve => Ok(rule::scurve_least_time(steps, limits)),
-        ProfileKind::Logistic => Ok(rule::logistic_least_time(steps, limits)),
-        ProfileKind::Sine => Ok(rule::sine_least_time(steps, limits)),
-        ProfileKind::Constant => rule::constant_least_time(steps, limits),
-    }
-}
-
-fn profile<F: Real>(kind: ProfileKind, steps: F, time: F, limits: &Limits<F>) -> Result<SharedProfile<F>, Refusal> {
-    Ok(match kind {
-        ProfileKind::Ranade => rule::ranade(steps, time, limits)?,
-        ProfileKind::Trapezoid => Arc::new(rule::trapezoid(steps, time, limits)?),
-        ProfileKind::Scurve => Arc::new(rule::scurve(steps, time, limits)?),
-        ProfileKind::Logistic => Arc::new(rule::logistic(steps, time, limits)?),
-        ProfileKind::Sine => Arc::new(rule::sine(steps, time, limits)?),
-        ProfileKind::Constant => Arc::new(rule::constant(steps, time, limits)?),
-    })
 }
 
 fn seconds(ticks: u64, timebase: &Timebase) -> f64 {

@@ -6,7 +6,7 @@
 //!
 //! A new kind of limit has to be added to [`share_limits`] and to `value`.
 
-use carrystep_files::ProfileKind;
+use carrystep_core::ProfileKind;
 use carrystep_profile::{Limit, Limits, Real, Refusal};
 
 /// The steps of an axis in this move, as a magnitude, and its limits in steps and seconds.

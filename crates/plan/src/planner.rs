@@ -21,9 +21,10 @@ use crate::share::{Breakpoints, Piece, share};
 use crate::slow::{self, Pulses};
 use crate::units;
 use bigdecimal::{BigDecimal, ToPrimitive as _};
+use carrystep_core::ProfileKind;
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{Build, Segment};
-use carrystep_files::{Axis, Move, MoveFile, ProfileKind};
+use carrystep_files::{Axis, Move, MoveFile};
 use carrystep_profile::{Profile, Real, SharedProfile, Widened};
 use std::sync::Arc;
 

@@ -13,6 +13,7 @@ mod alone;
 mod bad_ramp;
 mod constant;
 mod curve;
+pub mod kinds;
 mod line;
 mod logistic;
 mod numeric;
@@ -51,7 +52,7 @@ pub mod rule {
     pub use crate::alone::{logistic_ramp, logistic_ramp_about, ranade_ramp, scurve_ramp, sine_ramp, trapezoid_ramp};
     pub use crate::constant::{constant, constant_least_time};
     pub use crate::logistic::{logistic, logistic_least_time};
-    pub use crate::ranade::{ranade, ranade_curve, ranade_least_time};
+    pub use crate::ranade::{ranade, ranade_least_time};
     pub use crate::scurve::{scurve, scurve_least_time, scurve_to, scurve_to_least_time};
     pub use crate::sine::{sine, sine_least_time};
     pub use crate::trapezoid::{trapezoid, trapezoid_least_time};

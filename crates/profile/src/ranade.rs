@@ -8,7 +8,7 @@
 
 use crate::constant::Constant;
 use crate::curve::Curve;
-use crate::profile::{Profile, Real, real};
+use crate::profile::{Real, real};
 use crate::ramp::Ramp;
 use crate::refusal::{Limit, Limits, Refusal};
 use std::sync::Arc;
@@ -17,15 +17,7 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// A [`Refusal`] names the limit that fails and the least time.
-pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Profile<F>>, Refusal> {
-    Ok(ranade_curve(distance, time, limits)?)
-}
-
-/// The move of [`ranade`] as a [`Curve`], which gives its figures.
-///
-/// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
-pub fn ranade_curve<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Curve<F>>, Refusal> {
+pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Curve<F>>, Refusal> {
     let Limits { start_speed, speed, acceleration: limit, .. } = *limits;
     let average = distance / time;
     if average <= start_speed {

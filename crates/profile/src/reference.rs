@@ -2,10 +2,10 @@
 //!
 //! The curves are those of `carrystep-profile`. A [`Request`] gives the limits and the distance in
 //! millimetres, degrees or turns of a [`Drive`], or in steps. It returns a [`Reference`] for each
-//! [`Kind`]. The modules are private; the public items are listed below.
+//! [`ProfileKind`]. The modules are private; the public items are listed below.
 //!
 //! ```
-//! use carrystep_profile::reference::{Drive, Kind, Length, Listing, Quantity, Request, Travel};
+//! use carrystep_profile::reference::{Drive, ProfileKind, Length, Listing, Quantity, Request, Travel};
 //!
 //! // The example of the logistic source.
 //! let drive = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
@@ -15,7 +15,7 @@
 //!     centre: Some(0.4),
 //!     ..Request::new(drive, Travel::Ramp)
 //! };
-//! let logistic = request.reference(Kind::Logistic)?;
+//! let logistic = request.reference(ProfileKind::Logistic)?;
 //! assert_eq!(logistic.whole_steps(), 368.0);
 //! let first = logistic.rows(&Listing::SOURCES)?.next().and_then(|row| row.delay_s);
 //! assert!(first.is_some_and(|c0| (c0 - 0.181_171_021).abs() < 1e-9));
@@ -26,7 +26,6 @@ mod csv_out;
 mod curve;
 mod drive;
 mod error;
-mod kind;
 mod picture;
 mod quantity;
 mod request;
@@ -36,7 +35,6 @@ pub use csv_out::{CsvError, write_csv};
 pub use curve::Reference;
 pub use drive::Drive;
 pub use error::ReferenceError;
-pub use kind::Kind;
 pub use picture::{PictureError, Scale, picture};
 pub use quantity::{Length, Quantity};
 pub use request::{Request, Travel};

@@ -1,10 +1,11 @@
 //! Tests that any request returns a curve that keeps it, or a refusal that names a value that
 //! works.
 
+use carrystep_core::ProfileKind;
 use carrystep_core::StartPhase;
 use carrystep_profile::Figures;
 use carrystep_profile::reference::{
-    Drive, Kind, Length, Listing, Quantity, ReferenceError, Request, Scale, Travel, picture, write_csv,
+    Drive, Length, Listing, Quantity, ReferenceError, Request, Scale, Travel, picture, write_csv,
 };
 use proptest::prelude::*;
 
@@ -39,20 +40,20 @@ fn any_request() -> impl Strategy<Value = Request> {
     })
 }
 
-fn any_kind() -> impl Strategy<Value = Kind> {
-    prop::sample::select(&Kind::ALL[..])
+fn any_kind() -> impl Strategy<Value = ProfileKind> {
+    prop::sample::select(&ProfileKind::ALL[..])
 }
 
 /// Checks that no limit is exceeded. The speed limit of a ramp is its own top speed, and the jerk
 /// of a trapezoid consists of impulses that do not count.
-fn within(request: &Request, kind: Kind, figures: &Figures<f64>) -> Result<(), TestCaseError> {
+fn within(request: &Request, kind: ProfileKind, figures: &Figures<f64>) -> Result<(), TestCaseError> {
     let limit = |quantity: Option<Quantity>| {
         quantity.map_or(f64::INFINITY, |q| q.in_steps(&DRIVE).expect("a drive with a travel") * (1.0 + 1e-9))
     };
     prop_assert!(figures.peak_acceleration <= limit(request.acceleration), "{figures:?}");
     prop_assert!(figures.top_speed <= limit(request.speed), "{figures:?}");
     prop_assert!(figures.peak_jerk <= limit(request.jerk), "{figures:?}");
-    let jumps = [Kind::Ranade, Kind::Scurve, Kind::Constant].contains(&kind);
+    let jumps = [ProfileKind::Ranade, ProfileKind::Scurve, ProfileKind::Constant].contains(&kind);
     if jumps {
         prop_assert!(figures.start_speed <= limit(request.start_speed.or(Some(Quantity::new(0.0, Length::Step)))));
     }
@@ -62,7 +63,7 @@ fn within(request: &Request, kind: Kind, figures: &Figures<f64>) -> Result<(), T
 /// Raises the limits one after the other to the values that the refusals name, until the profile is
 /// possible. A limit that is met to the last digit leaves little for the next one, so that one
 /// limit may be named twice.
-fn raised(mut request: Request, kind: Kind) -> Result<(), TestCaseError> {
+fn raised(mut request: Request, kind: ProfileKind) -> Result<(), TestCaseError> {
     for _ in 0..6 {
         let Err(ReferenceError::Refused { limit, wanted, unit, .. }) = request.reference(kind) else {
             prop_assert!(request.reference(kind).is_ok(), "{:?}", request.reference(kind));
@@ -149,7 +150,8 @@ fn csv_of_a_profile_that_cannot_be_listed_stays_empty() {
         ..Request::new(DRIVE, Travel::Move(Quantity::new(1e9, Length::Step)))
     };
     let short = Request { travel: Travel::Move(Quantity::new(10.0, Length::Step)), ..long.clone() };
-    let both = [short.reference(Kind::Sine).expect("a sine"), long.reference(Kind::Sine).expect("a sine")];
+    let both =
+        [short.reference(ProfileKind::Sine).expect("a sine"), long.reference(ProfileKind::Sine).expect("a sine")];
     let mut text = Vec::new();
     assert!(write_csv(&mut text, &both, &Listing::SOURCES).is_err());
     assert!(write_csv(&mut text, &both[..1], &Listing { clock_hz: Some(f64::NAN), ..Listing::SOURCES }).is_err());

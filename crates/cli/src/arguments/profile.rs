@@ -1,7 +1,8 @@
 //! The arguments of `carrystep profile`. The docstrings of the fields are the command's help.
 
+use carrystep_core::ProfileKind;
 use carrystep_core::StartPhase;
-use carrystep_profile::reference::{Drive, Kind, Length, Listing, Quantity, Request, Travel};
+use carrystep_profile::reference::{Drive, Length, Listing, Quantity, Request, Travel};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -11,7 +12,7 @@ use std::path::PathBuf;
 pub struct Profile {
     /// The curves, one or several.
     #[arg(value_name = "KIND", required = true, value_parser = kind(), help_heading = None)]
-    pub kinds: Vec<Kind>,
+    pub kinds: Vec<ProfileKind>,
 
     #[command(flatten)]
     distance: Distance,
@@ -165,9 +166,10 @@ struct Motor {
     travel_per_rev: Option<f64>,
 }
 
-fn kind() -> impl clap::builder::TypedValueParser<Value = Kind> {
+fn kind() -> impl clap::builder::TypedValueParser<Value = ProfileKind> {
     use clap::builder::{PossibleValuesParser, TypedValueParser};
-    PossibleValuesParser::new(Kind::ALL.map(Kind::name)).try_map(|name| name.parse::<Kind>())
+    PossibleValuesParser::new(ProfileKind::ALL.iter().map(|kind| kind.name()))
+        .try_map(|name| name.parse::<ProfileKind>())
 }
 
 fn phase() -> impl clap::builder::TypedValueParser<Value = StartPhase> {

@@ -4,9 +4,10 @@ use crate::arguments::Profile;
 use crate::failure::Failure;
 use crate::figures::{self, FiguresJson};
 use crate::output::{self, OutputFile};
+use carrystep_core::ProfileKind;
 use carrystep_core::StartPhase;
 use carrystep_profile::reference::{
-    CsvError, Drive, Kind, Length, Listing, PictureError, Reference, ReferenceError, Row, Scale, picture, write_csv,
+    CsvError, Drive, Length, Listing, PictureError, Reference, ReferenceError, Row, Scale, picture, write_csv,
 };
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -27,7 +28,7 @@ pub struct Profiles<'a> {
 
 #[derive(JsonSchema, Serialize)]
 struct ProfileJson {
-    kind: Kind,
+    kind: ProfileKind,
     ramp: bool,
     figures: FiguresJson,
     steps: Vec<Row>,

@@ -1,28 +1,28 @@
 //! A profile of one kind, ready to be listed and drawn.
 
 use crate::reference::error::ReferenceError;
-use crate::reference::kind::Kind;
 use crate::reference::row::{Listing, MOST_ROWS, Row};
 use crate::{Curve, Figures};
+use carrystep_core::ProfileKind;
 use std::sync::Arc;
 
 /// A float profile together with its kind.
 #[derive(Debug, Clone)]
 pub struct Reference {
-    kind: Kind,
+    kind: ProfileKind,
     ramp: bool,
     curve: Arc<dyn Curve<f64>>,
     figures: Figures<f64>,
 }
 
 impl Reference {
-    pub(crate) fn new(kind: Kind, curve: Arc<dyn Curve<f64>>, ramp: bool) -> Self {
+    pub(crate) fn new(kind: ProfileKind, curve: Arc<dyn Curve<f64>>, ramp: bool) -> Self {
         let figures = curve.figures();
         Self { kind, ramp, curve, figures }
     }
 
     /// The kind of the profile.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> ProfileKind {
         self.kind
     }
 

@@ -2,9 +2,9 @@
 //!
 //! The messages are part of the command's interface: transcripts in tests/ quote them.
 
-use crate::reference::kind::Kind;
 use crate::reference::row::MOST_ROWS;
 use crate::{BadRamp, Limit};
+use carrystep_core::ProfileKind;
 use thiserror::Error;
 
 /// Why there is no such profile. Every message names a value that works.
@@ -28,7 +28,7 @@ pub enum ReferenceError {
     #[error("{kind} needs {what}")]
     Missing {
         /// The kind.
-        kind: Kind,
+        kind: ProfileKind,
         /// The missing value and, if there is one, a suggestion.
         what: String,
     },
@@ -75,7 +75,7 @@ pub enum ReferenceError {
     #[error("{kind} cannot be done with {limit} of {available} {unit}: {}", advice(limit, *wanted, unit, *least_time))]
     Refused {
         /// The kind.
-        kind: Kind,
+        kind: ProfileKind,
         /// The limit that fails, in words.
         limit: &'static str,
         /// The value of the limit, in `unit`.
@@ -91,7 +91,7 @@ pub enum ReferenceError {
     #[error("{kind} cannot be done: {bad}")]
     Bad {
         /// The kind.
-        kind: Kind,
+        kind: ProfileKind,
         /// The contradiction.
         bad: BadRamp,
     },
@@ -99,7 +99,7 @@ pub enum ReferenceError {
     #[error("{kind} has {steps} steps: a list holds at most {MOST_ROWS}; its figures and its plot can be had")]
     TooLong {
         /// The kind.
-        kind: Kind,
+        kind: ProfileKind,
         /// Its number of steps.
         steps: f64,
     },

@@ -4,8 +4,8 @@
 //! `picture/sampled.rs` computes the points. The look may change freely.
 
 use crate::reference::curve::Reference;
-use crate::reference::kind::Kind;
 use crate::reference::quantity::Length;
+use carrystep_core::ProfileKind;
 use panel::Panel;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -131,14 +131,14 @@ fn right_label(size: u32, colour: RGBColor) -> TextStyle<'static> {
 
 /// The colour of a kind. The colours can be distinguished with every kind of colour vision (Okabe
 /// and Ito).
-fn colour(kind: Kind) -> RGBColor {
+fn colour(kind: ProfileKind) -> RGBColor {
     match kind {
-        Kind::Trapezoid => RGBColor(213, 94, 0),
-        Kind::Ranade => RGBColor(230, 159, 0),
-        Kind::Scurve => RGBColor(0, 158, 115),
-        Kind::Sine => RGBColor(0, 114, 178),
-        Kind::Logistic => RGBColor(160, 60, 140),
-        Kind::Constant => RGBColor(90, 98, 108),
+        ProfileKind::Trapezoid => RGBColor(213, 94, 0),
+        ProfileKind::Ranade => RGBColor(230, 159, 0),
+        ProfileKind::Scurve => RGBColor(0, 158, 115),
+        ProfileKind::Sine => RGBColor(0, 114, 178),
+        ProfileKind::Logistic => RGBColor(160, 60, 140),
+        ProfileKind::Constant => RGBColor(90, 98, 108),
     }
 }
 

@@ -1,13 +1,13 @@
 //! The request of a user, which is checked and converted to steps here.
 //!
-//! A new kind of profile is added to `ramp` and `whole` in this file.
+//! The rules of each kind are in `kinds.rs`.
 
 use crate::reference::curve::Reference;
 use crate::reference::drive::Drive;
 use crate::reference::error::{ReferenceError, in_words, rounded, up};
-use crate::reference::kind::Kind;
 use crate::reference::quantity::{Length, Quantity};
-use crate::{Curve, Limit, Limits, Refusal, rule};
+use crate::{Curve, Limit, Limits, Refusal, kinds, rule};
+use carrystep_core::ProfileKind;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -68,8 +68,8 @@ impl Request {
     ///
     /// # Errors
     /// A [`ReferenceError`] names the kind, what is wrong, and a value that works.
-    pub fn references(&self, kinds: &[Kind]) -> Result<Vec<Reference>, ReferenceError> {
-        if self.centre.is_some() && !kinds.contains(&Kind::Logistic) {
+    pub fn references(&self, kinds: &[ProfileKind]) -> Result<Vec<Reference>, ReferenceError> {
+        if self.centre.is_some() && !kinds.contains(&ProfileKind::Logistic) {
             return Err(ReferenceError::CentreOf { what: "none is asked for" });
         }
         kinds.iter().map(|&kind| self.reference(kind)).collect()
@@ -79,7 +79,7 @@ impl Request {
     ///
     /// # Errors
     /// A [`ReferenceError`] names what is wrong and a value that works.
-    pub fn reference(&self, kind: Kind) -> Result<Reference, ReferenceError> {
+    pub fn reference(&self, kind: ProfileKind) -> Result<Reference, ReferenceError> {
         let steps = self.in_steps()?;
         let curve = match steps.distance {
             Some(distance) => self.whole(kind, distance, &steps)?,
@@ -140,72 +140,49 @@ impl Request {
         })
     }
 
-    fn ramp(&self, kind: Kind, steps: &Steps) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
-        if kind == Kind::Constant {
+    fn ramp(&self, kind: ProfileKind, steps: &Steps) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
+        if kind == ProfileKind::Constant {
             return Err(ReferenceError::NoRamp);
         }
         let Steps { limits, .. } = steps;
         let missing = |what: &str| Err(ReferenceError::Missing { kind, what: what.to_owned() });
         let Some(top) = steps.top else { return missing("a speed to go to") };
-        if kind == Kind::Scurve && limits.jerk.is_infinite() {
+        if kind == ProfileKind::Scurve && limits.jerk.is_infinite() {
             return missing(&self.jerk_advice(top, limits));
         }
         if self.time.is_none() && limits.acceleration.is_infinite() {
             return missing("an acceleration or a time");
         }
         let refused = |refusal| self.refused(kind, refusal);
-        if let Some(centre) = self.centre.filter(|_| kind == Kind::Logistic) {
+        if let Some(centre) = self.centre.filter(|_| kind == ProfileKind::Logistic) {
             self.nothing_besides_the_centre()?;
             let ramp = rule::logistic_ramp_about(top, centre, limits);
             return Ok(Arc::new(ramp.map_err(|bad| ReferenceError::Bad { kind, bad })?));
         }
-        let time = self.time;
-        let ramp: Result<Arc<dyn Curve<f64>>, Refusal> = match kind {
-            Kind::Trapezoid => rule::trapezoid_ramp(top, time, limits).map(shared),
-            Kind::Ranade => rule::ranade_ramp(top, time, limits).map(shared),
-            Kind::Scurve => rule::scurve_ramp(top, time, limits).map(shared),
-            Kind::Sine => rule::sine_ramp(top, time, limits).map(shared),
-            Kind::Logistic | Kind::Constant => rule::logistic_ramp(top, time, limits).map(shared),
-        };
-        ramp.map_err(refused)
+        kinds::ramp(kind, top, self.time, limits).ok_or(ReferenceError::NoRamp)?.map_err(refused)
     }
 
-    fn whole(&self, kind: Kind, distance: f64, steps: &Steps) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
+    fn whole(&self, kind: ProfileKind, distance: f64, steps: &Steps) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
         let Steps { limits, .. } = steps;
-        if self.centre.is_some() && kind == Kind::Logistic {
+        if self.centre.is_some() && kind == ProfileKind::Logistic {
             return Err(ReferenceError::CentreOf { what: "a move has two, symmetric in themselves" });
         }
         let missing = |what: String| Err(ReferenceError::Missing { kind, what });
-        if kind != Kind::Constant && limits.acceleration.is_infinite() {
+        if kind != ProfileKind::Constant && limits.acceleration.is_infinite() {
             return missing("an acceleration limit".to_owned());
         }
-        if kind == Kind::Scurve && limits.jerk.is_infinite() {
+        if kind == ProfileKind::Scurve && limits.jerk.is_infinite() {
             let top = limits.speed.min((distance * limits.acceleration / 2.0).sqrt());
             return missing(self.jerk_advice(top, limits));
         }
         let refused = |refusal| self.refused(kind, refusal);
-        let least = match kind {
-            Kind::Trapezoid => rule::trapezoid_least_time(distance, limits),
-            Kind::Ranade => rule::ranade_least_time(distance, limits),
-            Kind::Scurve => rule::scurve_least_time(distance, limits),
-            Kind::Sine => rule::sine_least_time(distance, limits),
-            Kind::Logistic => rule::logistic_least_time(distance, limits),
-            Kind::Constant => rule::constant_least_time(distance, limits).map_err(refused)?,
-        };
+        let least = kinds::least_time(kind, distance, limits).map_err(refused)?;
         let time = self.time.unwrap_or(least);
-        let whole: Result<Arc<dyn Curve<f64>>, Refusal> = match kind {
-            Kind::Trapezoid => rule::trapezoid(distance, time, limits).map(shared),
-            Kind::Ranade => rule::ranade_curve(distance, time, limits),
-            Kind::Scurve => rule::scurve(distance, time, limits).map(shared),
-            Kind::Sine => rule::sine(distance, time, limits).map(shared),
-            Kind::Logistic => rule::logistic(distance, time, limits).map(shared),
-            Kind::Constant => rule::constant(distance, time, limits).map(shared),
-        };
-        whole.map_err(refused)
+        kinds::whole(kind, distance, time, limits).map_err(refused)
     }
 
     /// Converts a refusal to the unit in which the user gave the limit.
-    fn refused(&self, kind: Kind, refusal: Refusal) -> ReferenceError {
+    fn refused(&self, kind: ProfileKind, refusal: Refusal) -> ReferenceError {
         let Refusal { limit, wanted, available, least_time } = refusal;
         let stated = match limit {
             Limit::StartSpeed => self.start_speed,
@@ -242,8 +219,4 @@ impl Request {
         }
         Ok(())
     }
-}
-
-fn shared<C: Curve<f64> + 'static>(curve: C) -> Arc<dyn Curve<f64>> {
-    Arc::new(curve)
 }

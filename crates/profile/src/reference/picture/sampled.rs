@@ -2,7 +2,7 @@
 
 use crate::Curve;
 use crate::reference::curve::Reference;
-use crate::reference::kind::Kind;
+use carrystep_core::ProfileKind;
 
 /// Number of points of a line, without those at its corners.
 const LINE: u32 = 240;
@@ -15,7 +15,7 @@ pub type Point = (f64, f64);
 /// The points of one profile, in seconds and the unit of the picture.
 #[derive(Debug, Clone)]
 pub struct Sampled {
-    pub kind: Kind,
+    pub kind: ProfileKind,
     /// Name and duration.
     pub legend: String,
     pub speed: Vec<Point>,
