@@ -29,7 +29,7 @@ pub struct Stimulus {
 
 /// The build that `hdl-out/core/carrystep_engine.v` is made from.
 pub fn build() -> EngineBuild {
-    Machine::load(&root().join("sim/engine.toml")).expect("the shipped machine").engine()
+    Machine::load(&root().join("sim/six-axis.toml")).expect("the shipped machine").engine()
 }
 
 /// All recordings in the order in which they are tried: what finds much in few clocks first.

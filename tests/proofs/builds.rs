@@ -39,7 +39,7 @@ pub fn small_from(phases: u32, start: StartPhase) -> (Build, Arc<str>) {
 pub fn shipped_engine() -> (EngineBuild, Arc<str>) {
     let root = moves::root();
     let text = std::fs::read_to_string(root.join("hdl-out/core/carrystep_engine.v")).expect("the committed Verilog");
-    let machine = Machine::load(&root.join("sim/engine.toml")).expect("the engine's machine");
+    let machine = Machine::load(&root.join("sim/six-axis.toml")).expect("the engine's machine");
     (machine.engine(), text.into())
 }
 

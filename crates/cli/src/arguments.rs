@@ -83,9 +83,9 @@ pub enum Subcommand {
 /// Which gateware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Core {
-    /// One adder for all axes, with queues and a guard: for boards.
+    /// One adder for all axes, with queues and a guard: the product, on boards and everywhere else.
     Engine,
-    /// An adder an axis: what the engine is compared with.
+    /// An adder an axis: the article's picture, and what the engine is compared with.
     Parallel,
 }
 
@@ -108,6 +108,9 @@ pub struct Demo {
     /// Folder for everything that the demo writes.
     #[arg(long, default_value = "sim/out/demo", value_name = "DIR")]
     pub out: PathBuf,
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
+    pub core: Core,
     /// Where the gateware runs.
     #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
     pub level: Level,
@@ -139,8 +142,8 @@ pub struct Simulate {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
-    /// Which gateware: one adder for all axes, with queues and a guard, or an adder an axis.
-    #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// Where the gateware runs.
     #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
@@ -200,8 +203,8 @@ pub struct Check {
 /// `carrystep verilog`
 #[derive(Debug, Args)]
 pub struct Verilog {
-    /// Which gateware: one adder for all axes, with queues and a guard, or an adder an axis.
-    #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// All gateware of a board instead: a top level with clock, host link and engine, constraints, a build script.
     #[arg(long, value_name = "BOARD", conflicts_with = "core")]
@@ -209,8 +212,8 @@ pub struct Verilog {
     /// Which of the board's parts; default: its first.
     #[arg(long, value_name = "PART", requires = "board")]
     pub part: Option<String>,
-    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped machine of the core, or
-    /// for a board the shipped machine at the board's clock.
+    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped machine, for a board at
+    /// the board's clock.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
     /// Folder for all files; default: hdl-out/core, or sim/out/BOARD.
@@ -227,6 +230,9 @@ pub struct Sweep {
     /// The sweep: a move file with blanks, and what they are filled with.
     #[arg(value_name = "SWEEP.toml", required_unless_present = "merge")]
     pub file: Option<PathBuf>,
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
+    pub core: Core,
     /// So many random cases instead of the whole grid.
     #[arg(long, value_name = "CASES")]
     pub sample: Option<u64>,
@@ -237,7 +243,7 @@ pub struct Sweep {
     #[arg(long, default_value_t = Shard::WHOLE, value_name = "N/OF")]
     pub shard: Shard,
     /// Make one report of the JSON reports of all shards.
-    #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "sample", "seed", "shard"])]
+    #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "core", "sample", "seed", "shard"])]
     pub merge: Vec<PathBuf>,
     /// Also write the result as JUnit XML, a test case for the whole and one for each case that failed.
     #[arg(long, value_name = "FILE")]

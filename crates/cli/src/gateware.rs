@@ -1,5 +1,8 @@
 //! The two cores behind one face: when a plan's first segments are loaded, and a run whose pins are watched.
 
+use crate::failure::Failure;
+use carrystep_spec::engine::EngineError;
+use carrystep_spec::{EngineBuild, Machine};
 use carrystep_levels::engine::run::EngineJob;
 use carrystep_levels::{Job, Level, LevelError};
 use carrystep_spec::engine::Cause;
@@ -44,6 +47,24 @@ impl Gateware<'_> {
             }
         }
     }
+}
+
+/// The engine of the machine in this file.
+///
+/// # Errors
+/// Status 2, with what would do: another tick, another clock, the parallel core where that can hold the machine.
+pub fn engine(machine: &Machine, name: &str) -> Result<EngineBuild, Failure> {
+    let engine = machine.engine();
+    match engine.check() {
+        Ok(()) => Ok(engine),
+        Err(error) => Err(Failure::input(format!("{name}: {error}{}", sibling(machine, &error)))),
+    }
+}
+
+/// What is said of the parallel core where only the engine's turns do not fit.
+fn sibling(machine: &Machine, error: &EngineError) -> &'static str {
+    let by_turns = matches!(error, EngineError::Schedule { .. } | EngineError::ShortPhase { .. });
+    if by_turns && machine.build().is_ok() { "; the parallel core holds it as it is: `--core parallel`" } else { "" }
 }
 
 /// A cause, and the axes that it came from.

@@ -2,7 +2,7 @@
 
 use crate::arguments::Core;
 use crate::failure::Failure;
-use crate::gateware::Gateware;
+use crate::gateware::{self, Gateware};
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::table::{self, Limits};
@@ -12,7 +12,7 @@ use carrystep_levels::pins::PinFeed;
 use carrystep_levels::{Job, Level, LevelError};
 use carrystep_plan::Plan;
 use carrystep_profile::Timeline;
-use carrystep_spec::{EngineBuild, MoveFile};
+use carrystep_spec::MoveFile;
 use carrystep_trace::{
     AxisSetup, AxisWaves, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee,
     VcdWriter, Waves, save_file,
@@ -65,8 +65,7 @@ impl fmt::Display for Done {
         for file in &self.files {
             writeln!(f, "wrote {}", file.display())?;
         }
-        let engine = if self.core == Core::Engine.name() { "engine, " } else { "" };
-        writeln!(f, "{engine}{}: {} clocks, faults: {}", self.level, self.clocks, self.faults)?;
+        writeln!(f, "{}, {}: {} clocks, faults: {}", self.core, self.level, self.clocks, self.faults)?;
         f.write_str(if self.passed { "ALL HOLDS\n" } else { "FAILED\n" })
     }
 }
@@ -113,19 +112,12 @@ pub fn fits_a_capture(plan: &Plan) -> Result<(), Failure> {
     Err(Failure::input(format!("the moves take {seconds} s: a capture holds at most {LONGEST_S} s; split the file")))
 }
 
-/// The engine of a file's machine, where one is asked for.
-fn engine(file: &MoveFile, core: Core) -> Result<Option<EngineBuild>, Failure> {
-    if core == Core::Parallel {
-        return Ok(None);
-    }
-    let engine = file.machine.engine();
-    engine.check().map_err(|error| Failure::input(format!("{}: {error}", file.source.path.display())))?;
-    Ok(Some(engine))
-}
-
 /// Runs a plan on a core at a level, checks every pulse and writes what is wanted.
 pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
-    let engine = engine(file, core)?;
+    let engine = match core {
+        Core::Engine => Some(gateware::engine(&file.machine, &file.source.path.display().to_string())?),
+        Core::Parallel => None,
+    };
     carrystep_levels::available(level)?;
     fits_a_capture(plan)?;
     let mut files = wanted.begin()?;
@@ -136,13 +128,13 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
     let timebase = plan.build.timebase;
     let progress = Progress::new(level, plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
     let how_far = Some(progress.how_far());
-    let gateware = match &engine {
+    let on = match &engine {
         None => Gateware::Parallel(Job { halt, how_far, ..Job::new(&plan.build, &program, plan.total_ticks()) }),
         Some(engine) => {
             Gateware::Engine(EngineJob { halt, how_far, ..EngineJob::new(engine, &program, plan.total_ticks()) })
         }
     };
-    let load = gateware.origin()?;
+    let load = on.origin()?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks()).cast_signed();
     let timelines = plan.timelines();
 
@@ -185,7 +177,7 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
             tee.add(sink);
         }
         let mut feed = PinFeed::new(timebase, file.machine.axes.len(), &mut tee);
-        let outcome = gateware.run(level, &mut |cycle, step, dir| {
+        let outcome = on.run(level, &mut |cycle, step, dir| {
             progress.how_far().at(cycle);
             feed.pins(cycle, step, dir);
             if feed.has_failed() {

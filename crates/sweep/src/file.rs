@@ -119,9 +119,10 @@ impl SweepFile {
         self.sample.unwrap_or_else(|| grid().fold(1, u64::saturating_mul))
     }
 
-    /// What two reports must agree on to be of the same sweep.
-    pub fn fingerprint(&self) -> String {
+    /// What two reports must agree on to be of the same sweep on the same core.
+    pub fn fingerprint(&self, core: &str) -> String {
         let words = self.source.text.bytes().map(u64::from).chain([self.seed, self.cases()]);
+        let words = words.chain(core.bytes().map(u64::from));
         format!("{:016x}", words.fold(0, |hash, word| mixed(hash ^ word)))
     }
 

@@ -56,8 +56,10 @@ pub struct Report {
     /// Whether all cases of all shards that are in here passed or were refused; `None` where no case ran: an empty shard
     /// shows nothing, and neither do moves that the planner refuses.
     pub passed: Option<bool>,
-    /// The same in all shards of a sweep.
+    /// The same in all shards of a sweep on one core.
     pub sweep: String,
+    /// The gateware: engine or parallel.
+    pub core: String,
     /// Which shards are in here.
     pub shards: Vec<Shard>,
     /// Cases that ran and passed.
@@ -74,10 +76,11 @@ pub struct Report {
 
 impl Report {
     /// A report of no case yet.
-    pub fn new(sweep: &SweepFile, shard: Shard) -> Self {
+    pub fn new(sweep: &SweepFile, shard: Shard, core: &str) -> Self {
         Self {
             passed: None,
-            sweep: sweep.fingerprint(),
+            sweep: sweep.fingerprint(core),
+            core: core.to_owned(),
             shards: vec![shard],
             cases_passed: 0,
             cases_refused: 0,
@@ -185,8 +188,9 @@ impl fmt::Display for Report {
         let (passed, refused, failed) = (self.cases_passed, self.cases_refused, self.cases_failed);
         writeln!(
             f,
-            "sweep {}, shard {}: {passed} passed, {refused} refused, {failed} failed",
+            "sweep {} on {}, shard {}: {passed} passed, {refused} refused, {failed} failed",
             self.sweep,
+            self.core,
             shards.join(" ")
         )?;
         for (name, Worst { value, case, values }) in &self.worst {

@@ -22,7 +22,13 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
             let sweep = SweepFile::load(file, arguments.sample, arguments.seed)?;
             let cases = arguments.shard.cases(sweep.cases()).count() as u64;
             let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr_with_hz(10));
-            let report = carrystep_sweep::run(&sweep, arguments.shard, judge, || bar.inc(1));
+            let report = carrystep_sweep::run(
+                &sweep,
+                arguments.shard,
+                arguments.core.name(),
+                |case| judge(case, arguments.core),
+                || bar.inc(1),
+            );
             bar.finish_and_clear();
             // The cases that were left have not been judged.
             interrupt::check()?;
@@ -64,14 +70,14 @@ fn read(path: &Path) -> Result<Report, Failure> {
 }
 
 /// Plans, simulates and checks a case.
-fn judge(case: &Case) -> Verdict {
+fn judge(case: &Case, core: Core) -> Verdict {
     let Ok(file) = &case.file else { return Verdict::Failed("no move file".to_owned()) };
     let plan = match plan::<f64>(file) {
         Ok(plan) => plan,
         Err(error @ PlanError::Broken { .. }) => return Verdict::Failed(error.to_string()),
         Err(error) => return Verdict::Refused(error.to_string()),
     };
-    match job::run(file, &plan, Core::Parallel, Level::Fast, &Wanted::default()) {
+    match job::run(file, &plan, core, Level::Fast, &Wanted::default()) {
         Ok(done) if done.passed => Verdict::Passed(figures(&done)),
         Ok(done) => {
             let first = done.check.failures().next();

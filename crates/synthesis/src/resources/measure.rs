@@ -7,7 +7,10 @@ use carrystep_export::{ENGINE_NAME, engine_verilog};
 use carrystep_spec::{EngineBuild, Machine, Source};
 
 /// The machine whose engine is measured; clock and tick are those of the row.
-const MACHINE: &str = include_str!("../../../../sim/engine.toml");
+const MACHINE: &str = include_str!("../../../../sim/six-axis.toml");
+const SHIPPED: &str = "sim/six-axis.toml";
+/// Its clock and its tick, in whose place a row has its own.
+const SHIPPED_TIME: &str = "clock_hz = 80_000_000\ntick_ns = 1000\n";
 
 /// Carries all ports of the engine on two pins, through registers.
 const HARNESS: &str = include_str!("harness.v");
@@ -53,13 +56,17 @@ impl Measured {
 /// # Errors
 /// [`SynthesisError::Gateware`]: there is no such engine.
 pub fn verilog(row: &Row) -> Result<String, SynthesisError> {
-    engine_verilog(&machine(row)?, "sim/engine.toml").map_err(failed)
+    engine_verilog(&machine(row)?, SHIPPED).map_err(failed)
 }
 
 /// The engine of a row.
 pub(super) fn machine(row: &Row) -> Result<EngineBuild, SynthesisError> {
-    let text = MACHINE.replace("48_000_000", &row.clock_hz.to_string()).replace("2000", &row.tick_ns.to_string());
-    let source = Source { path: "sim/engine.toml".into(), text: text.into() };
+    let Row { clock_hz, tick_ns, .. } = row;
+    if !MACHINE.contains(SHIPPED_TIME) {
+        return Err(failed(format!("{SHIPPED} has no {SHIPPED_TIME}")));
+    }
+    let text = MACHINE.replace(SHIPPED_TIME, &format!("clock_hz = {clock_hz}\ntick_ns = {tick_ns}\n"));
+    let source = Source { path: SHIPPED.into(), text: text.into() };
     let mut build = Machine::from_source(&source).map_err(failed)?.engine();
     // More axes than the machine has are its first ones once more.
     build.pins = build.pins.into_iter().cycle().take(row.axes).collect();

@@ -7,7 +7,7 @@ use carrystep_spec::engine::clocks_of_turns;
 /// Placements are tried with these; the best counts.
 pub const SEEDS: [u32; 3] = [1, 2, 3];
 
-/// Phases of a tick in `sim/engine.toml`.
+/// Phases of a tick in `sim/six-axis.toml`.
 const PHASES: u32 = 16;
 
 /// An engine on an iCE40.
@@ -15,7 +15,7 @@ const PHASES: u32 = 16;
 pub struct Row {
     /// Where it is placed.
     pub part: Part<'static>,
-    /// Axes of the engine; `sim/engine.toml` says what they are.
+    /// Axes of the engine; `sim/six-axis.toml` says what they are.
     pub axes: usize,
     /// Tick in ns.
     pub tick_ns: u64,
