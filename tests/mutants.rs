@@ -2,7 +2,7 @@
 //! put to a proof that they are the engine, and those that are not proved to the promises of rung 7.
 //!
 //! ```text
-//! hdl-out/core/carrystep_engine.v -- yosys mutate --> one netlist that holds them all -- Verilator --> a program
+//! the engine's Verilog for 2 us -- yosys mutate --> one netlist that holds them all -- Verilator --> a program
 //! the model -- recordings of moves, starts, stops --------------------------------------------------> is run against it
 //! ```
 

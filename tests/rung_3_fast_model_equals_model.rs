@@ -40,8 +40,16 @@ fn random_programs_at_1_phase() {
 
 #[test]
 fn the_demo() {
-    let plan = moves::demo();
-    lockstep::assert_equals_model(Level::Fast, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+    for plan in [moves::demo(), moves::demo_at_48_mhz()] {
+        lockstep::assert_equals_model(Level::Fast, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+    }
+}
+
+#[test]
+fn the_demo_and_every_profile_on_the_engine() {
+    for name in ["demo", "curves"] {
+        lockstep::assert_engine_equals_model(Level::Fast, &moves::on_the_engine(name));
+    }
 }
 
 /// On the pins: the cases of one start phase side by side, one on each axis.

@@ -1,6 +1,6 @@
 //! The proof of homing: who waits for a limit, and who slows down.
 
-use super::builds::{axes, shipped_engine, small_engine};
+use super::builds::{BuiltEngine, axes, small_engine};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_spec::engine::{EngineBuild, Limits};
 
@@ -14,7 +14,7 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof() -> Proof {
-    let builds = [small_engine(6, 80, 4, Limits::Pair), small_engine(1, 16, 4, Limits::Pair), shipped_engine()];
+    let builds = [small_engine(6, 80, 4, Limits::Pair), small_engine(1, 16, 4, Limits::Pair), built.clone()];
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes at {} Hz", build.axes(), build.timebase.clock_hz()),
         dut: "carrystep_homes".into(),

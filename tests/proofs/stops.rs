@@ -1,6 +1,6 @@
 //! The proof of who stops the axes.
 
-use super::builds::{axes, shipped_engine, small_engine};
+use super::builds::{BuiltEngine, axes, small_engine};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_spec::engine::{EngineBuild, Limits};
 
@@ -31,7 +31,7 @@ pub(super) fn proof() -> Proof {
     Proof {
         module: "stops",
         promises: Promises { text: include_str!("../../crates/hdl/src/engine/stops/promises.sv") },
-        cases: [small_engine(6, 80, 16, Limits::Each), shipped_engine()].into_iter().map(case).collect(),
+        cases: [small_engine(6, 80, 16, Limits::Each), built.clone()].into_iter().map(case).collect(),
         depth: 1,
         reach: 20,
         bugs: BUGS,

@@ -1,6 +1,6 @@
 //! The proof of e-stop, watchdog and ENABLE.
 
-use super::builds::{shipped_engine, small_engine};
+use super::builds::{BuiltEngine, small_engine};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_spec::engine::{EngineBuild, Limits};
 
@@ -44,7 +44,7 @@ pub(super) fn proof() -> Proof {
     Proof {
         module: "watch",
         promises: Promises { text: include_str!("../../crates/hdl/src/engine/watch/promises.sv") },
-        cases: [small_engine(6, 80, 16, Limits::Pair), shipped_engine()].into_iter().map(case).collect(),
+        cases: [small_engine(6, 80, 16, Limits::Pair), built.clone()].into_iter().map(case).collect(),
         depth: 1,
         reach: 20,
         bugs: BUGS,

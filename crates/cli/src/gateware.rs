@@ -1,11 +1,11 @@
 //! The two cores behind one face: when a plan's first segments are loaded, and a run whose pins are watched.
 
 use crate::failure::Failure;
-use carrystep_spec::engine::EngineError;
-use carrystep_spec::{EngineBuild, Machine};
 use carrystep_levels::engine::run::EngineJob;
 use carrystep_levels::{Job, Level, LevelError};
 use carrystep_spec::engine::Cause;
+use carrystep_spec::engine::EngineError;
+use carrystep_spec::{EngineBuild, Machine};
 
 /// A plan on one of the cores.
 #[derive(Clone, Copy)]

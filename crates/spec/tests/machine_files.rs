@@ -6,6 +6,9 @@ use carrystep_spec::{AXES, BigDecimal, Machine, PinTiming, Source, StartPhase};
 
 const AXIS: &str = "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n";
 
+/// A clock at which the drivers' times are no whole clocks.
+const AT_48: &str = "[machine]\nclock_hz = 48_000_000\ntick_ns = 1000\n";
+
 fn machine(text: &str) -> Machine {
     Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() }).unwrap()
 }
@@ -18,8 +21,8 @@ fn number(text: &str) -> BigDecimal {
 fn what_is_left_out_has_its_default() {
     let machine = machine(&format!("[machine]\n{AXIS}driver = \"a4988\"\n"));
     let timebase = machine.timebase;
-    assert_eq!((timebase.clock_hz(), timebase.tick_ns(), timebase.phases()), (48_000_000, 1000, 16));
-    assert_eq!((timebase.clocks_per_tick(), timebase.clocks_per_phase()), (48, 3));
+    assert_eq!((timebase.clock_hz(), timebase.tick_ns(), timebase.phases()), (80_000_000, 1000, 16));
+    assert_eq!((timebase.clocks_per_tick(), timebase.clocks_per_phase()), (80, 5));
     assert_eq!(machine.phase, StartPhase::Half);
     let axis = &machine.axes[0];
     assert_eq!(axis.start_speed, number("0"));
@@ -56,7 +59,7 @@ fn a_driver_is_a_preset_that_single_values_override() {
 
 #[test]
 fn pin_timings_are_rounded_up_to_clocks_and_never_none() {
-    let axis = machine(&format!("[machine]\n{AXIS}driver = \"drv8825\"\nhold_ns = 0\n")).axes.remove(0);
+    let axis = machine(&format!("{AT_48}{AXIS}driver = \"drv8825\"\nhold_ns = 0\n")).axes.remove(0);
     // 1900 ns are 91.2 clocks of 48 MHz, 650 ns are 31.2
     assert_eq!(axis.pins, PinTiming { width: 92, gap: 92, setup: 32, hold: 1 });
 }
@@ -68,15 +71,15 @@ fn a_build_has_six_axes_whatever_the_machine_has() {
     assert_eq!((machine.axis_index("y"), machine.axis_index("q")), (Some(1), None));
     assert_eq!(machine.axis_names(), "x, y");
     let build = machine.build().unwrap();
-    assert_eq!(build.pins[0].width, 48);
-    assert_eq!(build.pins[1].width, 5);
+    assert_eq!(build.pins[0].width, 80);
+    assert_eq!(build.pins[1].width, 8);
     assert_eq!(build.pins[2..], [PinTiming::SHORTEST; AXES - 2]);
 }
 
 #[test]
 fn the_fastest_speed_that_the_driver_allows_is_allowed() {
     // 48 + 48 clocks and a phase of 3: 48 MHz / 99
-    let axis = |speed: &str| format!("[machine]\n{AXIS}driver = \"a4988\"\n").replace("1000", speed);
+    let axis = |speed: &str| format!("{AT_48}{AXIS}driver = \"a4988\"\n").replace("1000", speed);
     let refused = |text: String| Machine::from_source(&Source { path: "m".into(), text: text.into() }).is_err();
     assert!(!refused(axis("96969.69")));
     assert!(refused(axis("96969.70")));

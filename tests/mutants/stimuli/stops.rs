@@ -5,7 +5,7 @@ use carrystep_levels::engine::{Event, Events};
 use carrystep_spec::engine::EngineOutputs;
 use carrystep_spec::{AXES, Command, EngineBuild, Program, Segment};
 
-/// Clocks of a tick of `sim/six-axis.toml`.
+/// Clocks of a tick of the mutants' build.
 const TICK: u64 = 96;
 /// Ticks between two looks at a limit.
 const ROUND: u64 = 64 * TICK;

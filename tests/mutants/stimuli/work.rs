@@ -5,7 +5,7 @@ use carrystep_levels::engine::{Event, Events};
 use carrystep_spec::{AXES, Command, EngineBuild, Program, Segment};
 use proptest::prelude::*;
 
-/// Speeds below 2^bits let the drivers of `sim/six-axis.toml` follow nearly always.
+/// Speeds below 2^bits let the drivers of the mutants' build follow nearly always.
 const SPEED_BITS: [u32; AXES] = [63, 62, 62, 60, 63, 61];
 
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {

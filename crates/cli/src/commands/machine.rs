@@ -95,7 +95,7 @@ fn new(arguments: &MachineNew) -> Result<(), Failure> {
     let shown = path.display();
     let next = match &wishes.clock {
         Some(Clock::Board(board)) => format!("carrystep build --board {} --machine {shown}", board.name),
-        _ => format!("carrystep verilog --core engine --machine {shown}"),
+        _ => format!("carrystep verilog --machine {shown}"),
     };
     output::print(&format!(
         "wrote {shown}: axes {}, {} MHz, ticks of {tick_ns} ns in {phases} phases, build {build_id}\n\
