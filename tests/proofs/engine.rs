@@ -45,8 +45,8 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_14_start_only_warm", text: "enable & watch_warm", becomes: "enable" },
 ];
 
-pub(super) fn proof() -> Proof {
-    let sizes = [(1, 16, 4), (6, 80, 16)];
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
+    let sizes = [(1, 16, 4), (6, 96, 16)];
     let builds = sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, Limits::Pair));
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes, {}", build.axes(), beat_name(&build.timebase)),

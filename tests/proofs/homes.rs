@@ -13,7 +13,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "mine_slows = 1'b0;", becomes: "mine_slows = 1'b1;" },
 ];
 
-pub(super) fn proof() -> Proof {
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let builds = [small_engine(6, 80, 4, Limits::Pair), small_engine(1, 16, 4, Limits::Pair), built.clone()];
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes at {} Hz", build.axes(), build.timebase.clock_hz()),

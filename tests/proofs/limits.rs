@@ -13,7 +13,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "hit = looks &", becomes: "hit = 1'b1 |" },
 ];
 
-pub(super) fn proof() -> Proof {
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let wirings = [Limits::Pair, Limits::None, Limits::Each, Limits::One].map(|limits| small_engine(6, 80, 4, limits));
     let case = |(build, verilog): (EngineBuild, _)| {
         let guard = &build.guard;

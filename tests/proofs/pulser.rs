@@ -34,7 +34,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "step_pin = 1'b0;", becomes: "step_pin = 1'b1;" },
 ];
 
-pub(super) fn proof() -> Proof {
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let builds = [small_engine(6, 80, 16, Limits::Pair), built.clone()].map(|(build, verilog)| (build.pins, verilog));
     Proof {
         module: "pulser",

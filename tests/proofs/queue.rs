@@ -36,7 +36,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "forward = 1'b0;", becomes: "forward = 1'b1;" },
 ];
 
-pub(super) fn proof() -> Proof {
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case =
         Case { name: "any".into(), dut: "carrystep_queue".into(), verilog: built.1.clone(), numbers: Vec::new() };
     Proof {

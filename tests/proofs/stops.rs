@@ -21,7 +21,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "freeze = 1'b0;", becomes: "freeze = 1'b1;" },
 ];
 
-pub(super) fn proof() -> Proof {
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{:?}", build.guard.limits),
         dut: "carrystep_stops".into(),

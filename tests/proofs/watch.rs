@@ -25,7 +25,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_14_warm_is_powered", text: "is_warm & power;", becomes: "is_warm;" },
 ];
 
-pub(super) fn proof() -> Proof {
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = |(build, verilog): (EngineBuild, _)| {
         let guard = &build.guard;
         let number = |name, figure: u32| (name, figure.to_string());

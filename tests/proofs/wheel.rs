@@ -27,8 +27,8 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "turned = 1'b0;", becomes: "turned = 1'b1;" },
 ];
 
-pub(super) fn proof() -> Proof {
-    let sizes = [(1, 16, 4), (2, 32, 16), (6, 80, 16)];
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
+    let sizes = [(1, 16, 4), (2, 32, 16), (6, 96, 16)];
     let builds = sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, Limits::Pair));
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes, {}", build.axes(), beat_name(&build.timebase)),
