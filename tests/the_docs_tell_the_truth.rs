@@ -1,5 +1,6 @@
 //! Numbers in the docs are those that the product gives.
 
+use carrystep_levels::engine::run::EngineJob;
 use carrystep_levels::{Job, Level, run};
 use carrystep_plan::{Plan, plan};
 use carrystep_spec::MoveFile;
@@ -43,16 +44,33 @@ fn the_flow_of_a_move_has_the_real_numbers() {
     assert!(text.contains(&format!("e_1 = {:.1} ns", (427e-6 - due) * 1e9)));
 
     let program = plan.program();
-    let mut first = None;
-    let job = Job::new(&plan.build, &program, plan.total_ticks());
-    run(Level::Model, &job, &mut |cycle, outputs| {
+    let (engine, _) = moves::on_the_engine("demo");
+    let (mut first, mut start) = (None, None);
+    let job = EngineJob::new(&engine, &program, plan.total_ticks());
+    job.run(Level::Model, &mut |cycle, outputs| {
+        if outputs.started && start.is_none() {
+            start = Some(cycle);
+        }
         if outputs.step & 1 == 1 && first.is_none() {
             first = Some(cycle);
         }
     })
-    .expect("the model");
-    let first = first.expect("a pulse on x");
-    assert!(text.contains(&grouped(first)), "the first edge is in cycle {first}");
+    .expect("the engine's model");
+    let (first, start) = (first.expect("a pulse on x"), start.expect("a start"));
+    let clocks = u64::from(plan.build.timebase.clocks_per_tick());
+    assert!(text.contains(&format!("= {}\n", grouped(first))), "the first edge is in cycle {first}");
+    let strobe = format!("tick {} after configuration, in cycle {}", (start + 1) / clocks, grouped(start));
+    assert!(text.contains(&strobe), "not said: {strobe}");
+    let mut of_parallel = None;
+    let job = Job::new(&plan.build, &program, plan.total_ticks());
+    run(Level::Model, &job, &mut |cycle, outputs| {
+        if outputs.step & 1 == 1 && of_parallel.is_none() {
+            of_parallel = Some(cycle);
+        }
+    })
+    .expect("the parallel core's model");
+    let of_parallel = of_parallel.expect("a pulse on x");
+    assert!(text.contains(&format!("= {}.", grouped(of_parallel))), "the parallel core's is in cycle {of_parallel}");
     assert!(text.contains(&grouped(plan.build.timebase.clock_to_ps(first))));
     let pulses: u64 = plan.moves.iter().flat_map(|m| &m.axes).map(|a| a.steps.unsigned_abs()).sum();
     assert!(text.contains(&format!("{pulses} edges")));
