@@ -15,7 +15,8 @@ use carrystep_spec::{Command, Program, Segment};
 struct Due {
     /// 0: before the first move; n: once tick n has begun.
     room: u64,
-    /// Starts after the segments that are due with them; these in the order of their queues.
+    /// The first start after all segments that are due with it, a later one after its own; these in the order of their
+    /// queues.
     place: usize,
     command: Command,
 }
@@ -66,7 +67,7 @@ fn alone(command: Command) -> Option<Act> {
 /// When there is room for each command of planned moves, in which all axes' segments add up to the same ticks.
 fn due(program: &Program) -> Vec<Due> {
     let mut lanes = vec![Lane::default(); 8];
-    let mut started = 0;
+    let (mut started, mut started_before) = (0, false);
     let place = |command: &Command| {
         let command = *command;
         match command {
@@ -83,7 +84,11 @@ fn due(program: &Program) -> Vec<Due> {
                 let room = lanes.iter().map(|lane| lane.room).fold(started, u64::max);
                 let begins = lanes.iter().filter_map(|lane| lane.begins.last());
                 started = begins.map(|begin| begin + 1).fold(started, u64::max);
-                Due { room, place: usize::MAX, command }
+                // The first waits for full queues. A later one for its own segments only: the move before may be a tick long.
+                let own = lanes.iter().map(|lane| lane.begins.len()).max().unwrap_or(0).saturating_sub(1);
+                let place = if started_before { own } else { usize::MAX };
+                started_before = true;
+                Due { room, place, command }
             }
         }
     };
@@ -148,6 +153,24 @@ mod tests {
         assert_eq!((commits(&acts[..start], 0), commits(&acts[..start], 1)), (QUEUE, 2));
         assert_eq!((commits(&acts, 0), commits(&acts, 1)), (10, 2));
         assert_eq!(acts.iter().filter(|act| matches!(act, Act::Start(0b11))).count(), 2);
+    }
+
+    #[test]
+    fn a_move_behind_one_of_a_tick_starts_in_the_next_tick() {
+        let build = build();
+        for axes in [1, 6] {
+            let rest = vec![vec![1]; axes];
+            let program = program(&[rest.clone(), rest, vec![vec![20; 9]; axes]]);
+            let mut starts = Vec::new();
+            let outcome = EngineJob::new(&build, &program, 182).run(Level::Model, &mut |cycle, outputs| {
+                if outputs.started && starts.last() != Some(&cycle) {
+                    starts.push(cycle);
+                }
+            });
+            assert_eq!(outcome.unwrap().fault, None, "{axes} axes");
+            let ticks: Vec<u64> = starts.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            assert_eq!(ticks, [80, 80], "{axes} axes");
+        }
     }
 
     #[test]
