@@ -6,8 +6,8 @@ use carrystep_spec::{AXES, BigDecimal, Machine, PinTiming, Source, StartPhase};
 
 const AXIS: &str = "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n";
 
-/// A clock at which the drivers' times are no whole clocks.
-const AT_48: &str = "[machine]\nclock_hz = 48_000_000\ntick_ns = 1000\n";
+/// A clock at which the drivers' times are no whole clocks; one axis has ticks of 1 us there.
+const AT_48: &str = "[machine]\nclock_hz = 48_000_000\n";
 
 fn machine(text: &str) -> Machine {
     Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() }).unwrap()
