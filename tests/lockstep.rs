@@ -52,13 +52,14 @@ pub fn assert_equals_model(level: Level, job: &Job<'_>) {
     }
 }
 
-/// All outputs of a planned engine but the two `ready`s, which the fast level does not tell, in each cycle in which one of
-/// them changed, and how it ended.
+/// All outputs of a planned engine but those that the fast level does not tell (the `ready`s, `latch` and `room`), in each
+/// cycle in which one of them changed, and how it ended.
 fn engine_record(level: Level, build: &EngineBuild, plan: &Plan) -> (Vec<(u64, EngineOutputs)>, EngineOutcome) {
     let program = plan.program();
     let mut changes: Vec<(u64, EngineOutputs)> = Vec::new();
     let outcome = EngineJob::new(build, &program, plan.total_ticks()).run(level, &mut |cycle, outputs| {
-        let told = EngineOutputs { put_ready: false, start_ready: false, ..*outputs };
+        let told = EngineOutputs { put_ready: false, start_ready: false, ready: false, ..*outputs };
+        let told = EngineOutputs { latch: None, room: None, ..told };
         if changes.last().is_none_or(|(_, before)| *before != told) {
             changes.push((cycle, told));
         }

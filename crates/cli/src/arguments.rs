@@ -47,7 +47,7 @@ pub enum Subcommand {
     Check(Check),
     /// Write the gateware as Verilog.
     Verilog(Verilog),
-    /// Run many machines and moves over all cores and report the worst of each figure.
+    /// Run many machines and moves on all processors of this computer and report the worst of each figure.
     Sweep(Sweep),
     /// Make the moves of a file on a board: plan, stream, keep its queues full; Ctrl-C stops by ramps.
     Run(Run),

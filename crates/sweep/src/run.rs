@@ -1,4 +1,4 @@
-//! The cases of a shard over all cores.
+//! The cases of a shard over all processors.
 
 use crate::file::{Case, SweepFile};
 use crate::report::{Report, Verdict};

@@ -1,4 +1,4 @@
-//! `carrystep sweep`: many machines and moves over all cores, or the reports of many shards as one.
+//! `carrystep sweep`: many machines and moves over all processors, or the reports of many shards as one.
 
 use crate::arguments::{Core, Sweep};
 use crate::failure::Failure;
