@@ -2,24 +2,24 @@
 //
 // carrystep_engine: step and direction for six axes. Generated: change the generator, not this file.
 //
-// Made from    sim/engine.toml
+// Made from    sim/six-axis.toml
 // Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
-// Clock        48000000 Hz
-// Tick         2000 ns, 96 clocks in 16 phases
-// Latency      193 clocks from the load of a move to the edge of its tick 1, phase 0
+// Clock        80000000 Hz
+// Tick         1000 ns, 80 clocks in 16 phases
+// Latency      161 clocks from the load of a move to the edge of its tick 1, phase 0
 // P starts at  half a step
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
-//   axis 0     W 5, S 5, D 1, H 1
-//   axis 1     W 48, S 48, D 10, H 10
-//   axis 2     W 92, S 92, D 32, H 32
-//   axis 3     W 120, S 120, D 240, H 240
-//   axis 4     W 5, S 5, D 1, H 1
-//   axis 5     W 144, S 144, D 72, H 72
-// Guard        counts in rounds of 16 ticks, 32 us
-//   watchdog   100 to 100.034 ms without a sign of the host: ramp
-//   enable     1.024 to 1.058 ms from ENABLE to the first start
+//   axis 0     W 8, S 8, D 2, H 2
+//   axis 1     W 80, S 80, D 16, H 16
+//   axis 2     W 152, S 152, D 52, H 52
+//   axis 3     W 200, S 200, D 400, H 400
+//   axis 4     W 8, S 8, D 2, H 2
+//   axis 5     W 240, S 240, D 120, H 120
+// Guard        counts in rounds of 32 ticks, 32 us
+//   watchdog   100 to 100.033 ms without a sign of the host: ramp
+//   enable     1.024 to 1.057 ms from ENABLE to the first start
 //   e-stop     active high: freeze
-//   limits     two an axis, active high, believed after 512 to 546 us: ramp
+//   limits     two an axis, active high, believed after 512 to 545 us: ramp
 //   axis 0     ramps by 800000 steps/s^2
 //   axis 1     ramps by 640000 steps/s^2
 //   axis 2     ramps by 600000 steps/s^2
@@ -561,35 +561,35 @@ module carrystep_segments (
     initial begin
         for (i = 0; i < 512; i = i + 1) words[i] = 0;
         words[15] = 32'h80000000;
-        words[39] = 32'h1aca86a2;
-        words[47] = 32'hffffca50;
-        words[55] = 32'he535795e;
-        words[63] = 32'h35af;
+        words[39] = 32'h6b2a1a9;
+        words[47] = 32'hfffff294;
+        words[55] = 32'hf94d5e57;
+        words[63] = 32'hd6b;
         words[79] = 32'h80000000;
-        words[103] = 32'he23b9ee8;
-        words[111] = 32'hffffd50c;
-        words[119] = 32'h1dc46118;
-        words[127] = 32'h2af3;
+        words[103] = 32'h388ee7ba;
+        words[111] = 32'hfffff543;
+        words[119] = 32'hc7711846;
+        words[127] = 32'habc;
         words[143] = 32'h80000000;
-        words[167] = 32'h1417e4fa;
-        words[175] = 32'hffffd7bc;
-        words[183] = 32'hebe81b06;
-        words[191] = 32'h2843;
+        words[167] = 32'h505f93f;
+        words[175] = 32'hfffff5ef;
+        words[183] = 32'hfafa06c1;
+        words[191] = 32'ha10;
         words[207] = 32'h80000000;
-        words[231] = 32'h9a211f65;
-        words[239] = 32'hffffe823;
-        words[247] = 32'h65dee09b;
-        words[255] = 32'h17dc;
+        words[231] = 32'he68847da;
+        words[239] = 32'hfffffa08;
+        words[247] = 32'h1977b826;
+        words[255] = 32'h5f7;
         words[271] = 32'h80000000;
-        words[295] = 32'h152ce7b;
-        words[303] = 32'hffffc459;
-        words[311] = 32'hfead3185;
-        words[319] = 32'h3ba6;
+        words[295] = 32'h4054b39f;
+        words[303] = 32'hfffff116;
+        words[311] = 32'hbfab4c61;
+        words[319] = 32'hee9;
         words[335] = 32'h80000000;
-        words[359] = 32'h505f93f;
-        words[367] = 32'hfffff5ef;
-        words[375] = 32'hfafa06c1;
-        words[383] = 32'ha10;
+        words[359] = 32'hc1417e50;
+        words[367] = 32'hfffffd7b;
+        words[375] = 32'h3ebe81b0;
+        words[383] = 32'h284;
     end
 
     always @(posedge clock) begin
@@ -792,7 +792,7 @@ module carrystep_tick (
 );
     localparam [15:0] ZERO = 16'd0;
     localparam [15:0] ONE = 16'd1;
-    localparam [15:0] LAST_SUB = 16'd5;
+    localparam [15:0] LAST_SUB = 16'd4;
     localparam [15:0] SUB_BITS = 16'd7;
     localparam [3:0] FIRST_PHASE = 4'd0;
     localparam [3:0] ONE_PHASE = 4'd1;
@@ -1328,7 +1328,7 @@ module carrystep_watch (
     output wire         tick_1
 );
     localparam ESTOP_LOW = 1'b0;
-    localparam [9:0] ROUND_BITS = 10'd15;
+    localparam [9:0] ROUND_BITS = 10'd31;
     localparam [11:0] WATCHDOG = 12'd3126;
     localparam [11:0] SILENCE_BITS = 12'd4095;
     localparam [11:0] WARM_AT = 12'd33;
@@ -1381,7 +1381,7 @@ module carrystep_watch (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w5_s5_d1_h1 (
+module carrystep_pulser_w8_s8_d2_h2 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1394,14 +1394,14 @@ module carrystep_pulser_w5_s5_d1_h1 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd4;
-    localparam [16:0] GAP_OVER = 17'd8;
+    localparam [16:0] PULSE_OVER = 17'd7;
+    localparam [16:0] GAP_OVER = 17'd14;
     localparam [16:0] HOLD_OVER = 17'd0;
     localparam [16:0] SINCE_BITS = 17'd15;
     localparam [15:0] SETUP_OVER = 16'd0;
     localparam [15:0] AFTER_BITS = 16'd0;
-    localparam HOLDS = 1'b0;
-    localparam INSTANT = 1'b1;
+    localparam HOLDS = 1'b1;
+    localparam INSTANT = 1'b0;
     localparam [16:0] SINCE_RISE = 17'd0;
     localparam [16:0] SINCE_ONE = 17'd1;
     localparam [15:0] AFTER_TURN = 16'd0;
@@ -1493,7 +1493,7 @@ module carrystep_pulser_w5_s5_d1_h1 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w48_s48_d10_h10 (
+module carrystep_pulser_w80_s80_d16_h16 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1506,11 +1506,11 @@ module carrystep_pulser_w48_s48_d10_h10 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd47;
-    localparam [16:0] GAP_OVER = 17'd94;
-    localparam [16:0] HOLD_OVER = 17'd8;
-    localparam [16:0] SINCE_BITS = 17'd127;
-    localparam [15:0] SETUP_OVER = 16'd8;
+    localparam [16:0] PULSE_OVER = 17'd79;
+    localparam [16:0] GAP_OVER = 17'd158;
+    localparam [16:0] HOLD_OVER = 17'd14;
+    localparam [16:0] SINCE_BITS = 17'd255;
+    localparam [15:0] SETUP_OVER = 16'd14;
     localparam [15:0] AFTER_BITS = 16'd15;
     localparam HOLDS = 1'b1;
     localparam INSTANT = 1'b0;
@@ -1605,7 +1605,7 @@ module carrystep_pulser_w48_s48_d10_h10 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w92_s92_d32_h32 (
+module carrystep_pulser_w152_s152_d52_h52 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1618,235 +1618,235 @@ module carrystep_pulser_w92_s92_d32_h32 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd91;
-    localparam [16:0] GAP_OVER = 17'd182;
-    localparam [16:0] HOLD_OVER = 17'd30;
-    localparam [16:0] SINCE_BITS = 17'd255;
-    localparam [15:0] SETUP_OVER = 16'd30;
-    localparam [15:0] AFTER_BITS = 16'd31;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
-    localparam [16:0] SINCE_RISE = 17'd0;
-    localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
-    localparam [15:0] AFTER_ONE = 16'd1;
-    localparam [3:0] AT_3 = 4'd3;
-    localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] since = 17'd0;
-    reg [15:0] after = 16'd0;
-    reg busy = 1'b0;
-    reg held = 1'b0;
-    reg settled = 1'b0;
-    reg [2:0] count = 3'd0;
-    reg [2:0] lost = 3'd0;
-    reg first_back;
-    reg aim;
-    reg [2:0] change;
-
-    wire pending = due | request;
-    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
-    wire second = due & request;
-    wire late_now = second & !rise & !frozen;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
-    assign overruns = late_now;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(*) begin
-        change = ONE;
-        if (dir_pin) begin
-            change = MINUS_ONE;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (has_sign) begin
-            want <= sign_back;
-        end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
-        since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
-        held <= held & (since != HOLD_OVER);
-        if (rise) begin
-            since <= SINCE_RISE;
-            busy <= 1'b1;
-            held <= HOLDS != 1'b0;
-        end
-        after <= (after + AFTER_ONE) & AFTER_BITS;
-        settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
-            settled <= 1'b0;
-        end
-        if (rise) begin
-            count <= count + change;
-        end
-        due <= (pending & !rise & !frozen) | second;
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if ((frozen & pending) | late_now) begin
-            lost <= lost + ONE;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w120_s120_d240_h240 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         has_sign,
-    input  wire         sign_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire   [5:0] counts,
-    output wire         overruns
-);
-    localparam [16:0] PULSE_OVER = 17'd119;
-    localparam [16:0] GAP_OVER = 17'd238;
-    localparam [16:0] HOLD_OVER = 17'd238;
-    localparam [16:0] SINCE_BITS = 17'd255;
-    localparam [15:0] SETUP_OVER = 16'd238;
-    localparam [15:0] AFTER_BITS = 16'd255;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
-    localparam [16:0] SINCE_RISE = 17'd0;
-    localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
-    localparam [15:0] AFTER_ONE = 16'd1;
-    localparam [3:0] AT_3 = 4'd3;
-    localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] since = 17'd0;
-    reg [15:0] after = 16'd0;
-    reg busy = 1'b0;
-    reg held = 1'b0;
-    reg settled = 1'b0;
-    reg [2:0] count = 3'd0;
-    reg [2:0] lost = 3'd0;
-    reg first_back;
-    reg aim;
-    reg [2:0] change;
-
-    wire pending = due | request;
-    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
-    wire second = due & request;
-    wire late_now = second & !rise & !frozen;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
-    assign overruns = late_now;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(*) begin
-        change = ONE;
-        if (dir_pin) begin
-            change = MINUS_ONE;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (has_sign) begin
-            want <= sign_back;
-        end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
-        since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
-        held <= held & (since != HOLD_OVER);
-        if (rise) begin
-            since <= SINCE_RISE;
-            busy <= 1'b1;
-            held <= HOLDS != 1'b0;
-        end
-        after <= (after + AFTER_ONE) & AFTER_BITS;
-        settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
-            settled <= 1'b0;
-        end
-        if (rise) begin
-            count <= count + change;
-        end
-        due <= (pending & !rise & !frozen) | second;
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if ((frozen & pending) | late_now) begin
-            lost <= lost + ONE;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w144_s144_d72_h72 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         has_sign,
-    input  wire         sign_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire   [5:0] counts,
-    output wire         overruns
-);
-    localparam [16:0] PULSE_OVER = 17'd143;
-    localparam [16:0] GAP_OVER = 17'd286;
-    localparam [16:0] HOLD_OVER = 17'd70;
+    localparam [16:0] PULSE_OVER = 17'd151;
+    localparam [16:0] GAP_OVER = 17'd302;
+    localparam [16:0] HOLD_OVER = 17'd50;
     localparam [16:0] SINCE_BITS = 17'd511;
-    localparam [15:0] SETUP_OVER = 16'd70;
+    localparam [15:0] SETUP_OVER = 16'd50;
+    localparam [15:0] AFTER_BITS = 16'd63;
+    localparam HOLDS = 1'b1;
+    localparam INSTANT = 1'b0;
+    localparam [16:0] SINCE_RISE = 17'd0;
+    localparam [16:0] SINCE_ONE = 17'd1;
+    localparam [15:0] AFTER_TURN = 16'd0;
+    localparam [15:0] AFTER_ONE = 16'd1;
+    localparam [3:0] AT_3 = 4'd3;
+    localparam [2:0] ONE = 3'd1;
+    localparam [2:0] MINUS_ONE = 3'd7;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] since = 17'd0;
+    reg [15:0] after = 16'd0;
+    reg busy = 1'b0;
+    reg held = 1'b0;
+    reg settled = 1'b0;
+    reg [2:0] count = 3'd0;
+    reg [2:0] lost = 3'd0;
+    reg first_back;
+    reg aim;
+    reg [2:0] change;
+
+    wire pending = due | request;
+    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
+    wire turn = !frozen & !held & (dir_pin != aim);
+    wire second = due & request;
+    wire late_now = second & !rise & !frozen;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
+    assign overruns = late_now;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(*) begin
+        change = ONE;
+        if (dir_pin) begin
+            change = MINUS_ONE;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (has_sign) begin
+            want <= sign_back;
+        end
+        step_pin <= rise | (step_pin & (since != PULSE_OVER));
+        dir_pin <= dir_pin ^ turn;
+        since <= (since + SINCE_ONE) & SINCE_BITS;
+        busy <= busy & (since != GAP_OVER);
+        held <= held & (since != HOLD_OVER);
+        if (rise) begin
+            since <= SINCE_RISE;
+            busy <= 1'b1;
+            held <= HOLDS != 1'b0;
+        end
+        after <= (after + AFTER_ONE) & AFTER_BITS;
+        settled <= settled | (after == SETUP_OVER);
+        if (turn) begin
+            after <= AFTER_TURN;
+            settled <= 1'b0;
+        end
+        if (rise) begin
+            count <= count + change;
+        end
+        due <= (pending & !rise & !frozen) | second;
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if ((frozen & pending) | late_now) begin
+            lost <= lost + ONE;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_pulser_w200_s200_d400_h400 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         has_sign,
+    input  wire         sign_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire   [5:0] counts,
+    output wire         overruns
+);
+    localparam [16:0] PULSE_OVER = 17'd199;
+    localparam [16:0] GAP_OVER = 17'd398;
+    localparam [16:0] HOLD_OVER = 17'd398;
+    localparam [16:0] SINCE_BITS = 17'd511;
+    localparam [15:0] SETUP_OVER = 16'd398;
+    localparam [15:0] AFTER_BITS = 16'd511;
+    localparam HOLDS = 1'b1;
+    localparam INSTANT = 1'b0;
+    localparam [16:0] SINCE_RISE = 17'd0;
+    localparam [16:0] SINCE_ONE = 17'd1;
+    localparam [15:0] AFTER_TURN = 16'd0;
+    localparam [15:0] AFTER_ONE = 16'd1;
+    localparam [3:0] AT_3 = 4'd3;
+    localparam [2:0] ONE = 3'd1;
+    localparam [2:0] MINUS_ONE = 3'd7;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] since = 17'd0;
+    reg [15:0] after = 16'd0;
+    reg busy = 1'b0;
+    reg held = 1'b0;
+    reg settled = 1'b0;
+    reg [2:0] count = 3'd0;
+    reg [2:0] lost = 3'd0;
+    reg first_back;
+    reg aim;
+    reg [2:0] change;
+
+    wire pending = due | request;
+    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
+    wire turn = !frozen & !held & (dir_pin != aim);
+    wire second = due & request;
+    wire late_now = second & !rise & !frozen;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
+    assign overruns = late_now;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(*) begin
+        change = ONE;
+        if (dir_pin) begin
+            change = MINUS_ONE;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (has_sign) begin
+            want <= sign_back;
+        end
+        step_pin <= rise | (step_pin & (since != PULSE_OVER));
+        dir_pin <= dir_pin ^ turn;
+        since <= (since + SINCE_ONE) & SINCE_BITS;
+        busy <= busy & (since != GAP_OVER);
+        held <= held & (since != HOLD_OVER);
+        if (rise) begin
+            since <= SINCE_RISE;
+            busy <= 1'b1;
+            held <= HOLDS != 1'b0;
+        end
+        after <= (after + AFTER_ONE) & AFTER_BITS;
+        settled <= settled | (after == SETUP_OVER);
+        if (turn) begin
+            after <= AFTER_TURN;
+            settled <= 1'b0;
+        end
+        if (rise) begin
+            count <= count + change;
+        end
+        due <= (pending & !rise & !frozen) | second;
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if ((frozen & pending) | late_now) begin
+            lost <= lost + ONE;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_pulser_w240_s240_d120_h120 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         has_sign,
+    input  wire         sign_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire   [5:0] counts,
+    output wire         overruns
+);
+    localparam [16:0] PULSE_OVER = 17'd239;
+    localparam [16:0] GAP_OVER = 17'd478;
+    localparam [16:0] HOLD_OVER = 17'd118;
+    localparam [16:0] SINCE_BITS = 17'd511;
+    localparam [15:0] SETUP_OVER = 16'd118;
     localparam [15:0] AFTER_BITS = 16'd127;
     localparam HOLDS = 1'b1;
     localparam INSTANT = 1'b0;
@@ -2435,7 +2435,7 @@ module carrystep_engine (
         .tick_1(watch_tick_1)
     );
 
-    carrystep_pulser_w5_s5_d1_h1 pulser_0 (
+    carrystep_pulser_w8_s8_d2_h2 pulser_0 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[0] & wheel_phase_start),
@@ -2449,7 +2449,7 @@ module carrystep_engine (
         .overruns(pulser_0_overruns)
     );
 
-    carrystep_pulser_w48_s48_d10_h10 pulser_1 (
+    carrystep_pulser_w80_s80_d16_h16 pulser_1 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[1] & wheel_phase_start),
@@ -2463,7 +2463,7 @@ module carrystep_engine (
         .overruns(pulser_1_overruns)
     );
 
-    carrystep_pulser_w92_s92_d32_h32 pulser_2 (
+    carrystep_pulser_w152_s152_d52_h52 pulser_2 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[2] & wheel_phase_start),
@@ -2477,7 +2477,7 @@ module carrystep_engine (
         .overruns(pulser_2_overruns)
     );
 
-    carrystep_pulser_w120_s120_d240_h240 pulser_3 (
+    carrystep_pulser_w200_s200_d400_h400 pulser_3 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[3] & wheel_phase_start),
@@ -2491,7 +2491,7 @@ module carrystep_engine (
         .overruns(pulser_3_overruns)
     );
 
-    carrystep_pulser_w5_s5_d1_h1 pulser_4 (
+    carrystep_pulser_w8_s8_d2_h2 pulser_4 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[4] & wheel_phase_start),
@@ -2505,7 +2505,7 @@ module carrystep_engine (
         .overruns(pulser_4_overruns)
     );
 
-    carrystep_pulser_w144_s144_d72_h72 pulser_5 (
+    carrystep_pulser_w240_s240_d120_h120 pulser_5 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[5] & wheel_phase_start),

@@ -4,17 +4,17 @@
 //
 // Made from    sim/six-axis.toml
 // Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
-// Clock        48000000 Hz
-// Tick         1000 ns, 48 clocks in 16 phases
-// Latency      97 clocks from the load of a move to the edge of its tick 1, phase 0
+// Clock        80000000 Hz
+// Tick         1000 ns, 80 clocks in 16 phases
+// Latency      161 clocks from the load of a move to the edge of its tick 1, phase 0
 // P starts at  half a step
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
-//   axis 0     W 5, S 5, D 1, H 1
-//   axis 1     W 48, S 48, D 10, H 10
-//   axis 2     W 92, S 92, D 32, H 32
-//   axis 3     W 120, S 120, D 240, H 240
-//   axis 4     W 5, S 5, D 1, H 1
-//   axis 5     W 144, S 144, D 72, H 72
+//   axis 0     W 8, S 8, D 2, H 2
+//   axis 1     W 80, S 80, D 16, H 16
+//   axis 2     W 152, S 152, D 52, H 52
+//   axis 3     W 200, S 200, D 400, H 400
+//   axis 4     W 8, S 8, D 2, H 2
+//   axis 5     W 240, S 240, D 120, H 120
 
 `default_nettype none
 
@@ -27,8 +27,8 @@ module carrystep_tick (
 );
     localparam [15:0] ZERO = 16'd0;
     localparam [15:0] ONE = 16'd1;
-    localparam [15:0] LAST_SUB = 16'd2;
-    localparam [15:0] SUB_BITS = 16'd3;
+    localparam [15:0] LAST_SUB = 16'd4;
+    localparam [15:0] SUB_BITS = 16'd7;
     localparam [3:0] FIRST_PHASE = 4'd0;
     localparam [3:0] ONE_PHASE = 4'd1;
     localparam [3:0] LAST_PHASE = 4'd15;
@@ -392,7 +392,7 @@ module carrystep_axis (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w5_s5_d1_h1 (
+module carrystep_shaper_w8_s8_d2_h2 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         clear,
@@ -407,13 +407,13 @@ module carrystep_shaper_w5_s5_d1_h1 (
     output wire  [31:0] discarded,
     output wire         overrun
 );
-    localparam [16:0] GAP = 17'd5;
-    localparam [16:0] BUSY_LOAD = 17'd9;
+    localparam [16:0] GAP = 17'd8;
+    localparam [16:0] BUSY_LOAD = 17'd15;
     localparam [16:0] BUSY_BITS = 17'd15;
-    localparam [15:0] HOLD_LOAD = 16'd0;
-    localparam [15:0] HOLD_BITS = 16'd0;
-    localparam [15:0] SETUP_LOAD = 16'd0;
-    localparam [15:0] SETUP_BITS = 16'd0;
+    localparam [15:0] HOLD_LOAD = 16'd1;
+    localparam [15:0] HOLD_BITS = 16'd1;
+    localparam [15:0] SETUP_LOAD = 16'd1;
+    localparam [15:0] SETUP_BITS = 16'd1;
     localparam [16:0] BUSY_ONE = 17'd1;
     localparam [15:0] TIMER_ONE = 16'd1;
     localparam [31:0] ONE = 32'd1;
@@ -426,7 +426,7 @@ module carrystep_shaper_w5_s5_d1_h1 (
     reg due_back = 1'b0;
     reg [16:0] busy = 17'd0;
     reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd0;
+    reg [15:0] setup = 16'd1;
     reg [31:0] steps = 32'd0;
     reg [31:0] lost = 32'd0;
     reg late = 1'b0;
@@ -512,7 +512,7 @@ module carrystep_shaper_w5_s5_d1_h1 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w48_s48_d10_h10 (
+module carrystep_shaper_w80_s80_d16_h16 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         clear,
@@ -527,12 +527,12 @@ module carrystep_shaper_w48_s48_d10_h10 (
     output wire  [31:0] discarded,
     output wire         overrun
 );
-    localparam [16:0] GAP = 17'd48;
-    localparam [16:0] BUSY_LOAD = 17'd95;
-    localparam [16:0] BUSY_BITS = 17'd127;
-    localparam [15:0] HOLD_LOAD = 16'd9;
+    localparam [16:0] GAP = 17'd80;
+    localparam [16:0] BUSY_LOAD = 17'd159;
+    localparam [16:0] BUSY_BITS = 17'd255;
+    localparam [15:0] HOLD_LOAD = 16'd15;
     localparam [15:0] HOLD_BITS = 16'd15;
-    localparam [15:0] SETUP_LOAD = 16'd9;
+    localparam [15:0] SETUP_LOAD = 16'd15;
     localparam [15:0] SETUP_BITS = 16'd15;
     localparam [16:0] BUSY_ONE = 17'd1;
     localparam [15:0] TIMER_ONE = 16'd1;
@@ -546,7 +546,7 @@ module carrystep_shaper_w48_s48_d10_h10 (
     reg due_back = 1'b0;
     reg [16:0] busy = 17'd0;
     reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd9;
+    reg [15:0] setup = 16'd15;
     reg [31:0] steps = 32'd0;
     reg [31:0] lost = 32'd0;
     reg late = 1'b0;
@@ -632,7 +632,7 @@ module carrystep_shaper_w48_s48_d10_h10 (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w92_s92_d32_h32 (
+module carrystep_shaper_w152_s152_d52_h52 (
     input  wire         clock,
     input  wire         frozen,
     input  wire         clear,
@@ -647,252 +647,252 @@ module carrystep_shaper_w92_s92_d32_h32 (
     output wire  [31:0] discarded,
     output wire         overrun
 );
-    localparam [16:0] GAP = 17'd92;
-    localparam [16:0] BUSY_LOAD = 17'd183;
-    localparam [16:0] BUSY_BITS = 17'd255;
-    localparam [15:0] HOLD_LOAD = 16'd31;
-    localparam [15:0] HOLD_BITS = 16'd31;
-    localparam [15:0] SETUP_LOAD = 16'd31;
-    localparam [15:0] SETUP_BITS = 16'd31;
-    localparam [16:0] BUSY_ONE = 17'd1;
-    localparam [15:0] TIMER_ONE = 16'd1;
-    localparam [31:0] ONE = 32'd1;
-    localparam [31:0] TWO = 32'd2;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] busy = 17'd0;
-    reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd31;
-    reg [31:0] steps = 32'd0;
-    reg [31:0] lost = 32'd0;
-    reg late = 1'b0;
-    reg first_back;
-    reg aim;
-
-    wire want_now = want_back | (want & !want_fwd);
-    wire pending = due | request;
-    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
-    wire second = due & request;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign position = steps;
-    assign discarded = lost;
-    assign overrun = late;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want_now;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(posedge clock) begin
-        want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
-        if (rise) begin
-            busy <= BUSY_LOAD;
-        end else if (busy != 17'd0) begin
-            busy <= (busy - BUSY_ONE) & BUSY_BITS;
-        end
-        if (rise) begin
-            hold <= HOLD_LOAD;
-        end else if (hold != 16'd0) begin
-            hold <= (hold - TIMER_ONE) & HOLD_BITS;
-        end
-        if (turn) begin
-            setup <= SETUP_LOAD;
-        end else if (setup != 16'd0) begin
-            setup <= (setup - TIMER_ONE) & SETUP_BITS;
-        end
-        if (rise) begin
-            if (dir_pin) begin
-                steps <= steps - ONE;
-            end else begin
-                steps <= steps + ONE;
-            end
-        end
-        due <= pending & !rise;
-        if (rise) begin
-            due <= second;
-        end
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if (frozen) begin
-            due <= 1'b0;
-            due_back <= due_back;
-            if (second) begin
-                lost <= lost + TWO;
-            end else if (pending) begin
-                lost <= lost + ONE;
-            end
-        end else if (second & !rise) begin
-            late <= 1'b1;
-            lost <= lost + ONE;
-        end
-        if (clear) begin
-            late <= 1'b0;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w120_s120_d240_h240 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         clear,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         want_fwd,
-    input  wire         want_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire  [31:0] position,
-    output wire  [31:0] discarded,
-    output wire         overrun
-);
-    localparam [16:0] GAP = 17'd120;
-    localparam [16:0] BUSY_LOAD = 17'd239;
-    localparam [16:0] BUSY_BITS = 17'd255;
-    localparam [15:0] HOLD_LOAD = 16'd239;
-    localparam [15:0] HOLD_BITS = 16'd255;
-    localparam [15:0] SETUP_LOAD = 16'd239;
-    localparam [15:0] SETUP_BITS = 16'd255;
-    localparam [16:0] BUSY_ONE = 17'd1;
-    localparam [15:0] TIMER_ONE = 16'd1;
-    localparam [31:0] ONE = 32'd1;
-    localparam [31:0] TWO = 32'd2;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] busy = 17'd0;
-    reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd239;
-    reg [31:0] steps = 32'd0;
-    reg [31:0] lost = 32'd0;
-    reg late = 1'b0;
-    reg first_back;
-    reg aim;
-
-    wire want_now = want_back | (want & !want_fwd);
-    wire pending = due | request;
-    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
-    wire second = due & request;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign position = steps;
-    assign discarded = lost;
-    assign overrun = late;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want_now;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(posedge clock) begin
-        want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
-        if (rise) begin
-            busy <= BUSY_LOAD;
-        end else if (busy != 17'd0) begin
-            busy <= (busy - BUSY_ONE) & BUSY_BITS;
-        end
-        if (rise) begin
-            hold <= HOLD_LOAD;
-        end else if (hold != 16'd0) begin
-            hold <= (hold - TIMER_ONE) & HOLD_BITS;
-        end
-        if (turn) begin
-            setup <= SETUP_LOAD;
-        end else if (setup != 16'd0) begin
-            setup <= (setup - TIMER_ONE) & SETUP_BITS;
-        end
-        if (rise) begin
-            if (dir_pin) begin
-                steps <= steps - ONE;
-            end else begin
-                steps <= steps + ONE;
-            end
-        end
-        due <= pending & !rise;
-        if (rise) begin
-            due <= second;
-        end
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if (frozen) begin
-            due <= 1'b0;
-            due_back <= due_back;
-            if (second) begin
-                lost <= lost + TWO;
-            end else if (pending) begin
-                lost <= lost + ONE;
-            end
-        end else if (second & !rise) begin
-            late <= 1'b1;
-            lost <= lost + ONE;
-        end
-        if (clear) begin
-            late <= 1'b0;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w144_s144_d72_h72 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         clear,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         want_fwd,
-    input  wire         want_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire  [31:0] position,
-    output wire  [31:0] discarded,
-    output wire         overrun
-);
-    localparam [16:0] GAP = 17'd144;
-    localparam [16:0] BUSY_LOAD = 17'd287;
+    localparam [16:0] GAP = 17'd152;
+    localparam [16:0] BUSY_LOAD = 17'd303;
     localparam [16:0] BUSY_BITS = 17'd511;
-    localparam [15:0] HOLD_LOAD = 16'd71;
+    localparam [15:0] HOLD_LOAD = 16'd51;
+    localparam [15:0] HOLD_BITS = 16'd63;
+    localparam [15:0] SETUP_LOAD = 16'd51;
+    localparam [15:0] SETUP_BITS = 16'd63;
+    localparam [16:0] BUSY_ONE = 17'd1;
+    localparam [15:0] TIMER_ONE = 16'd1;
+    localparam [31:0] ONE = 32'd1;
+    localparam [31:0] TWO = 32'd2;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] busy = 17'd0;
+    reg [15:0] hold = 16'd0;
+    reg [15:0] setup = 16'd51;
+    reg [31:0] steps = 32'd0;
+    reg [31:0] lost = 32'd0;
+    reg late = 1'b0;
+    reg first_back;
+    reg aim;
+
+    wire want_now = want_back | (want & !want_fwd);
+    wire pending = due | request;
+    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
+    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
+    wire second = due & request;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign position = steps;
+    assign discarded = lost;
+    assign overrun = late;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want_now;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(posedge clock) begin
+        want <= want_now;
+        step_pin <= rise | (step_pin & (busy != GAP));
+        dir_pin <= dir_pin ^ turn;
+        if (rise) begin
+            busy <= BUSY_LOAD;
+        end else if (busy != 17'd0) begin
+            busy <= (busy - BUSY_ONE) & BUSY_BITS;
+        end
+        if (rise) begin
+            hold <= HOLD_LOAD;
+        end else if (hold != 16'd0) begin
+            hold <= (hold - TIMER_ONE) & HOLD_BITS;
+        end
+        if (turn) begin
+            setup <= SETUP_LOAD;
+        end else if (setup != 16'd0) begin
+            setup <= (setup - TIMER_ONE) & SETUP_BITS;
+        end
+        if (rise) begin
+            if (dir_pin) begin
+                steps <= steps - ONE;
+            end else begin
+                steps <= steps + ONE;
+            end
+        end
+        due <= pending & !rise;
+        if (rise) begin
+            due <= second;
+        end
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if (frozen) begin
+            due <= 1'b0;
+            due_back <= due_back;
+            if (second) begin
+                lost <= lost + TWO;
+            end else if (pending) begin
+                lost <= lost + ONE;
+            end
+        end else if (second & !rise) begin
+            late <= 1'b1;
+            lost <= lost + ONE;
+        end
+        if (clear) begin
+            late <= 1'b0;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_shaper_w200_s200_d400_h400 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         clear,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         want_fwd,
+    input  wire         want_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire  [31:0] position,
+    output wire  [31:0] discarded,
+    output wire         overrun
+);
+    localparam [16:0] GAP = 17'd200;
+    localparam [16:0] BUSY_LOAD = 17'd399;
+    localparam [16:0] BUSY_BITS = 17'd511;
+    localparam [15:0] HOLD_LOAD = 16'd399;
+    localparam [15:0] HOLD_BITS = 16'd511;
+    localparam [15:0] SETUP_LOAD = 16'd399;
+    localparam [15:0] SETUP_BITS = 16'd511;
+    localparam [16:0] BUSY_ONE = 17'd1;
+    localparam [15:0] TIMER_ONE = 16'd1;
+    localparam [31:0] ONE = 32'd1;
+    localparam [31:0] TWO = 32'd2;
+
+    reg step_pin = 1'b0;
+    reg dir_pin = 1'b0;
+    reg want = 1'b0;
+    reg due = 1'b0;
+    reg due_back = 1'b0;
+    reg [16:0] busy = 17'd0;
+    reg [15:0] hold = 16'd0;
+    reg [15:0] setup = 16'd399;
+    reg [31:0] steps = 32'd0;
+    reg [31:0] lost = 32'd0;
+    reg late = 1'b0;
+    reg first_back;
+    reg aim;
+
+    wire want_now = want_back | (want & !want_fwd);
+    wire pending = due | request;
+    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
+    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
+    wire second = due & request;
+
+    assign step = step_pin;
+    assign dir = dir_pin;
+    assign owed = due;
+    assign position = steps;
+    assign discarded = lost;
+    assign overrun = late;
+
+    always @(*) begin
+        first_back = request_back;
+        if (due) begin
+            first_back = due_back;
+        end
+    end
+
+    always @(*) begin
+        aim = want_now;
+        if (pending) begin
+            aim = first_back;
+        end
+    end
+
+    always @(posedge clock) begin
+        want <= want_now;
+        step_pin <= rise | (step_pin & (busy != GAP));
+        dir_pin <= dir_pin ^ turn;
+        if (rise) begin
+            busy <= BUSY_LOAD;
+        end else if (busy != 17'd0) begin
+            busy <= (busy - BUSY_ONE) & BUSY_BITS;
+        end
+        if (rise) begin
+            hold <= HOLD_LOAD;
+        end else if (hold != 16'd0) begin
+            hold <= (hold - TIMER_ONE) & HOLD_BITS;
+        end
+        if (turn) begin
+            setup <= SETUP_LOAD;
+        end else if (setup != 16'd0) begin
+            setup <= (setup - TIMER_ONE) & SETUP_BITS;
+        end
+        if (rise) begin
+            if (dir_pin) begin
+                steps <= steps - ONE;
+            end else begin
+                steps <= steps + ONE;
+            end
+        end
+        due <= pending & !rise;
+        if (rise) begin
+            due <= second;
+        end
+        if (!due | rise) begin
+            due_back <= request_back;
+        end
+        if (frozen) begin
+            due <= 1'b0;
+            due_back <= due_back;
+            if (second) begin
+                lost <= lost + TWO;
+            end else if (pending) begin
+                lost <= lost + ONE;
+            end
+        end else if (second & !rise) begin
+            late <= 1'b1;
+            lost <= lost + ONE;
+        end
+        if (clear) begin
+            late <= 1'b0;
+        end
+    end
+endmodule
+
+// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+module carrystep_shaper_w240_s240_d120_h120 (
+    input  wire         clock,
+    input  wire         frozen,
+    input  wire         clear,
+    input  wire         request,
+    input  wire         request_back,
+    input  wire         want_fwd,
+    input  wire         want_back,
+    output wire         step,
+    output wire         dir,
+    output wire         owed,
+    output wire  [31:0] position,
+    output wire  [31:0] discarded,
+    output wire         overrun
+);
+    localparam [16:0] GAP = 17'd240;
+    localparam [16:0] BUSY_LOAD = 17'd479;
+    localparam [16:0] BUSY_BITS = 17'd511;
+    localparam [15:0] HOLD_LOAD = 16'd119;
     localparam [15:0] HOLD_BITS = 16'd127;
-    localparam [15:0] SETUP_LOAD = 16'd71;
+    localparam [15:0] SETUP_LOAD = 16'd119;
     localparam [15:0] SETUP_BITS = 16'd127;
     localparam [16:0] BUSY_ONE = 17'd1;
     localparam [15:0] TIMER_ONE = 16'd1;
@@ -906,7 +906,7 @@ module carrystep_shaper_w144_s144_d72_h72 (
     reg due_back = 1'b0;
     reg [16:0] busy = 17'd0;
     reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd71;
+    reg [15:0] setup = 16'd119;
     reg [31:0] steps = 32'd0;
     reg [31:0] lost = 32'd0;
     reg late = 1'b0;
@@ -1442,7 +1442,7 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_shaper_w5_s5_d1_h1 shaper_0 (
+    carrystep_shaper_w8_s8_d2_h2 shaper_0 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1458,7 +1458,7 @@ module carrystep_six_axis (
         .overrun(shaper_0_overrun)
     );
 
-    carrystep_shaper_w48_s48_d10_h10 shaper_1 (
+    carrystep_shaper_w80_s80_d16_h16 shaper_1 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1474,7 +1474,7 @@ module carrystep_six_axis (
         .overrun(shaper_1_overrun)
     );
 
-    carrystep_shaper_w92_s92_d32_h32 shaper_2 (
+    carrystep_shaper_w152_s152_d52_h52 shaper_2 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1490,7 +1490,7 @@ module carrystep_six_axis (
         .overrun(shaper_2_overrun)
     );
 
-    carrystep_shaper_w120_s120_d240_h240 shaper_3 (
+    carrystep_shaper_w200_s200_d400_h400 shaper_3 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1506,7 +1506,7 @@ module carrystep_six_axis (
         .overrun(shaper_3_overrun)
     );
 
-    carrystep_shaper_w5_s5_d1_h1 shaper_4 (
+    carrystep_shaper_w8_s8_d2_h2 shaper_4 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1522,7 +1522,7 @@ module carrystep_six_axis (
         .overrun(shaper_4_overrun)
     );
 
-    carrystep_shaper_w144_s144_d72_h72 shaper_5 (
+    carrystep_shaper_w240_s240_d120_h120 shaper_5 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),

@@ -3,9 +3,10 @@
 use crate::leaps;
 use carrystep_core::engine::{Cause, Guard, Limits};
 use carrystep_core::{EngineBuild, PinTiming, Program, StartPhase};
+use carrystep_simulators::Level;
 use carrystep_simulators::engine::Events;
 use carrystep_tests::engine_twins::{self, Came};
-use carrystep_tests::{dense, effort, engine_programs};
+use carrystep_tests::{dense, effort, engine_programs, lockstep, moves};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
@@ -65,4 +66,11 @@ fn an_engine_of_many_edges() {
     let came = engines(&build, 100, programs);
     let underruns = came.faults[Cause::Underrun as usize];
     assert!(came.edges > 30_000 && underruns > 0, "{came:?}");
+}
+
+#[test]
+fn the_demo_and_every_profile() {
+    for name in ["demo", "curves"] {
+        lockstep::assert_engine_equals_model(Level::Fast, &moves::on_the_engine(name));
+    }
 }

@@ -37,8 +37,9 @@ fn random_programs_at_1_phase() {
 
 #[test]
 fn the_demo() {
-    let plan = moves::demo();
-    lockstep::assert_equals_model(Level::Fast, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+    for plan in [moves::demo(), moves::demo_at_48_mhz()] {
+        lockstep::assert_equals_model(Level::Fast, &Job::new(&plan.build, &plan.program(), plan.total_ticks()));
+    }
 }
 
 /// The cases of one start phase run side by side, one on each axis, and the edges are taken from

@@ -45,22 +45,34 @@ fn random_programs_in_icarus_at_1_phase() {
 
 #[test]
 fn the_demo_in_verilator() {
-    planned(Level::Verilator, &moves::demo());
+    planned(Level::Verilator, &moves::demo_at_48_mhz());
 }
 
 #[test]
 fn the_demo_in_icarus() {
-    planned(Level::Icarus, &moves::demo());
+    planned(Level::Icarus, &moves::demo_at_48_mhz());
 }
 
 #[test]
 fn every_profile_in_verilator() {
-    planned(Level::Verilator, &moves::curves());
+    planned(Level::Verilator, &moves::curves_at_6_mhz());
 }
 
 #[test]
 fn every_profile_in_icarus() {
-    planned(Level::Icarus, &moves::curves());
+    planned(Level::Icarus, &moves::curves_at_6_mhz());
+}
+
+#[test]
+fn the_demo_and_every_profile_on_the_engine_in_verilator() {
+    for name in ["demo", "curves"] {
+        lockstep::assert_engine_equals_model(Level::Verilator, &moves::on_the_engine(name));
+    }
+}
+
+#[test]
+fn a_move_of_the_shipped_machine_on_the_engine_in_icarus() {
+    lockstep::assert_engine_equals_model(Level::Icarus, &moves::nudge());
 }
 
 /// The cases of one start phase run side by side, one on each axis, and the edges are taken from

@@ -34,7 +34,7 @@ fn root() -> &'static Path {
 }
 
 fn shipped_build() -> EngineBuild {
-    Machine::load(&root().join("sim/engine.toml")).expect("a fine machine").engine()
+    Machine::load(&root().join("sim/six-axis.toml")).expect("a fine machine").engine()
 }
 
 /// The Verilog in `hdl-out`.

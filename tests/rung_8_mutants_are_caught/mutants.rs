@@ -8,7 +8,7 @@ use carrystep_tests::mutants::equal::{Scope, is_proved};
 use carrystep_tests::mutants::stimuli::{self, Stimulus};
 use carrystep_tests::mutants::survivors::{self, NO_REASON, PROVED, Survivors};
 use carrystep_tests::mutants::{Judgement, catchers, differs, judge};
-use carrystep_tests::{effort, jobs, moves};
+use carrystep_tests::{effort, jobs};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of mutants in every test run: the first ones of all.
@@ -22,9 +22,7 @@ fn mutants_are_caught_or_harmless() {
     let asked = std::env::var("CARRYSTEP_MUTANTS").unwrap_or_default();
     let (few, writes) = (asked.is_empty(), asked == "write");
     assert!(few || writes || asked == "all", "CARRYSTEP_MUTANTS is all or write, not {asked}");
-    let verilog = moves::root().join("hdl-out/core/carrystep_engine.v");
-    let verilog = std::fs::read_to_string(verilog).expect("the exported engine");
-    let sample = sample(&verilog, "carrystep_engine", if few { FEW } else { ALL });
+    let sample = sample(&stimuli::verilog(), "carrystep_engine", if few { FEW } else { ALL });
     let stimuli = stimuli::all(&stimuli::build());
     for stimulus in stimuli.iter().filter(|_| !few) {
         assert!(!differs(&sample, 0, stimulus), "without a mutant nothing may differ: {}", stimulus.name);

@@ -1,8 +1,11 @@
 //! Compares two levels on the same program, every output in every clock.
 
 use crate::golden::Edge;
+use carrystep_core::engine::EngineOutputs;
 use carrystep_core::ports::Outputs;
-use carrystep_core::{AXES, Build, PinTiming, Program, StartPhase, Timebase};
+use carrystep_core::{AXES, Build, EngineBuild, PinTiming, Program, StartPhase, Timebase};
+use carrystep_plan::Plan;
+use carrystep_simulators::engine::run::{EngineJob, EngineOutcome};
 use carrystep_simulators::{Job, Level, LevelError, Outcome, run};
 
 /// All outputs in each cycle in which any of them changed, and the end of the run. A host can block
@@ -50,7 +53,37 @@ pub fn assert_equals_model(level: Level, job: &Job<'_>) {
     }
 }
 
-/// A job for a random program, with enough clocks for all generators.
+/// All outputs of a planned engine but those that the fast level does not tell (the `ready`s, `latch` and `room`), in each
+/// cycle in which one of them changed, and how it ended.
+fn engine_record(level: Level, build: &EngineBuild, plan: &Plan) -> (Vec<(u64, EngineOutputs)>, EngineOutcome) {
+    let program = plan.program();
+    let mut changes: Vec<(u64, EngineOutputs)> = Vec::new();
+    let outcome = EngineJob::new(build, &program, plan.total_ticks()).run(level, &mut |cycle, outputs| {
+        let told = EngineOutputs { put_ready: false, start_ready: false, ready: false, ..*outputs };
+        let told = EngineOutputs { latch: None, room: None, ..told };
+        if changes.last().is_none_or(|(_, before)| *before != told) {
+            changes.push((cycle, told));
+        }
+    });
+    (changes, outcome.unwrap_or_else(|error| panic!("{level}: {error}")))
+}
+
+/// Panics at the first clock in which a level of the engine differs from its model on planned moves. Verilog is compared
+/// with it in every output where it runs.
+pub fn assert_engine_equals_model(level: Level, (build, plan): &(EngineBuild, Plan)) {
+    let (expected, ended) = engine_record(Level::Model, build, plan);
+    let (found, found_ended) = engine_record(level, build, plan);
+    if let Some((e, f)) = expected.iter().zip(&found).find(|(e, f)| e != f) {
+        panic!("{level} is not the model:\n expected {e:?}\n found    {f:?}");
+    }
+    assert_eq!((expected.len(), &ended), (found.len(), &found_ended), "{level}: changes, and the end");
+    let edges: u64 = plan.moves.iter().flat_map(|planned| &planned.axes).map(|axis| axis.steps.unsigned_abs()).sum();
+    let rising =
+        expected.windows(2).map(|pair| u64::from((pair[1].1.step & !pair[0].1.step).count_ones())).sum::<u64>();
+    assert_eq!((rising, ended.fault), (edges, None), "{level}: edges, and no stop");
+}
+
+/// A job for a random program: time for whatever the generators make.
 pub fn job<'a>(build: &'a Build, program: &'a Program) -> Job<'a> {
     Job { max_clocks: 50_000, ..Job::new(build, program, 0) }
 }

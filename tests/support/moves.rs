@@ -2,8 +2,8 @@
 
 use crate::golden::Case;
 use carrystep_check::{AxisSetup, Checker, Origin, Report, Setup};
-use carrystep_core::{AXES, Build, Command, Program, Segment};
-use carrystep_files::MoveFile;
+use carrystep_core::{AXES, Build, Command, EngineBuild, Program, Segment};
+use carrystep_files::{Machine, MoveFile, Source};
 use carrystep_plan::Plan;
 use carrystep_profile::{Line, Timeline};
 use carrystep_simulators::pins::PinFeed;
@@ -20,12 +20,50 @@ pub fn demo() -> Plan {
     shipped("demo").1
 }
 
-/// The plan of a file with every profile, free and straight.
+/// The demo's moves at 48 MHz: a clock that only the parallel core takes, so its levels are through sooner.
+pub fn demo_at_48_mhz() -> Plan {
+    let read = |name: &str| std::fs::read_to_string(root().join("sim").join(name)).expect("a shipped file");
+    let moves = read("demo.toml").replace("machine_file = \"six-axis.toml\"", "");
+    let text = read("six-axis.toml").replace("clock_hz = 80_000_000", "clock_hz = 48_000_000") + &moves;
+    planned_at("demo", text, 48_000_000)
+}
+
+/// Every profile, free and straight, planned.
 pub fn curves() -> Plan {
     shipped("curves").1
 }
 
-/// A move file from `sim/`, and its plan.
+/// The same at 6.4 MHz: a clock that only the parallel core takes.
+pub fn curves_at_6_mhz() -> Plan {
+    let text = std::fs::read_to_string(root().join("sim/curves.toml")).expect("a shipped file");
+    planned_at("curves", text.replace("clock_hz = 16_000_000", "clock_hz = 6_400_000"), 6_400_000)
+}
+
+/// A text that is a move file of this clock, planned.
+fn planned_at(name: &str, text: String, clock_hz: u64) -> Plan {
+    let file = MoveFile::from_source(Source { path: name.into(), text: text.into() }).expect("a fine move file");
+    assert_eq!(file.machine.timebase.clock_hz(), clock_hz, "{name}");
+    carrystep_plan::plan::<f64>(&file).expect("a plan")
+}
+
+/// A short move of each axis of the shipped machine and back, and its engine: for levels that take microseconds a clock.
+pub fn nudge() -> (EngineBuild, Plan) {
+    let machine = Machine::load(&root().join("sim/six-axis.toml")).expect("the shipped machine");
+    let engine = machine.engine();
+    let to = "[[move]]\nprofile = \"ranade\"\nto = { x = 0.1, y = -0.1, z = 0.01, a = 1, b = -0.2, c = 5 }\n";
+    let text = format!("{to}{}", to.replace("x = 0.1, y = -0.1", "x = -0.1, y = 0.1"));
+    let source = Source { path: "nudge.toml".into(), text: text.into() };
+    let file = MoveFile::of_moves(machine, source).expect("fine moves");
+    (engine, carrystep_plan::plan::<f64>(&file).expect("a plan"))
+}
+
+/// The engine of a move file that is shipped in `sim/`, and the plan.
+pub fn on_the_engine(name: &str) -> (EngineBuild, Plan) {
+    let (file, plan) = shipped(name);
+    (file.machine.engine(), plan)
+}
+
+/// A move file that is shipped in `sim/`, and its plan.
 pub fn shipped(name: &str) -> (MoveFile, Plan) {
     let file = MoveFile::load(&root().join("sim").join(name).with_extension("toml")).expect("a shipped move file");
     let plan = carrystep_plan::plan::<f64>(&file).expect("a shipped plan");

@@ -3,8 +3,8 @@
 //! goes to the promises of rung 7.
 //!
 //! ```text
-//! hdl-out/core/carrystep_engine.v -> yosys mutate -> one netlist with all mutants -> Verilator
-//! the model -> recordings of moves, starts and stops -> compared with each mutant in every clock
+//! the engine's Verilog for 2 us -- yosys mutate --> one netlist that holds them all -- Verilator --> a program
+//! the model -- recordings of moves, starts, stops --------------------------------------------------> is run against it
 //! ```
 
 pub mod draw;

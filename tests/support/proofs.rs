@@ -17,7 +17,7 @@
 
 mod adder;
 mod axis;
-mod builds;
+pub(crate) mod builds;
 mod edge;
 mod engine;
 pub mod equivalence;
@@ -104,8 +104,13 @@ impl Case {
     }
 }
 
-/// Every proof, the slowest first.
+/// Every proof, the slowest first, of the committed Verilog and of small and extreme builds.
 pub fn all() -> Vec<Proof> {
+    all_with(&builds::shipped_engine())
+}
+
+/// The same with another engine in the place of the committed one.
+pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
     vec![
         shaper::proof(),
         axis::proof(),
@@ -113,20 +118,15 @@ pub fn all() -> Vec<Proof> {
         tick::proof(),
         edge::proof(),
         six_axis::proof(),
-        pulser::proof(),
-        stops::proof(),
-        watch::proof(),
-        queue::proof(),
-        limits::proof(),
-        homes::proof(),
-        turn::proof(),
-        wheel::proof(),
-        adder::proof(),
-        engine::proof(),
+        pulser::proof(engine),
+        stops::proof(engine),
+        watch::proof(engine),
+        queue::proof(engine),
+        limits::proof(engine),
+        homes::proof(engine),
+        turn::proof(engine),
+        wheel::proof(engine),
+        adder::proof(engine),
+        engine::proof(engine),
     ]
-}
-
-/// The exported engine that the proofs are about.
-pub fn shipped_engine() -> Arc<str> {
-    builds::shipped_engine().1
 }

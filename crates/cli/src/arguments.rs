@@ -49,7 +49,7 @@ pub enum Subcommand {
     Check(Check),
     /// Write the gateware as Verilog.
     Verilog(Verilog),
-    /// Run many machines and moves over all cores and report the worst of each figure.
+    /// Run many machines and moves on all processors of this computer and report the worst of each figure.
     Sweep(Sweep),
     /// Execute the moves of a file on a board: plan, stream, keep its queues full; Ctrl-C ramps the
     /// axes down.
@@ -88,9 +88,9 @@ pub enum Subcommand {
 /// The core that the gateware is built from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Core {
-    /// One adder for all axes, with queues and a guard. Boards use this core.
+    /// One adder for all axes, with queues and a guard: the product, on boards and everywhere else.
     Engine,
-    /// One adder per axis. The engine is compared with this core.
+    /// An adder an axis: the article's picture, and what the engine is compared with.
     Parallel,
 }
 
@@ -113,6 +113,9 @@ pub struct Demo {
     /// Folder for everything that the demo writes.
     #[arg(long, default_value = "sim/out/demo", value_name = "DIR")]
     pub out: PathBuf,
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
+    pub core: Core,
     /// Where the gateware runs.
     #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
     pub level: Level,
@@ -145,8 +148,8 @@ pub struct Simulate {
     /// The move file.
     #[arg(value_name = "MOVE.toml")]
     pub file: PathBuf,
-    /// Which gateware: one adder for all axes, with queues and a guard, or one adder per axis.
-    #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// Where the gateware runs.
     #[arg(long, default_value = "fast", value_name = "LEVEL", value_parser = level())]
@@ -210,8 +213,8 @@ pub struct Check {
 /// The arguments of `carrystep verilog`.
 #[derive(Debug, Args)]
 pub struct Verilog {
-    /// Which gateware: one adder for all axes, with queues and a guard, or one adder per axis.
-    #[arg(long, default_value = "parallel", value_name = "CORE", value_parser = core())]
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
     pub core: Core,
     /// All gateware of a board instead: a top level with clock, host link and engine, constraints,
     /// a build script.
@@ -220,8 +223,8 @@ pub struct Verilog {
     /// Which of the board's parts; default: its first.
     #[arg(long, value_name = "PART", requires = "board")]
     pub part: Option<String>,
-    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped
-    /// machine of the core, or for a board the shipped machine at the board's clock.
+    /// The machine whose clock, phases, pin timings and guard are built in; default: the shipped machine, for a board at
+    /// the board's clock.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
     /// Folder for all files; default: hdl-out/core, or sim/out/BOARD.
@@ -238,7 +241,10 @@ pub struct Sweep {
     /// The sweep: a move file with blanks, and what they are filled with.
     #[arg(value_name = "SWEEP.toml", required_unless_present = "merge")]
     pub file: Option<PathBuf>,
-    /// Number of random cases that run instead of the whole grid.
+    /// Which gateware: the engine, one adder for all axes with queues and a guard; or its sibling, an adder an axis.
+    #[arg(long, default_value = "engine", value_name = "CORE", value_parser = core())]
+    pub core: Core,
+    /// So many random cases instead of the whole grid.
     #[arg(long, value_name = "CASES")]
     pub sample: Option<u64>,
     /// Seed of the random cases.
@@ -247,8 +253,8 @@ pub struct Sweep {
     /// Only this part of the cases: 3/16 is the third of sixteen.
     #[arg(long, default_value_t = Shard::WHOLE, value_name = "N/OF")]
     pub shard: Shard,
-    /// Merge the JSON reports of all shards into one report.
-    #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "sample", "seed", "shard"])]
+    /// Make one report of the JSON reports of all shards.
+    #[arg(long, value_name = "REPORT.json", num_args = 1.., conflicts_with_all = ["file", "core", "sample", "seed", "shard"])]
     pub merge: Vec<PathBuf>,
     /// Also write the result as JUnit XML, a test case for the whole and one for each case that
     /// failed.

@@ -1,7 +1,10 @@
 //! A common interface to the two cores: the cycle in which a plan's first segments are loaded, and
 //! a run with a callback for the pins.
 
-use carrystep_core::engine::Cause;
+use crate::failure::Failure;
+use carrystep_core::EngineBuild;
+use carrystep_core::engine::{Cause, EngineError};
+use carrystep_files::Machine;
 use carrystep_simulators::engine::run::EngineJob;
 use carrystep_simulators::{Job, Level, LevelError};
 
@@ -49,7 +52,25 @@ impl Gateware<'_> {
     }
 }
 
-/// Formats a cause and the axes that caused it.
+/// The engine of the machine in this file.
+///
+/// # Errors
+/// Status 2, with what would do: another tick, another clock, the parallel core where that can hold the machine.
+pub fn engine(machine: &Machine, name: &str) -> Result<EngineBuild, Failure> {
+    let engine = machine.engine();
+    match engine.check() {
+        Ok(()) => Ok(engine),
+        Err(error) => Err(Failure::input(format!("{name}: {error}{}", sibling(machine, &error)))),
+    }
+}
+
+/// What is said of the parallel core where only the engine's turns do not fit.
+fn sibling(machine: &Machine, error: &EngineError) -> &'static str {
+    let by_turns = matches!(error, EngineError::Schedule { .. } | EngineError::ShortPhase { .. });
+    if by_turns && machine.build().is_ok() { "; the parallel core holds it as it is: `--core parallel`" } else { "" }
+}
+
+/// A cause, and the axes that it came from.
 pub fn told((cause, culprits): (Cause, u8)) -> String {
     let axes: Vec<String> = (0..8).filter(|axis| culprits >> axis & 1 == 1).map(|axis| axis.to_string()).collect();
     if axes.is_empty() { cause.to_string() } else { format!("{cause} on axis {}", axes.join(", ")) }

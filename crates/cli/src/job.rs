@@ -3,7 +3,7 @@
 
 use crate::arguments::Core;
 use crate::failure::Failure;
-use crate::gateware::Gateware;
+use crate::gateware::{self, Gateware};
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::table::{self, Limits};
@@ -12,7 +12,6 @@ use carrystep_check::{
     AxisSetup, AxisWaves, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis, PlotSetup, Report, Setup, Tee,
     VcdWriter, Waves, save_file,
 };
-use carrystep_core::EngineBuild;
 use carrystep_files::MoveFile;
 use carrystep_plan::Plan;
 use carrystep_profile::Timeline;
@@ -67,8 +66,7 @@ impl fmt::Display for Done {
         for file in &self.files {
             writeln!(f, "wrote {}", file.display())?;
         }
-        let engine = if self.core == Core::Engine.name() { "engine, " } else { "" };
-        writeln!(f, "{engine}{}: {} clocks, faults: {}", self.level, self.clocks, self.faults)?;
+        writeln!(f, "{}, {}: {} clocks, faults: {}", self.core, self.level, self.clocks, self.faults)?;
         f.write_str(if self.passed { "ALL HOLDS\n" } else { "FAILED\n" })
     }
 }
@@ -115,19 +113,12 @@ pub fn fits_a_capture(plan: &Plan) -> Result<(), Failure> {
     Err(Failure::input(format!("the moves take {seconds} s: a capture holds at most {LONGEST_S} s; split the file")))
 }
 
-/// The engine build of the file's machine if `core` is the engine, otherwise `None`.
-fn engine(file: &MoveFile, core: Core) -> Result<Option<EngineBuild>, Failure> {
-    if core == Core::Parallel {
-        return Ok(None);
-    }
-    let engine = file.machine.engine();
-    engine.check().map_err(|error| Failure::input(format!("{}: {error}", file.source.path.display())))?;
-    Ok(Some(engine))
-}
-
-/// Runs a plan on a core at a level, checks every pulse and writes the wanted files.
+/// Runs a plan on a core at a level, checks every pulse and writes what is wanted.
 pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Wanted) -> Result<Done, Failure> {
-    let engine = engine(file, core)?;
+    let engine = match core {
+        Core::Engine => Some(gateware::engine(&file.machine, &file.source.path.display().to_string())?),
+        Core::Parallel => None,
+    };
     carrystep_simulators::available(level)?;
     fits_a_capture(plan)?;
     let mut files = wanted.begin()?;
@@ -138,13 +129,13 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
     let timebase = plan.build.timebase;
     let progress = Progress::new(level, plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
     let how_far = Some(progress.how_far());
-    let gateware = match &engine {
+    let on = match &engine {
         None => Gateware::Parallel(Job { halt, how_far, ..Job::new(&plan.build, &program, plan.total_ticks()) }),
         Some(engine) => {
             Gateware::Engine(EngineJob { halt, how_far, ..EngineJob::new(engine, &program, plan.total_ticks()) })
         }
     };
-    let load = gateware.origin()?;
+    let load = on.origin()?;
     let origin_ps = timebase.clock_to_ps(load + timebase.latency_clocks()).cast_signed();
     let timelines = plan.timelines();
 
@@ -187,7 +178,7 @@ pub fn run(file: &MoveFile, plan: &Plan, core: Core, level: Level, wanted: &Want
             tee.add(sink);
         }
         let mut feed = PinFeed::new(timebase, file.machine.axes.len(), &mut tee);
-        let outcome = gateware.run(level, &mut |cycle, step, dir| {
+        let outcome = on.run(level, &mut |cycle, step, dir| {
             progress.how_far().at(cycle);
             feed.pins(cycle, step, dir);
             if feed.has_failed() {

@@ -68,23 +68,20 @@ pub const MIN_CLOCKS_PER_PHASE: u32 = 2;
 /// Checks that the turns of all axes fit into a tick, and that each phase has room for its events.
 ///
 /// # Errors
-/// [`EngineError::Schedule`] if the turns do not fit; it gives the clocks needed, the clocks
-/// available and the slowest clock that suffices. [`EngineError::ShortPhase`] if there are too many
-/// phases.
+/// [`EngineError::Schedule`] says what is needed and what there is, [`EngineError::ShortPhase`] that phases are too many;
+/// both the shortest tick and the slowest clock that would do.
 pub fn check_schedule(axes: usize, timebase: &Timebase) -> Result<(), EngineError> {
     let needed = clocks_of_turns(axes);
     let (clocks, phases) = (timebase.clocks_per_tick(), timebase.phases());
     let (tick_ns, clock_hz) = (timebase.tick_ns(), timebase.clock_hz());
     let least_tick_ns = Ticks::for_engine(clock_hz, phases, axes);
+    let least_hz = Ticks::clock_for_engine(tick_ns, phases, axes);
     if clocks >= needed {
         return match timebase.clocks_per_phase() {
             MIN_CLOCKS_PER_PHASE.. => Ok(()),
-            _ => Err(EngineError::ShortPhase { phases, clocks, least_tick_ns }),
+            _ => Err(EngineError::ShortPhase { phases, clocks, least_tick_ns, least_hz }),
         };
     }
-    // The fewest clocks that hold the turns and divide into phases.
-    let least = u64::from(needed.next_multiple_of(timebase.phases()));
-    let least_hz = (least * 1_000_000_000).div_ceil(tick_ns);
     Err(EngineError::Schedule { axes, needed, clocks, tick_ns, clock_hz, least_tick_ns, least_hz })
 }
 
@@ -201,8 +198,8 @@ mod tests {
         let timebase = |phases| Timebase::new(16_000_000, 1000, phases).unwrap();
         assert_eq!(
             check_schedule(1, &timebase(16)).unwrap_err().to_string(),
-            "16 phases in the 16 clocks of a tick: an engine needs 2 clocks in each; a tick of 2000 ns, fewer phases or \
-             a faster clock would do"
+            "16 phases in the 16 clocks of a tick: an engine needs 2 clocks in each; a tick of 2000 ns, a clock of \
+             32000000 Hz or fewer phases would do"
         );
         assert!(check_schedule(1, &timebase(4)).is_ok());
     }

@@ -14,9 +14,8 @@ use core::fmt;
 /// Tick, in ns, of a machine file without `tick_ns` whose clock is [`FIXED_CLOCK_HZ`].
 const FIXED_TICK_NS: u64 = 1000;
 
-/// The default clock, Hz. Its default tick is fixed; it is not the shortest tick that an engine
-/// allows.
-pub const FIXED_CLOCK_HZ: u64 = 48_000_000;
+/// The default clock, Hz. Its default tick is fixed where an engine takes it, and not the shortest that it takes.
+pub const FIXED_CLOCK_HZ: u64 = 80_000_000;
 
 /// If a chosen tick is longer than this, in ns, and fewer phases would shorten it, they are
 /// proposed.
@@ -76,7 +75,26 @@ impl Ticks {
         u64::from(MAX_CLOCKS) / self.grain_clocks
     }
 
-    /// The shortest tick, ns, that an engine of this number of axes supports.
+    /// The slowest clock, Hz, at which an engine of so many axes takes this tick, ns; `None` where no clock does.
+    pub fn clock_for_engine(tick_ns: u64, phases: u32, axes: usize) -> Option<u64> {
+        const NS: u64 = 1_000_000_000;
+        if tick_ns == 0 {
+            return None;
+        }
+        // Clocks of a tick come in grains, so that phases are whole clocks and the clock is whole Hz.
+        let common = gcd(tick_ns, NS);
+        let (whole, per_phase) = (tick_ns / common, u64::from(phases).max(1));
+        let grain = (whole / gcd(whole, per_phase)).checked_mul(per_phase)?;
+        let needed = engine::least_clocks(axes, phases).max(MIN_CLOCKS_PER_TICK);
+        let clocks = u64::from(needed).div_ceil(grain) * grain;
+        if clocks > u64::from(MAX_CLOCKS) {
+            return None;
+        }
+        let clock_hz = clocks / whole * (NS / common);
+        (clock_hz <= MAX_CLOCK_HZ).then_some(clock_hz)
+    }
+
+    /// The shortest tick that an engine of so many axes takes, ns.
     pub fn for_engine(clock_hz: u64, phases: u32, axes: usize) -> Option<u64> {
         Self::of(clock_hz, phases)?.shortest(engine::least_clocks(axes, phases))
     }
@@ -128,13 +146,14 @@ impl fmt::Display for ChosenTick {
     }
 }
 
-/// The tick, ns, of a machine file without `tick_ns`: fixed at the default clock, chosen at any
-/// other one.
+/// The tick of a clock whose machine file gives none: fixed at the default clock, as long as its turns hold the axes,
+/// otherwise the one that is chosen.
 pub fn default_tick(clock_hz: u64, phases: u32, axes: usize) -> Option<(u64, Option<ChosenTick>)> {
-    if clock_hz == FIXED_CLOCK_HZ {
+    let chosen = ChosenTick::new(clock_hz, phases, axes);
+    if clock_hz == FIXED_CLOCK_HZ && chosen.is_none_or(|chosen| chosen.tick_ns <= FIXED_TICK_NS) {
         return Some((FIXED_TICK_NS, None));
     }
-    ChosenTick::new(clock_hz, phases, axes).map(|chosen| (chosen.tick_ns, Some(chosen)))
+    chosen.map(|chosen| (chosen.tick_ns, Some(chosen)))
 }
 
 /// A help line for a tick that the clock does not allow: the nearest ticks, and the shortest for an
@@ -214,7 +233,43 @@ mod tests {
     }
 
     #[test]
-    fn neighbouring_ticks_are_valid_and_the_nearest() {
+    fn the_clock_for_a_tick_is_the_slowest_of_all_that_fit() {
+        for tick_ns in [0, 1, 7, 333, 640, 1000, 1200, 1500, 2000, 2560, 3000, 16_000, 1_000_000, u64::MAX] {
+            for phases in [1, 4, 16] {
+                for axes in 1..=8 {
+                    let fits = |hz: &u64| {
+                        Timebase::new(*hz, tick_ns, phases)
+                            .is_ok_and(|time| engine::check_schedule(axes, &time).is_ok())
+                    };
+                    let found = Ticks::clock_for_engine(tick_ns, phases, axes);
+                    assert!(found.is_none_or(|hz| fits(&hz)), "{tick_ns} ns, {phases}, {axes}: {found:?}");
+                    // Any that fits has a whole number of clocks in the tick: all of them can be tried.
+                    let of = |clocks: u64| {
+                        let hz = u128::from(clocks) * 1_000_000_000;
+                        let tick = u128::from(tick_ns).max(1);
+                        hz.is_multiple_of(tick).then(|| u64::try_from(hz / tick).unwrap_or(u64::MAX))
+                    };
+                    let searched = (1..=u64::from(MAX_CLOCKS)).filter_map(of).find(fits);
+                    assert_eq!(found, searched, "{tick_ns} ns, {phases} phases, {axes} axes");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_default_clock_has_1_us_for_six_axes_and_the_shortest_tick_for_more() {
+        let at_default = |axes| default_tick(FIXED_CLOCK_HZ, 16, axes).unwrap();
+        for axes in 1..=6 {
+            assert_eq!(at_default(axes), (1000, None));
+        }
+        for axes in 7..=8 {
+            let (tick_ns, chosen) = at_default(axes);
+            assert_eq!((tick_ns, chosen.map(|chosen| chosen.axes)), (1400, Some(axes)));
+        }
+    }
+
+    #[test]
+    fn ticks_beside_another_fit_and_none_is_nearer() {
         let fits = |hz, ns: u64| Timebase::new(hz, ns, 16).is_ok();
         for hz in [25_000_000, 27_000_000, 48_000_000, 100_000_000] {
             let ticks = Ticks::of(hz, 16).unwrap();

@@ -7,6 +7,9 @@ use carrystep_files::{BigDecimal, Machine, Source};
 
 const AXIS: &str = "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n";
 
+/// A clock at which the drivers' times are no whole clocks; one axis has ticks of 1 us there.
+const AT_48: &str = "[machine]\nclock_hz = 48_000_000\n";
+
 fn machine(text: &str) -> Machine {
     Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() }).unwrap()
 }
@@ -19,8 +22,8 @@ fn number(text: &str) -> BigDecimal {
 fn missing_keys_have_their_defaults() {
     let machine = machine(&format!("[machine]\n{AXIS}driver = \"a4988\"\n"));
     let timebase = machine.timebase;
-    assert_eq!((timebase.clock_hz(), timebase.tick_ns(), timebase.phases()), (48_000_000, 1000, 16));
-    assert_eq!((timebase.clocks_per_tick(), timebase.clocks_per_phase()), (48, 3));
+    assert_eq!((timebase.clock_hz(), timebase.tick_ns(), timebase.phases()), (80_000_000, 1000, 16));
+    assert_eq!((timebase.clocks_per_tick(), timebase.clocks_per_phase()), (80, 5));
     assert_eq!(machine.phase, StartPhase::Half);
     let axis = &machine.axes[0];
     assert_eq!(axis.start_speed, number("0"));
@@ -56,9 +59,9 @@ fn single_pin_times_override_the_driver_preset() {
 }
 
 #[test]
-fn pin_timings_are_rounded_up_to_at_least_one_clock() {
-    let axis = machine(&format!("[machine]\n{AXIS}driver = \"drv8825\"\nhold_ns = 0\n")).axes.remove(0);
-    // 1900 ns are 91.2 clocks of 48 MHz; 650 ns are 31.2 clocks.
+fn pin_timings_are_rounded_up_to_clocks_and_never_none() {
+    let axis = machine(&format!("{AT_48}{AXIS}driver = \"drv8825\"\nhold_ns = 0\n")).axes.remove(0);
+    // 1900 ns are 91.2 clocks of 48 MHz, 650 ns are 31.2
     assert_eq!(axis.pins, PinTiming { width: 92, gap: 92, setup: 32, hold: 1 });
 }
 
@@ -69,15 +72,15 @@ fn build_of_the_core_always_has_six_axes() {
     assert_eq!((machine.axis_index("y"), machine.axis_index("q")), (Some(1), None));
     assert_eq!(machine.axis_names(), "x, y");
     let build = machine.build().unwrap();
-    assert_eq!(build.pins[0].width, 48);
-    assert_eq!(build.pins[1].width, 5);
+    assert_eq!(build.pins[0].width, 80);
+    assert_eq!(build.pins[1].width, 8);
     assert_eq!(build.pins[2..], [PinTiming::SHORTEST; AXES - 2]);
 }
 
 #[test]
-fn fastest_speed_of_the_driver_is_accepted() {
-    // 48 + 48 clocks and a phase of 3 clocks: 48 MHz / 99.
-    let axis = |speed: &str| format!("[machine]\n{AXIS}driver = \"a4988\"\n").replace("1000", speed);
+fn the_fastest_speed_that_the_driver_allows_is_allowed() {
+    // 48 + 48 clocks and a phase of 3: 48 MHz / 99
+    let axis = |speed: &str| format!("{AT_48}{AXIS}driver = \"a4988\"\n").replace("1000", speed);
     let refused = |text: String| Machine::from_source(&Source { path: "m".into(), text: text.into() }).is_err();
     assert!(!refused(axis("96969.69")));
     assert!(refused(axis("96969.70")));

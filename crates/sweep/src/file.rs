@@ -124,10 +124,10 @@ impl SweepFile {
         self.sample.unwrap_or_else(|| grid().fold(1, u64::saturating_mul))
     }
 
-    /// A hash of the file, the seed and the number of cases. Reports of the same sweep have the
-    /// same one.
-    pub fn fingerprint(&self) -> String {
+    /// What two reports must agree on to be of the same sweep on the same core.
+    pub fn fingerprint(&self, core: &str) -> String {
         let words = self.source.text.bytes().map(u64::from).chain([self.seed, self.cases()]);
+        let words = words.chain(core.bytes().map(u64::from));
         format!("{:016x}", words.fold(0, |hash, word| mixed(hash ^ word)))
     }
 

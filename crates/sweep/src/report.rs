@@ -58,9 +58,11 @@ pub struct Report {
     /// Whether all cases passed or were refused by the planner; `None` if no case ran. An empty
     /// shard proves nothing, and neither do moves that the planner refuses.
     pub passed: Option<bool>,
-    /// The hash of the sweep, which is the same for all its shards.
+    /// The same in all shards of a sweep on one core.
     pub sweep: String,
-    /// The shards in this report.
+    /// The gateware: engine or parallel.
+    pub core: String,
+    /// Which shards are in here.
     pub shards: Vec<Shard>,
     /// Number of cases that ran and passed.
     pub cases_passed: u64,
@@ -75,11 +77,12 @@ pub struct Report {
 }
 
 impl Report {
-    /// A report without any case.
-    pub fn new(sweep: &SweepFile, shard: Shard) -> Self {
+    /// A report of no case yet.
+    pub fn new(sweep: &SweepFile, shard: Shard, core: &str) -> Self {
         Self {
             passed: None,
-            sweep: sweep.fingerprint(),
+            sweep: sweep.fingerprint(core),
+            core: core.to_owned(),
             shards: vec![shard],
             cases_passed: 0,
             cases_refused: 0,
@@ -189,8 +192,9 @@ impl fmt::Display for Report {
         let (passed, refused, failed) = (self.cases_passed, self.cases_refused, self.cases_failed);
         writeln!(
             f,
-            "sweep {}, shard {}: {passed} passed, {refused} refused, {failed} failed",
+            "sweep {} on {}, shard {}: {passed} passed, {refused} refused, {failed} failed",
             self.sweep,
+            self.core,
             shards.join(" ")
         )?;
         for (name, Worst { value, case, values }) in &self.worst {

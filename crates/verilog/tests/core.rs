@@ -40,7 +40,7 @@ const CORES: [Core; 2] = [
         of_machine: |machine, description| engine_verilog(&machine.engine(), description),
         write: |folder, build, description| write_engine(folder, &guarded(build), description),
         waivers: ENGINE_WAIVERS,
-        machine: "sim/engine.toml",
+        machine: "sim/six-axis.toml",
         timebases: [(48_000_000, 2000, 16), (12_000_000, 10_000, 4), (90_000_000, 1000, 1)],
     },
 ];
@@ -200,11 +200,11 @@ fn engine_with_invalid_parameters_is_refused_by_name() {
 /// A machine file is refused before there is a build if its greatest speed exceeds the driver's
 /// width and gap, or if its phases do not divide the tick.
 #[test]
-fn machine_that_no_engine_can_drive_is_refused_by_name() {
-    let text = std::fs::read_to_string(Path::new(ROOT).join("sim/engine.toml")).unwrap();
+fn a_machine_that_no_engine_can_drive_is_refused_by_name() {
+    let text = std::fs::read_to_string(Path::new(ROOT).join("sim/six-axis.toml")).unwrap();
     let refusals = [
         ("driver = \"tmc2209\"", "step_ns = 15000\ngap_ns = 15000\nsetup_ns = 20\nhold_ns = 20", "width and gap"),
-        ("tick_ns = 2000", "tick_ns = 1750", "84 clocks per tick do not divide into 16 equal phases"),
+        ("tick_ns = 1000", "tick_ns = 1050", "84 clocks per tick do not divide into 16 equal phases"),
     ];
     for (was, becomes, says) in refusals {
         let folder = tempfile::tempdir().unwrap();

@@ -112,7 +112,7 @@ const RUNS: [Run; 11] = [
 ];
 
 /// What stands for a run that has not been made.
-const NOT_YET: &str = "not run yet | | | | | |";
+const NOT_YET: &str = "| not run yet | | | | |";
 
 /// Makes the runs of these names, or all, and writes the page.
 pub fn run(names: &[String]) -> Done {

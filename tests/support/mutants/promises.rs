@@ -4,6 +4,8 @@
 //! induction proves nothing.
 
 use super::draw::{Mutant, Sample};
+use super::stimuli;
+use crate::proofs::builds::BuiltEngine;
 use crate::proofs::{self, Case, Proof, ProofError, Question};
 
 /// The module whose promises a mutant breaks. A promise that the engine itself breaks in this form
@@ -11,10 +13,10 @@ use crate::proofs::{self, Case, Proof, ProofError, Question};
 ///
 /// # Panics If a tool is missing or fails.
 pub fn broken(sample: &Sample, mutant: &Mutant) -> Option<&'static str> {
-    let engine = proofs::shipped_engine();
+    let built: BuiltEngine = (stimuli::build(), stimuli::verilog().into());
     let dut = format!("carrystep_{}", mutant.module);
     let breaks = |proof: &Proof, mutant: Option<&Mutant>| {
-        let mut cases = proof.cases.iter().filter(|case| case.dut == dut && case.verilog == engine);
+        let mut cases = proof.cases.iter().filter(|case| case.dut == dut && case.verilog == built.1);
         let verilog = sample.alone(mutant);
         cases.any(|case| {
             let case = Case { verilog: verilog.as_str().into(), ..case.clone() };
@@ -27,7 +29,7 @@ pub fn broken(sample: &Sample, mutant: &Mutant) -> Option<&'static str> {
             }
         })
     };
-    let proof = proofs::all().into_iter().find(|proof| breaks(proof, Some(mutant)))?;
+    let proof = proofs::all_with(&built).into_iter().find(|proof| breaks(proof, Some(mutant)))?;
     assert!(!breaks(&proof, None), "{dut} breaks its promises without a mutant");
     Some(proof.module)
 }

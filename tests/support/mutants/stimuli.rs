@@ -6,7 +6,7 @@ mod work;
 
 use crate::moves::root;
 use carrystep_core::{EngineBuild, Program};
-use carrystep_files::Machine;
+use carrystep_files::{Machine, Source};
 use carrystep_simulators::engine::Events;
 use carrystep_simulators::engine::replay::Recording;
 use proptest::strategy::{Strategy, ValueTree as _};
@@ -30,9 +30,20 @@ pub struct Stimulus {
     modules: &'static [&'static str],
 }
 
-/// The build from which `hdl-out/core/carrystep_engine.v` is made.
+/// The shipped machine with ticks of 2 us at 48 MHz, that of the slower boards: the times of all recordings are written
+/// for it.
 pub fn build() -> EngineBuild {
-    Machine::load(&root().join("sim/engine.toml")).expect("the shipped machine").engine()
+    let path = root().join("sim/six-axis.toml");
+    let text = std::fs::read_to_string(&path).expect("the shipped machine");
+    let shipped = "clock_hz = 80_000_000\ntick_ns = 1000\n";
+    assert!(text.contains(shipped), "the shipped machine has another clock or tick");
+    let text = text.replace(shipped, "clock_hz = 48_000_000\ntick_ns = 2000\n");
+    Machine::from_source(&Source { path, text: text.into() }).expect("a fine machine").engine()
+}
+
+/// The Verilog that is exported for it.
+pub fn verilog() -> String {
+    carrystep_verilog::engine_verilog(&build(), "the mutants").expect("a fine build")
 }
 
 /// All recordings in the order of use: those that catch many mutants in few clocks come first.

@@ -38,11 +38,14 @@ pub fn small_from(phases: u32, start: StartPhase) -> (Build, Arc<str>) {
     (build, text)
 }
 
-/// The shipped engine: its build, and its committed Verilog in `hdl-out/`.
-pub fn shipped_engine() -> (EngineBuild, Arc<str>) {
+/// An engine: its build, and its Verilog.
+pub type BuiltEngine = (EngineBuild, Arc<str>);
+
+/// The shipped engine: its build, and the Verilog in `hdl-out/` as it is committed.
+pub fn shipped_engine() -> BuiltEngine {
     let root = moves::root();
     let text = std::fs::read_to_string(root.join("hdl-out/core/carrystep_engine.v")).expect("the committed Verilog");
-    let machine = Machine::load(&root.join("sim/engine.toml")).expect("the engine's machine");
+    let machine = Machine::load(&root.join("sim/six-axis.toml")).expect("the engine's machine");
     (machine.engine(), text.into())
 }
 

@@ -1,6 +1,6 @@
 //! The proof of homing: which axes wait for a limit, and which slow down.
 
-use super::builds::{axes, shipped_engine, small_engine};
+use super::builds::{BuiltEngine, axes, small_engine};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, Limits};
 
@@ -13,8 +13,8 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "mine_slows = 1'b0;", becomes: "mine_slows = 1'b1;" },
 ];
 
-pub(super) fn proof() -> Proof {
-    let builds = [small_engine(6, 80, 4, Limits::Pair), small_engine(1, 16, 4, Limits::Pair), shipped_engine()];
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
+    let builds = [small_engine(6, 80, 4, Limits::Pair), small_engine(1, 16, 4, Limits::Pair), built.clone()];
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes at {} Hz", build.axes(), build.timebase.clock_hz()),
         dut: "carrystep_homes".into(),

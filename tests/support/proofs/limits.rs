@@ -1,6 +1,6 @@
 //! The proof of the limit switches' debouncer for each kind of wiring.
 
-use super::builds::{axes, shipped_engine, small_engine};
+use super::builds::{BuiltEngine, axes, small_engine};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, Limits};
 
@@ -13,7 +13,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "hit = looks &", becomes: "hit = 1'b1 |" },
 ];
 
-pub(super) fn proof() -> Proof {
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let wirings = [Limits::Pair, Limits::None, Limits::Each, Limits::One].map(|limits| small_engine(6, 80, 4, limits));
     let case = |(build, verilog): (EngineBuild, _)| {
         let guard = &build.guard;
@@ -38,7 +38,7 @@ pub(super) fn proof() -> Proof {
     Proof {
         module: "limits",
         promises: Promises { text: include_str!("../../../crates/hdl/src/engine/limits/promises.sv") },
-        cases: wirings.into_iter().chain([shipped_engine()]).map(case).collect(),
+        cases: wirings.into_iter().chain([built.clone()]).map(case).collect(),
         depth: 1,
         reach: 16,
         bugs: BUGS,

@@ -1,7 +1,7 @@
 //! The proof of the engine's pulser for the pin timings of its builds, from the shortest to the
 //! longest possible one.
 
-use super::builds::{pin_cases, shipped_engine, small_engine};
+use super::builds::{BuiltEngine, pin_cases, small_engine};
 use super::{Bug, Promises, Proof};
 use carrystep_core::engine::Limits;
 
@@ -35,9 +35,8 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "step_pin = 1'b0;", becomes: "step_pin = 1'b1;" },
 ];
 
-pub(super) fn proof() -> Proof {
-    let builds =
-        [small_engine(6, 80, 16, Limits::Pair), shipped_engine()].map(|(build, verilog)| (build.pins, verilog));
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
+    let builds = [small_engine(6, 80, 16, Limits::Pair), built.clone()].map(|(build, verilog)| (build.pins, verilog));
     Proof {
         module: "pulser",
         promises: Promises { text: include_str!("../../../crates/hdl/src/engine/pulser/promises.sv") },

@@ -1,6 +1,6 @@
 //! The proof of the stops: which cause stops the axes, and how.
 
-use super::builds::{axes, shipped_engine, small_engine};
+use super::builds::{BuiltEngine, axes, small_engine};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, Limits};
 
@@ -21,7 +21,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "freeze = 1'b0;", becomes: "freeze = 1'b1;" },
 ];
 
-pub(super) fn proof() -> Proof {
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{:?}", build.guard.limits),
         dut: "carrystep_stops".into(),
@@ -31,7 +31,7 @@ pub(super) fn proof() -> Proof {
     Proof {
         module: "stops",
         promises: Promises { text: include_str!("../../../crates/hdl/src/engine/stops/promises.sv") },
-        cases: [small_engine(6, 80, 16, Limits::Each), shipped_engine()].into_iter().map(case).collect(),
+        cases: [small_engine(6, 80, 16, Limits::Each), built.clone()].into_iter().map(case).collect(),
         depth: 1,
         reach: 20,
         bugs: BUGS,

@@ -1,6 +1,6 @@
 //! The proof of the schedule of turns.
 
-use super::builds::{axes, shipped_engine, small_engine};
+use super::builds::{BuiltEngine, axes, small_engine};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, Limits};
 
@@ -13,7 +13,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_13_inactive", text: "beats = 17'd0;", becomes: "beats = 17'd1;" },
 ];
 
-pub(super) fn proof() -> Proof {
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} clocks", build.timebase.clocks_per_tick()),
         dut: "carrystep_turn".into(),
@@ -23,7 +23,7 @@ pub(super) fn proof() -> Proof {
     Proof {
         module: "turn",
         promises: Promises { text: include_str!("../../../crates/hdl/src/engine/turn/promises.sv") },
-        cases: [small_engine(6, 80, 16, Limits::Pair), shipped_engine()].into_iter().map(case).collect(),
+        cases: [small_engine(6, 96, 16, Limits::Pair), built.clone()].into_iter().map(case).collect(),
         depth: 1,
         reach: 24,
         bugs: BUGS,

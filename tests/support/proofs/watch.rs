@@ -1,6 +1,6 @@
 //! The proof of e-stop, watchdog and ENABLE.
 
-use super::builds::{shipped_engine, small_engine};
+use super::builds::{BuiltEngine, small_engine};
 use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, Limits};
 
@@ -25,7 +25,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_14_warm_is_powered", text: "is_warm & power;", becomes: "is_warm;" },
 ];
 
-pub(super) fn proof() -> Proof {
+pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = |(build, verilog): (EngineBuild, _)| {
         let guard = &build.guard;
         let number = |name, figure: u32| (name, figure.to_string());
@@ -44,7 +44,7 @@ pub(super) fn proof() -> Proof {
     Proof {
         module: "watch",
         promises: Promises { text: include_str!("../../../crates/hdl/src/engine/watch/promises.sv") },
-        cases: [small_engine(6, 80, 16, Limits::Pair), shipped_engine()].into_iter().map(case).collect(),
+        cases: [small_engine(6, 80, 16, Limits::Pair), built.clone()].into_iter().map(case).collect(),
         depth: 1,
         reach: 20,
         bugs: BUGS,

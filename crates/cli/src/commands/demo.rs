@@ -1,6 +1,7 @@
 //! `carrystep demo`: the main job on the shipped machine, with all files in one folder.
 
-use crate::arguments::{Core, Demo};
+use crate::arguments::Demo;
+use crate::commands::verilog;
 use crate::failure::{Failure, refused};
 use crate::job::{self, Done};
 use crate::output::{self, write_file};
@@ -27,8 +28,7 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
     write_file(&out("demo.toml"), MOVES)?;
     let file = MoveFile::load(&out("demo.toml"))?;
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
-    let verilog = carrystep_verilog::write_core(&arguments.out, &plan.build, MACHINE_FILE)
-        .map_err(|error| Failure::Run(error.to_string()))?;
+    let verilog = verilog::write(arguments.core, &arguments.out, &file.machine, MACHINE_FILE)?;
     let wanted = Wanted {
         vcd: Some(out("demo.vcd")),
         fst: None,
@@ -36,8 +36,8 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
         csv: Some(out("demo.csv")),
         plot: Some(out("demo.svg")),
     };
-    let mut done = job::run(&file, &plan, Core::Parallel, arguments.level, &wanted)?;
-    done.files.splice(0..0, verilog);
+    let mut done = job::run(&file, &plan, arguments.core, arguments.level, &wanted)?;
+    done.files.splice(0..0, verilog.files);
     print(&done, arguments.json, &arguments.out)?;
     done.verdict()
 }

@@ -10,8 +10,7 @@ use crate::failure::Failure;
 use crate::output::{self, OutputFile};
 use axis::Axis;
 use carrystep_boards::Board;
-use carrystep_core::tick::Ticks;
-use carrystep_core::tick::mhz;
+use carrystep_core::tick::{Ticks, mhz};
 use carrystep_core::{ChosenTick, Timebase};
 use carrystep_files::{InputError, Machine, Source};
 use carrystep_verilog::Gateware;
@@ -97,7 +96,7 @@ fn new(arguments: &MachineNew) -> Result<(), Failure> {
     let shown = path.display();
     let next = match &wishes.clock {
         Some(Clock::Board(board)) => format!("carrystep build --board {} --machine {shown}", board.name),
-        _ => format!("carrystep verilog --core engine --machine {shown}"),
+        _ => format!("carrystep verilog --machine {shown}"),
     };
     output::print(&format!(
         "wrote {shown}: axes {}, {} MHz, ticks of {tick_ns} ns in {phases} phases, build {build_id}\n\

@@ -1,5 +1,4 @@
-//! `carrystep sweep`: runs many machines and moves on all processor cores, or merges the reports of
-//! shards.
+//! `carrystep sweep`: many machines and moves over all processors, or the reports of many shards as one.
 
 use crate::arguments::{Core, Sweep};
 use crate::failure::Failure;
@@ -23,7 +22,13 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
             let sweep = SweepFile::load(file, arguments.sample, arguments.seed)?;
             let cases = arguments.shard.cases(sweep.cases()).count() as u64;
             let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr_with_hz(10));
-            let report = carrystep_sweep::run(&sweep, arguments.shard, judge, || bar.inc(1));
+            let report = carrystep_sweep::run(
+                &sweep,
+                arguments.shard,
+                arguments.core.name(),
+                |case| judge(case, arguments.core),
+                || bar.inc(1),
+            );
             bar.finish_and_clear();
             // After an interrupt, the remaining cases have not been judged.
             interrupt::check()?;
@@ -64,15 +69,15 @@ fn read(path: &Path) -> Result<Report, Failure> {
     serde_json::from_slice(&text).map_err(|error| wrong(format!("no report of a sweep: {error}")))
 }
 
-/// Plans, simulates and checks one case.
-fn judge(case: &Case) -> Verdict {
+/// Plans, simulates and checks a case.
+fn judge(case: &Case, core: Core) -> Verdict {
     let Ok(file) = &case.file else { return Verdict::Failed("no move file".to_owned()) };
     let plan = match plan::<f64>(file) {
         Ok(plan) => plan,
         Err(error @ PlanError::Broken { .. }) => return Verdict::Failed(error.to_string()),
         Err(error) => return Verdict::Refused(error.to_string()),
     };
-    match job::run(file, &plan, Core::Parallel, Level::Fast, &Wanted::default()) {
+    match job::run(file, &plan, core, Level::Fast, &Wanted::default()) {
         Ok(done) if done.passed => Verdict::Passed(figures(&done)),
         Ok(done) => {
             let first = done.check.failures().next();

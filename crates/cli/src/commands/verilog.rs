@@ -4,16 +4,15 @@
 use crate::arguments::{Core, Verilog};
 use crate::commands::{boards, demo};
 use crate::failure::Failure;
+use crate::gateware;
 use crate::output;
 use carrystep_core::engine::GuardFigures;
 use carrystep_core::link::Uart;
-use carrystep_files::{Machine, Source};
+use carrystep_files::Machine;
 use carrystep_verilog::{CORE_NAME, ENGINE_NAME, ExportError};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-
-const ENGINE_MACHINE: &str = include_str!("../../../../sim/engine.toml");
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
@@ -27,8 +26,11 @@ pub struct Written {
     /// The guard's times as the gateware counts them; the parallel core has no guard.
     #[serde(skip_serializing_if = "Option::is_none")]
     guard: Option<GuardFigures>,
-    files: Vec<PathBuf>,
+    pub(super) files: Vec<PathBuf>,
 }
+
+/// The machine that `hdl-out/core` is made from.
+const SHIPPED: &str = "sim/six-axis.toml";
 
 /// Writes the Verilog and its lint waivers, or all gateware of a board.
 pub fn run(arguments: &Verilog) -> Result<(), Failure> {
@@ -37,7 +39,7 @@ pub fn run(arguments: &Verilog) -> Result<(), Failure> {
     }
     let (machine, name) = match &arguments.machine {
         Some(path) => (Machine::load(path)?, path.display().to_string()),
-        None => shipped(arguments.core)?,
+        None => (demo::machine()?, SHIPPED.to_owned()),
     };
     let out = arguments.out.as_deref().unwrap_or(Path::new("hdl-out/core"));
     let written = write(arguments.core, out, &machine, &name)?;
@@ -92,19 +94,8 @@ fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
     output::print(&listed(&files, tick_note.as_deref()))
 }
 
-/// The machine from which `hdl-out/core` is made.
-fn shipped(core: Core) -> Result<(Machine, String), Failure> {
-    match core {
-        Core::Parallel => Ok((demo::machine()?, "sim/six-axis.toml".to_owned())),
-        Core::Engine => {
-            let path = "sim/engine.toml";
-            let source = Source { path: path.into(), text: ENGINE_MACHINE.into() };
-            Ok((Machine::from_source(&source)?, path.to_owned()))
-        }
-    }
-}
-
-fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Written, Failure> {
+/// Writes a core's Verilog for a machine.
+pub fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Written, Failure> {
     let refused = |error: ExportError| match error {
         ExportError::Io { .. } => Failure::input(error.to_string()),
         _ => Failure::input(format!("{name}: {error}")),
@@ -117,7 +108,7 @@ fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Writte
             Ok(Written { passed: true, top: CORE_NAME, tick_ns, tick_note, guard: None, files })
         }
         Core::Engine => {
-            let build = machine.engine();
+            let build = gateware::engine(machine, name)?;
             let files = carrystep_verilog::write_engine(out, &build, name).map_err(refused)?;
             Ok(Written {
                 passed: true,

@@ -28,8 +28,12 @@ fn output_paths_that_no_file_can_have_are_refused() {
         .run("simulate move.toml --vcd out/a --csv ./out/a")
         .refuses("cannot write ./out/a: it is also the output out/a");
     folder.run("demo --out out/kept").refuses("cannot write out/kept/six-axis.toml: ");
-    folder.run("verilog --out out/kept").refuses("cannot write out/kept/carrystep_six_axis.v: ");
-    folder.run("verilog --out /proc/none").refuses("cannot write /proc/none/carrystep_six_axis.v: ");
+    for (core, file) in [("engine", "carrystep_engine.v"), ("parallel", "carrystep_six_axis.v")] {
+        for out in ["out/kept", "/proc/none"] {
+            let ran = folder.run(&format!("verilog --core {core} --out {out}"));
+            ran.refuses(&format!("cannot write {out}/{file}: "));
+        }
+    }
     assert_eq!(folder.files(), before);
     assert_eq!(folder.run("simulate move.toml --save out/a.gtkw").status, 2);
     assert_eq!(std::fs::read_to_string(folder.path("move.toml")).unwrap(), GOOD);

@@ -38,7 +38,7 @@ fn compiled_simulations_are_kept_where_only_the_user_can_write() {
         simulate(&folder, cache);
         assert_eq!(ran(&folder), 2);
         let there = folder.files();
-        let simulations: Vec<&String> = there.iter().filter(|name| name.contains("six_axis_")).collect();
+        let simulations: Vec<&String> = there.iter().filter(|name| name.contains("engine_")).collect();
         assert!(simulations.len() == 1 && simulations[0].starts_with(kept), "{there:?}");
         for name in [kept, simulations[0]] {
             assert_eq!(fs::metadata(folder.path(name)).unwrap().mode() & 0o777, 0o700, "{name}");

@@ -18,7 +18,12 @@ fn common_clocks_use_and_report_the_shortest_tick() {
         let folder = Folder::with_move(at(mhz));
         let note = format!("tick_ns = {tick_ns}, the shortest at {mhz} MHz in 16 phases with 1 axis");
         let proposal = "16000 ns is long: `phases = 4` would allow 4000 ns";
-        for command in ["plan move.toml", "simulate move.toml", "simulate move.toml --core engine --level model"] {
+        for command in [
+            "plan move.toml",
+            "simulate move.toml",
+            "simulate move.toml --core engine --level model",
+            "simulate move.toml --core parallel",
+        ] {
             let ran = folder.run(command);
             assert_eq!(ran.status, 0, "{command} at {mhz} MHz: {}{}", ran.stdout, ran.stderr);
             assert!(ran.stdout.contains(&note), "{command}: {}", ran.stdout);
@@ -38,12 +43,14 @@ fn common_clocks_use_and_report_the_shortest_tick() {
 }
 
 #[test]
-fn default_clock_keeps_its_tick_without_a_note() {
-    let folder = Folder::with_move(at(48));
-    let ran = folder.run("plan move.toml");
-    assert!(ran.stdout.contains(" ticks of 1000 ns, ") && !ran.stdout.contains("shortest"), "{}", ran.stdout);
-    let json: Value = serde_json::from_str(&folder.run("plan move.toml --json").stdout).unwrap();
-    assert_eq!((&json["limits"]["tick_ns"], &json["limits"]["tick_note"]), (&1000.into(), &Value::Null));
+fn at_the_default_clock_the_tick_is_1_us_and_nothing_is_said() {
+    for text in [at(80), at(80).replace("clock_hz = 80_000_000\n", "")] {
+        let folder = Folder::with_move(text);
+        let ran = folder.run("plan move.toml");
+        assert!(ran.stdout.contains(" ticks of 1000 ns, ") && !ran.stdout.contains("shortest"), "{}", ran.stdout);
+        let json: Value = serde_json::from_str(&folder.run("plan move.toml --json").stdout).unwrap();
+        assert_eq!((&json["limits"]["tick_ns"], &json["limits"]["tick_note"]), (&1000.into(), &Value::Null));
+    }
 }
 
 #[test]

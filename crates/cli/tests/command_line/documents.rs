@@ -67,13 +67,15 @@ fn every_report_fits_its_schema() {
     for (arguments, name) in [
         ("boards", "boards"),
         ("boards icebreaker", "boards"),
-        ("verilog --core engine --out engine", "verilog"),
+        ("verilog --out engine", "verilog"),
+        ("verilog --core parallel --out parallel", "verilog"),
         ("verilog --board papilio-pro --out board", "verilog-board"),
         ("table sine --ramp-steps 100 --clock-hz 16000000 --prescaler 8 --top-speed 4000", "table"),
         ("table sine --ramp-steps 100 --clock-hz 16000000 --prescaler 8 --top-speed 4000 --out table", "table"),
         ("profile ranade trapezoid --steps 1000 --accel 1e5 --timer-hz 1e6", "profile"),
         ("profile logistic --steps 1000 --accel 1e5", "profile"),
         ("simulate move.toml", "simulate"),
+        ("simulate move.toml --core parallel", "simulate"),
         ("plan move.toml", "plan"),
     ] {
         let ran = folder.run(&format!("{arguments} --json"));

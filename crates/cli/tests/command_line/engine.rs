@@ -143,13 +143,72 @@ fn a_schedule_that_does_not_fit_is_refused_with_the_arithmetic() {
     let folder = with_machine(&text);
     folder.run(WRITE).refuses(
         "m.toml: 6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz has \
-         48: a tick of 2000 ns, a clock of 80000000 Hz or fewer axes would do",
+         48: a tick of 2000 ns, a clock of 80000000 Hz or fewer axes would do; the parallel core holds it as it is: \
+         `--core parallel`",
     );
     folder.write("move.toml", format!("{text}{MOVES}"));
     let simulate = "simulate move.toml --core engine --vcd a.vcd --csv a.csv";
     folder.run(simulate).refuses("move.toml: 6 axes need 13 clocks each");
+    // The engine is what is meant where no core is named; all that is said would do.
+    for command in [
+        "simulate move.toml",
+        "simulate move.toml --json",
+        "simulate move.toml --level verilator",
+        "verilog --machine m.toml --out out",
+    ] {
+        let ran = folder.run(command);
+        ran.refuses("a tick of 2000 ns, a clock of 80000000 Hz or fewer axes would do");
+        ran.refuses("`--core parallel`");
+    }
     assert_eq!(folder.files(), ["m.toml", "move.toml"]);
     assert_eq!(folder.run("verilog --machine m.toml --core parallel --out out").status, 0);
+    assert_eq!(folder.run("simulate move.toml --core parallel").status, 0);
+    for (old, new) in [("tick_ns = 1000", "tick_ns = 2000"), ("48_000_000", "80_000_000")] {
+        folder.write("other.toml", text.replace(old, new) + MOVES);
+        assert_eq!(folder.run("simulate other.toml").status, 0, "{new}");
+    }
+}
+
+#[test]
+fn phases_of_one_clock_are_refused_by_the_engine_with_what_would_do() {
+    let text = MACHINE.replace("80_000_000", "16_000_000") + MOVES;
+    let folder = Folder::with_move(&text);
+    folder.run("simulate move.toml").refuses(
+        "move.toml: 16 phases in the 16 clocks of a tick: an engine needs 2 clocks in each; a tick of 2000 ns, a clock of \
+         32000000 Hz or fewer phases would do; the parallel core holds it as it is: `--core parallel`",
+    );
+    assert_eq!(folder.run("simulate move.toml --core parallel").status, 0);
+    for (old, new) in
+        [("tick_ns = 1000", "tick_ns = 2000"), ("16_000_000", "32_000_000"), ("phases = 16", "phases = 4")]
+    {
+        folder.write("other.toml", text.replace(old, new));
+        assert_eq!(folder.run("simulate other.toml").status, 0, "{new}");
+    }
+}
+
+#[test]
+fn the_engine_is_what_runs_where_no_core_is_named() {
+    let folder = Folder::with_move(format!("{MACHINE}{MOVES}"));
+    folder.write("sweep.toml", format!("move_file = '''\n{MACHINE}{MOVES}'''\n[vary]\nnothing = [1]\n"));
+    let core = |arguments: &str| {
+        let ran = folder.run(&format!("{arguments} --json"));
+        assert_eq!(ran.status, 0, "{arguments}: {}", ran.stderr);
+        serde_json::from_str::<Value>(&ran.stdout).unwrap()["core"].clone()
+    };
+    for (command, written) in
+        [("demo --out demo", Some("demo")), ("simulate move.toml", None), ("sweep sweep.toml", None)]
+    {
+        assert_eq!(core(command), "engine", "{command}");
+        assert_eq!(core(&format!("{command} --core engine")), "engine", "{command}");
+        if let Some(out) = written {
+            assert!(folder.files().contains(&format!("{out}/carrystep_engine.v")));
+            assert!(!folder.files().contains(&format!("{out}/carrystep_six_axis.v")));
+        }
+        assert_eq!(core(&format!("{command} --core parallel")), "parallel", "{command}");
+    }
+    assert!(folder.files().contains(&"demo/carrystep_six_axis.v".to_owned()));
+    assert_eq!(folder.run("verilog --out hdl").stdout, folder.run("verilog --core engine --out hdl").stdout);
+    assert!(folder.files().contains(&"hdl/carrystep_engine.v".to_owned()));
 }
 
 #[test]
@@ -165,7 +224,13 @@ fn nine_axes_are_too_many_for_any_core_and_seven_for_the_parallel_one() {
         ran.refuses_at("m.toml", (15 + 8 * 8, 1), "9 axes: an engine drives at most 8");
     }
     folder.write("m.toml", axes(7));
-    folder.run("verilog --machine m.toml --out out").refuses("m.toml: 7 axes: the parallel gateware drives at most 6");
+    let parallel = "verilog --machine m.toml --core parallel --out out";
+    folder.run(parallel).refuses("m.toml: 7 axes: the parallel gateware drives at most 6");
+    // Seven turns do not fit into 80 clocks, and no other core is offered for them.
+    let engine = folder.run("verilog --machine m.toml --out out");
+    engine.refuses("m.toml: 7 axes need 13 clocks each and one to close the tick, 92 in all");
+    engine.refuses("a tick of 1200 ns, a clock of 96000000 Hz or fewer axes would do");
+    assert!(!engine.stderr.contains("--core"), "{}", engine.stderr);
     folder.write("move.toml", format!("machine_file = \"m.toml\"\n{}", MOVES.replace("x =", "x0 =")));
     folder.run("plan move.toml").refuses_at("move.toml", (1, 16), "7 axes: moves are planned for at most 6");
     assert_eq!(folder.files(), ["m.toml", "move.toml"]);

@@ -57,11 +57,14 @@ fn interrupted_run_reports_it_and_leaves_no_file() {
     for signal in ["-INT", "-TERM"] {
         for arguments in [
             "simulate move.toml --vcd a.vcd",
+            "simulate move.toml --core parallel --vcd a.vcd",
             "simulate move.toml --fst a.fst --json",
+            "simulate move.toml --core parallel --fst a.fst --json",
             "simulate move.toml --core engine --csv a.csv",
-            "simulate move.toml --level model --vcd a.vcd --save a.gtkw",
+            "simulate move.toml --core parallel --level model --vcd a.vcd --save a.gtkw",
+            "simulate move.toml --core parallel --level rust-hdl --vcd a.vcd",
             "simulate move.toml --level rust-hdl --vcd a.vcd",
-            "simulate move.toml --core engine --level model --vcd a.vcd",
+            "simulate move.toml --core engine --level model --vcd a.vcd --save a.gtkw",
         ] {
             let child = begin(&folder, arguments);
             assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());

@@ -59,6 +59,11 @@ const ICE40: &str = "boards[].pll boards[].parts[].logic_cells boards[].usb boar
     boards[].clocks[].made_by.ice40_pll.divq boards[].clocks[].made_by.ice40_pll.filter_range
     boards[].measured.logic_cells boards[].measured.nextpnr_mhz boards[].measured.icetime_mhz boards[].measured.seed";
 
+/// What an engine's guard does.
+const GUARD: &str = "guard guard.debounce_us guard.debounce_us.least guard.debounce_us.most guard.enable_ms
+    guard.enable_ms.least guard.enable_ms.most guard.estop guard.limit_level guard.limit_stop guard.limits
+    guard.round_us guard.stop_accel_steps_per_s2 guard.watchdog_ms guard.watchdog_ms.least guard.watchdog_ms.most";
+
 const TIES: &str = "boards[].ties[].port boards[].ties[].pin boards[].ties[].level boards[].ties[].why";
 
 /// Only for boards whose ports share pins with the configuration, or wait for a gate.
@@ -120,7 +125,8 @@ fn every_report_keeps_its_names() {
     assert_eq!(run["files"], serde_json::json!(["a.vcd", "a.csv"]));
     assert_eq!(run["positions"], serde_json::json!([4]));
     document(&folder, "check a.vcd move.toml", 0, &["passed capture", CHECK]);
-    document(&folder, "verilog --out out", 0, &["passed top tick_ns tick_note files"]);
+    document(&folder, "verilog --out out", 0, &["passed top tick_ns tick_note files", GUARD]);
+    document(&folder, "verilog --core parallel --out out", 0, &["passed top tick_ns tick_note files"]);
 
     let run = document(&folder, "demo --out demo", 0, &[RUN, LIMITS, CHECK]);
     for file in run["files"].as_array().expect("a list of files") {

@@ -20,7 +20,7 @@ fn moves(folder: &Folder, axes: &[&str]) {
         back.join(", ")
     );
     folder.write("move.toml", text);
-    for command in ["plan move.toml", "simulate move.toml", "simulate move.toml --core engine"] {
+    for command in ["plan move.toml", "simulate move.toml", "simulate move.toml --core parallel"] {
         let ran = folder.run(command);
         assert_eq!(ran.status, 0, "{command}: {}{}", ran.stdout, ran.stderr);
     }
@@ -129,7 +129,7 @@ fn questions_on_a_terminal_are_repeated_after_invalid_answers() {
     command.args(["machine", "new", "m.toml"]).current_dir(folder.path(""));
     let mut screen = crate::terminal::Screen::start(&mut command);
     for (question, answer) in [
-        ("Board (see `carrystep boards`), or the FPGA's clock in MHz [48]: ", "atlantis"),
+        ("Board (see `carrystep boards`), or the FPGA's clock in MHz [80]: ", "atlantis"),
         ("no board is called 'atlantis'", "icebreaker"),
         ("none [each]: ", "some"),
         ("one of pair, each, one, none is expected", "one"),

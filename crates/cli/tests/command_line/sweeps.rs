@@ -84,7 +84,38 @@ fn sweep_in_which_no_case_ran_does_not_pass() {
 }
 
 #[test]
-fn failing_case_does_not_stop_the_others() {
+fn a_sweep_is_of_one_core() {
+    let folder = sweep("[\"a4988\"]");
+    for core in ["engine", "parallel"] {
+        for shard in 1..=2 {
+            let ran = folder.run(&format!("sweep sweep.toml --json --core {core} --shard {shard}/2"));
+            assert_eq!((ran.status, &json(&ran.stdout)["core"]), (0, &core.into()), "{}", ran.stdout);
+            folder.write(&format!("{core}{shard}.json"), ran.stdout);
+        }
+        let merged = json(&folder.run(&format!("sweep --json --merge {core}1.json {core}2.json")).stdout);
+        assert_eq!((&merged["core"], &merged["cases_passed"]), (&core.into(), &12.into()));
+    }
+    let ran = folder.run("sweep --merge engine1.json parallel2.json");
+    ran.refuses("are not one sweep");
+    assert_eq!(folder.run("sweep --core parallel --merge engine1.json engine2.json").status, 2);
+}
+
+/// What only the parallel core can hold fails on the engine by name, and is never left out in silence.
+#[test]
+fn machines_that_the_engine_cannot_hold_fail_on_it() {
+    let folder = sweep("[\"a4988\"]");
+    let text = std::fs::read_to_string(folder.path("sweep.toml")).unwrap();
+    folder.write("sweep.toml", text.replace("clock_hz = 48_000_000", "clock_hz = 16_000_000"));
+    let ran = folder.run("sweep sweep.toml --json");
+    let report = json(&ran.stdout);
+    // Four moves in 16 phases of one clock each.
+    assert_eq!((ran.status, &report["cases_passed"], &report["cases_failed"]), (1, &8.into(), &4.into()), "{report}");
+    assert!(report["failures"][0]["message"].as_str().unwrap().contains("`--core parallel`"), "{report}");
+    assert_eq!(folder.run("sweep sweep.toml --core parallel").status, 0);
+}
+
+#[test]
+fn a_failing_case_stops_no_other() {
     let folder = sweep("[\"a4988\", \"none\"]");
     let ran = folder.run("sweep sweep.toml --json");
     let report = json(&ran.stdout);

@@ -132,7 +132,7 @@ fn progress_is_shown_even_if_no_edge_comes() {
         1,
     );
     let folder = Folder::with_move(crawl);
-    for arguments in ["simulate move.toml --level model", "simulate move.toml --core engine --level rust-hdl"] {
+    for arguments in ["simulate move.toml --core parallel --level model", "simulate move.toml --level rust-hdl"] {
         let mut screen = Screen::start(&mut command(&folder, arguments));
         screen.waits_for(if arguments.contains("model") { "model " } else { "rust-hdl " });
         screen.waits_for("  0 % ");
@@ -152,7 +152,8 @@ fn tables_fit_into_80_columns() {
         demo,
         folder.run("plan demo/demo.toml"),
         folder.run("plan demo/demo.toml --segments"),
-        folder.run("simulate demo/demo.toml --core engine --level model"),
+        folder.run("simulate demo/demo.toml --level model"),
+        folder.run("simulate demo/demo.toml --core parallel"),
     ] {
         for line in ran.stdout.lines() {
             assert!(line.chars().count() <= 80, "{} columns: {line}", line.chars().count());

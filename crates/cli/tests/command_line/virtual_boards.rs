@@ -259,7 +259,8 @@ fn impossible_virtual_boards_are_refused() {
         folder.write("bad.toml", machine);
         folder.run(&format!("virtual-board --machine bad.toml{options}"))
     };
-    let (odd, place) = edit(MACHINE, "baud = 3_000_000", "baud = ^3_100_000");
+    let at_48 = MACHINE.replace("tick_ns = 2000", "clock_hz = 48_000_000\ntick_ns = 2000");
+    let (odd, place) = edit(&at_48, "baud = 3_000_000", "baud = ^3_100_000");
     board(&odd, "").refuses_at("bad.toml", place, "the next ones that it makes are 3000000 and 3200000");
     board(&MACHINE.replace("tick_ns = 2000", "tick_ns = 1000\nclock_hz = 16_000_000\n[machine.other]"), "")
         .refuses("unknown field `other`");

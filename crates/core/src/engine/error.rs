@@ -17,7 +17,7 @@ pub enum EngineError {
     /// A tick has too few clocks for the turns of all axes.
     #[error(
         "{axes} axes need {TURN} clocks each and one to close the tick, {needed} in all, but a tick of {tick_ns} ns \
-         at {clock_hz} Hz has {clocks}: {}, a clock of {least_hz} Hz or fewer axes would do", tick_said(.least_tick_ns)
+         at {clock_hz} Hz has {clocks}: {}, {} or fewer axes would do", tick_said(.least_tick_ns), clock_said(.least_hz)
     )]
     Schedule {
         /// Number of axes.
@@ -32,13 +32,13 @@ pub enum EngineError {
         clock_hz: u64,
         /// The shortest tick that suffices at this clock, ns.
         least_tick_ns: Option<u64>,
-        /// The slowest clock that suffices at this tick, Hz.
-        least_hz: u64,
+        /// The slowest clock that would do, Hz.
+        least_hz: Option<u64>,
     },
     /// A phase has too few clocks to write events between two phases.
     #[error(
         "{phases} phases in the {clocks} clocks of a tick: an engine needs {MIN_CLOCKS_PER_PHASE} clocks in each; \
-         {}, fewer phases or a faster clock would do", tick_said(.least_tick_ns)
+         {}, {} or fewer phases would do", tick_said(.least_tick_ns), clock_said(.least_hz)
     )]
     ShortPhase {
         /// Phases of a tick.
@@ -47,6 +47,8 @@ pub enum EngineError {
         clocks: u32,
         /// The shortest tick that suffices at this clock, ns.
         least_tick_ns: Option<u64>,
+        /// The slowest clock that would do, Hz.
+        least_hz: Option<u64>,
     },
     /// A pin time is out of the range of its timer.
     #[error("axis {axis}: {name} is {clocks} clocks: from 1 to {MAX_CLOCKS} can be counted")]
@@ -89,6 +91,10 @@ pub enum EngineError {
         /// Number of stop accelerations.
         found: usize,
     },
+}
+
+fn clock_said(least_hz: &Option<u64>) -> String {
+    least_hz.map_or_else(|| "a faster clock".to_owned(), |hz| format!("a clock of {hz} Hz"))
 }
 
 fn tick_said(least_ns: &Option<u64>) -> String {

@@ -16,8 +16,8 @@ use carrystep_core::{Command, Program, Segment};
 struct Due {
     /// 0: before the first move; n: once tick n has begun.
     room: u64,
-    /// Order among commands of the same time: segments in the order of their queues, and then
-    /// starts.
+    /// The first start after all segments that are due with it, a later one after its own; these in the order of their
+    /// queues.
     place: usize,
     command: Command,
 }
@@ -69,7 +69,7 @@ fn alone(command: Command) -> Option<Act> {
 /// have the same total of ticks.
 fn due(program: &Program) -> Vec<Due> {
     let mut lanes = vec![Lane::default(); 8];
-    let mut started = 0;
+    let (mut started, mut started_before) = (0, false);
     let place = |command: &Command| {
         let command = *command;
         match command {
@@ -87,7 +87,11 @@ fn due(program: &Program) -> Vec<Due> {
                 let room = lanes.iter().map(|lane| lane.room).fold(started, u64::max);
                 let begins = lanes.iter().filter_map(|lane| lane.begins.last());
                 started = begins.map(|begin| begin + 1).fold(started, u64::max);
-                Due { room, place: usize::MAX, command }
+                // The first waits for full queues. A later one for its own segments only: the move before may be a tick long.
+                let own = lanes.iter().map(|lane| lane.begins.len()).max().unwrap_or(0).saturating_sub(1);
+                let place = if started_before { own } else { usize::MAX };
+                started_before = true;
+                Due { room, place, command }
             }
         }
     };
@@ -155,8 +159,26 @@ mod tests {
     }
 
     #[test]
-    fn short_segments_arrive_in_time() {
-        // A sixteenth of a step per tick, starting at half a step.
+    fn a_move_behind_one_of_a_tick_starts_in_the_next_tick() {
+        let build = build();
+        for axes in [1, 6] {
+            let rest = vec![vec![1]; axes];
+            let program = program(&[rest.clone(), rest, vec![vec![20; 9]; axes]]);
+            let mut starts = Vec::new();
+            let outcome = EngineJob::new(&build, &program, 182).run(Level::Model, &mut |cycle, outputs| {
+                if outputs.started && starts.last() != Some(&cycle) {
+                    starts.push(cycle);
+                }
+            });
+            assert_eq!(outcome.unwrap().fault, None, "{axes} axes");
+            let ticks: Vec<u64> = starts.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            assert_eq!(ticks, [80, 80], "{axes} axes");
+        }
+    }
+
+    #[test]
+    fn short_segments_are_there_in_time() {
+        // A sixteenth of a step a tick, from half a step on.
         let moved = |ticks: i32| (ticks + 8) / 16;
         let begun = program(&[vec![vec![1, 1, 1, 1, 1, 1, 834], vec![840]]]);
         assert_eq!(steps(&begun, 840), ([[moved(840); 2].as_slice(), &[0; 4]].concat(), None));

@@ -7,8 +7,11 @@ use carrystep_core::EngineBuild;
 use carrystep_files::{Machine, Source};
 use carrystep_verilog::{ENGINE_NAME, engine_verilog};
 
-/// The machine whose engine is measured. Clock and tick are those of the row.
-const MACHINE: &str = include_str!("../../../../sim/engine.toml");
+/// The machine whose engine is measured; clock and tick are those of the row.
+const MACHINE: &str = include_str!("../../../../sim/six-axis.toml");
+const SHIPPED: &str = "sim/six-axis.toml";
+/// Its clock and its tick, in whose place a row has its own.
+const SHIPPED_TIME: &str = "clock_hz = 80_000_000\ntick_ns = 1000\n";
 
 /// A top level that connects all ports of the engine to two pins by way of registers.
 const HARNESS: &str = include_str!("harness.v");
@@ -54,13 +57,17 @@ impl Measured {
 /// # Errors
 /// [`SynthesisError::Gateware`] if there is no such engine.
 pub fn verilog(row: &Row) -> Result<String, SynthesisError> {
-    engine_verilog(&machine(row)?, "sim/engine.toml").map_err(failed)
+    engine_verilog(&machine(row)?, SHIPPED).map_err(failed)
 }
 
 /// Build parameters of a row's engine.
 pub(super) fn machine(row: &Row) -> Result<EngineBuild, SynthesisError> {
-    let text = MACHINE.replace("48_000_000", &row.clock_hz.to_string()).replace("2000", &row.tick_ns.to_string());
-    let source = Source { path: "sim/engine.toml".into(), text: text.into() };
+    let Row { clock_hz, tick_ns, .. } = row;
+    if !MACHINE.contains(SHIPPED_TIME) {
+        return Err(failed(format!("{SHIPPED} has no {SHIPPED_TIME}")));
+    }
+    let text = MACHINE.replace(SHIPPED_TIME, &format!("clock_hz = {clock_hz}\ntick_ns = {tick_ns}\n"));
+    let source = Source { path: SHIPPED.into(), text: text.into() };
     let mut build = Machine::from_source(&source).map_err(failed)?.engine();
     // If the row has more axes than the machine, the machine's axes are repeated.
     build.pins = build.pins.into_iter().cycle().take(row.axes).collect();

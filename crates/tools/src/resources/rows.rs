@@ -7,7 +7,7 @@ use carrystep_core::engine::clocks_of_turns;
 /// Seeds of placement; the best result counts.
 pub const SEEDS: [u32; 3] = [1, 2, 3];
 
-/// Phases per tick in `sim/engine.toml`.
+/// Phases of a tick in `sim/six-axis.toml`.
 const PHASES: u32 = 16;
 
 /// An engine on an iCE40.
@@ -15,7 +15,7 @@ const PHASES: u32 = 16;
 pub struct Row {
     /// The part.
     pub part: Part<'static>,
-    /// Number of axes. Their parameters are those of `sim/engine.toml`.
+    /// Axes of the engine; `sim/six-axis.toml` says what they are.
     pub axes: usize,
     /// Tick, ns.
     pub tick_ns: u64,

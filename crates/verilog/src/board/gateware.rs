@@ -15,9 +15,8 @@ use minijinja::{Value, context};
 
 const TOP: &str = include_str!("../../templates/board/top.v");
 
-/// The machine for which a board is built by default. Clock, tick and limits are inserted before
-/// its axes.
-const SHIPPED: &str = include_str!("../../../../sim/engine.toml");
+/// The machine that boards are built for where no other is asked for; clock, tick and limits are put before its axes.
+const SHIPPED: &str = include_str!("../../../../sim/six-axis.toml");
 
 /// The gateware of a machine for a board, after all checks.
 #[derive(Debug, Clone)]
@@ -230,7 +229,7 @@ pub fn shipped_machine(board: &Board, clock: &Clocking) -> Result<String, Export
     let Clocking { clock_hz, tick_ns, phases, .. } = clock;
     let baud = board.uart(*clock_hz)?.baud();
     Ok(format!(
-        "# The shipped machine (sim/engine.toml) for {}.\n[machine]\nclock_hz = {clock_hz}\ntick_ns = {tick_ns}\n\
+        "# The shipped machine (sim/six-axis.toml) for {}.\n[machine]\nclock_hz = {clock_hz}\ntick_ns = {tick_ns}\n\
          phases = {phases}\nphase = \"half\"\n\n[machine.guard]\nlimits = \"each\"\n\n[machine.link]\nbaud = {baud}\n\n{axes}",
         board.title
     ))

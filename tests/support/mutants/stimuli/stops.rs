@@ -6,7 +6,7 @@ use carrystep_core::engine::EngineOutputs;
 use carrystep_core::{AXES, Command, EngineBuild, Program, Segment};
 use carrystep_simulators::engine::{Event, Events};
 
-/// Clocks of a tick of `sim/engine.toml`.
+/// Clocks of a tick of the mutants' build.
 const TICK: u64 = 96;
 /// Clocks between two samples of a limit.
 const ROUND: u64 = 64 * TICK;

@@ -6,7 +6,7 @@ use carrystep_core::{AXES, Command, EngineBuild, Program, Segment};
 use carrystep_simulators::engine::{Event, Events};
 use proptest::prelude::*;
 
-/// For each axis, the drivers of `sim/engine.toml` can nearly always follow speeds below 2^bits.
+/// Speeds below 2^bits let the drivers of the mutants' build follow nearly always.
 const SPEED_BITS: [u32; AXES] = [63, 62, 62, 60, 63, 61];
 
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {

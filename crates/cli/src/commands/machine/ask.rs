@@ -11,7 +11,7 @@ use std::io::{BufRead as _, Write as _};
 /// Asks for everything that the options leave open.
 pub fn complete(wishes: &mut Wishes) -> Result<(), Failure> {
     if wishes.clock.is_none() {
-        let answer = ask("Board (see `carrystep boards`), or the FPGA's clock in MHz", Some("48"), |text| {
+        let answer = ask("Board (see `carrystep boards`), or the FPGA's clock in MHz", Some("80"), |text| {
             clock(text).map(|_| ())
         })?;
         wishes.clock = clock(&answer).ok();

@@ -1,0 +1,62 @@
+//! The rules of every kind of profile, by its name.
+//!
+//! A new kind has one row in each function here; the planner and the command `profile` call nothing else.
+
+use crate::{Curve, Limits, Real, Refusal, rule};
+use carrystep_core::ProfileKind;
+use std::sync::Arc;
+
+/// A curve that the caller shares.
+pub type SharedCurve<F = f64> = Arc<dyn Curve<F>>;
+
+/// The least time, in seconds, in which a move of `distance` steps keeps to the limits.
+///
+/// # Errors
+/// A [`Refusal`] names the limit that no time can keep.
+pub fn least_time<F: Real>(kind: ProfileKind, distance: F, limits: &Limits<F>) -> Result<F, Refusal> {
+    match kind {
+        ProfileKind::Ranade => Ok(rule::ranade_least_time(distance, limits)),
+        ProfileKind::Trapezoid => Ok(rule::trapezoid_least_time(distance, limits)),
+        ProfileKind::Scurve => Ok(rule::scurve_least_time(distance, limits)),
+        ProfileKind::Logistic => Ok(rule::logistic_least_time(distance, limits)),
+        ProfileKind::Sine => Ok(rule::sine_least_time(distance, limits)),
+        ProfileKind::Constant => rule::constant_least_time(distance, limits),
+    }
+}
+
+/// A whole move of `distance` steps that takes `time` seconds.
+///
+/// # Errors
+/// A [`Refusal`] names the limit that fails, and the least time.
+pub fn whole<F: Real>(kind: ProfileKind, distance: F, time: F, limits: &Limits<F>) -> Result<SharedCurve<F>, Refusal> {
+    match kind {
+        ProfileKind::Ranade => rule::ranade(distance, time, limits),
+        ProfileKind::Trapezoid => rule::trapezoid(distance, time, limits).map(shared),
+        ProfileKind::Scurve => rule::scurve(distance, time, limits).map(shared),
+        ProfileKind::Logistic => rule::logistic(distance, time, limits).map(shared),
+        ProfileKind::Sine => rule::sine(distance, time, limits).map(shared),
+        ProfileKind::Constant => rule::constant(distance, time, limits).map(shared),
+    }
+}
+
+/// A ramp from rest, or from the start speed, to the speed `top` in steps/s, in `time` seconds or as
+/// fast as the limits allow. A constant speed has no ramp.
+pub(crate) fn ramp(
+    kind: ProfileKind,
+    top: f64,
+    time: Option<f64>,
+    limits: &Limits<f64>,
+) -> Option<Result<SharedCurve, Refusal>> {
+    Some(match kind {
+        ProfileKind::Ranade => rule::ranade_ramp(top, time, limits).map(shared),
+        ProfileKind::Trapezoid => rule::trapezoid_ramp(top, time, limits).map(shared),
+        ProfileKind::Scurve => rule::scurve_ramp(top, time, limits).map(shared),
+        ProfileKind::Logistic => rule::logistic_ramp(top, time, limits).map(shared),
+        ProfileKind::Sine => rule::sine_ramp(top, time, limits).map(shared),
+        ProfileKind::Constant => return None,
+    })
+}
+
+fn shared<F: Real, C: Curve<F> + 'static>(curve: C) -> SharedCurve<F> {
+    Arc::new(curve)
+}
