@@ -6,6 +6,7 @@ mod ladder;
 mod long;
 mod readme;
 mod shell;
+mod testing;
 mod tools;
 
 use clap::{Parser, Subcommand};
