@@ -32,6 +32,9 @@ enum Chore {
     Long {
         /// The runs; none: all.
         runs: Vec<String>,
+        /// Only those runs that depend on a file that has changed since this commit.
+        #[arg(long, value_name = "COMMIT", conflicts_with = "runs")]
+        since: Option<String>,
     },
     /// Ten million clocks of lock-step for each test of the engine, and its longest golden vectors.
     Lockstep,
@@ -81,7 +84,8 @@ fn main() -> ExitCode {
         Chore::Test => ladder::climb(),
         Chore::Prove => ladder::prove(),
         Chore::Tools => tools::install(),
-        Chore::Long { runs } => long::run(&runs),
+        Chore::Long { since: Some(base), .. } => long::run_since(&base),
+        Chore::Long { runs, .. } => long::run(&runs),
         Chore::Lockstep => ladder::lockstep(),
         Chore::Mutants { write } => ladder::mutants(write),
         Chore::Arrows => arrows::check(),
