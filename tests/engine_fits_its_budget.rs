@@ -3,7 +3,7 @@
 
 use carrystep_export::ENGINE_NAME;
 use carrystep_synthesis::resources::{self, EIGHT_TO_SIX, FAMILIES, LINES, LINK_BUDGET, PAGE, ROWS, Row};
-use carrystep_synthesis::{ice40, xilinx};
+use carrystep_synthesis::{ice40, kept, xilinx};
 use carrystep_tests::effort;
 
 #[test]
@@ -22,6 +22,7 @@ fn every_row_is_small_enough() {
         let fits = found.logic_cells <= row.budget.logic_cells && found.block_rams <= row.budget.block_rams;
         assert!(fits, "{found:?} used of {row:?}");
     }
+    kept::say();
 }
 
 #[test]
@@ -33,6 +34,7 @@ fn eight_axes_cost_little_more_than_six() {
         f64::from(netlist.size(row.part).expect("a size").logic_cells)
     });
     effort::say(&format!("eight axes {eight}, six {six} logic cells: {:.1} % more", (eight / six - 1.0) * 100.0));
+    kept::say();
     assert!(eight <= six * most, "{eight} logic cells for eight axes, {six} for six");
 }
 
@@ -47,6 +49,7 @@ fn the_clock_is_reached() {
         effort::say(&format!("{} at {} ns: {mhz:?} MHz", row.part.device, row.tick_ns));
         assert!(mhz.is_some(), "no seed reaches the clock of {row:?}");
     }
+    kept::say();
 }
 
 #[test]
@@ -56,6 +59,7 @@ fn the_link_is_small_enough() {
         assert!(found.logic_cells <= LINK_BUDGET.logic_cells, "{name}: {found:?} of {LINK_BUDGET:?}");
         assert!(found.block_rams <= LINK_BUDGET.block_rams, "{name}: {found:?} of {LINK_BUDGET:?}");
     }
+    kept::say();
 }
 
 #[test]
@@ -71,6 +75,7 @@ fn other_families_are_small_enough() {
             && found.block_rams <= budget.block_rams;
         assert!(fits, "{found:?} used of {family:?}");
     }
+    kept::say();
 }
 
 #[test]

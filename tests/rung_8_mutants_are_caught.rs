@@ -2,6 +2,7 @@
 //! `docs/mutants.md` as proved to be the engine, or with the reason why it is harmless. A few in every test run, all of
 //! them in `cargo xtask mutants`, which also asks for the proofs anew.
 
+use carrystep_synthesis::kept;
 use carrystep_tests::mutants::draw::{Mutant, Sample, sample};
 use carrystep_tests::mutants::equal::{Scope, is_proved};
 use carrystep_tests::mutants::stimuli::{self, Stimulus};
@@ -45,6 +46,7 @@ fn mutants_are_caught_or_harmless() {
         assert_eq!(alive, listed, "docs/mutants.md is not what is known now: run `cargo xtask mutants --write`");
     }
     no_harm_is_proved_harmless(&sample, &caught);
+    kept::say();
 }
 
 /// Who is not caught, and why that is no harm: by proof where there is one, else the reason that is listed. A few are

@@ -3,6 +3,7 @@
 
 use carrystep_spec::board::{Board, Family, board, boards};
 use carrystep_synthesis::ice40::{self, Part};
+use carrystep_synthesis::kept;
 use carrystep_tests::board_session::Session;
 use carrystep_tests::{effort, jobs};
 
@@ -66,6 +67,7 @@ fn from_verilog_to_bitstream(board: &'static Board) {
         assert!(compare(&flipped).is_some(), "{name}: a flipped bit of a block RAM is not seen");
     }
     effort::say(&format!("{name}: {} cycles on every pin", session.cycles()));
+    kept::say();
     if effort::is_every_board() && name == "icestick" {
         let longer = Session::with_a_limit(board);
         assert_eq!(longer.difference(&simulated(&longer.verilog)), None, "{name}, a limit: the Verilog");

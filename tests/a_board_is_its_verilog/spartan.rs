@@ -2,7 +2,7 @@
 //! are yosys' models; DCM and MMCM are one model of the bench at both stages, and block RAMs are models of ours.
 
 use carrystep_spec::board::{Toolchain, board};
-use carrystep_synthesis::xilinx;
+use carrystep_synthesis::{kept, xilinx};
 use carrystep_tests::board_session::Session;
 use carrystep_tests::{effort, jobs};
 
@@ -52,6 +52,7 @@ fn from_verilog_to_edif(name: &str) {
         }
     }
     effort::say(&format!("{name}: {} cycles on every pin", session.cycles()));
+    kept::say();
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! Mutants of Verilog, by yosys' `mutate`: named by what is wrong and the line where, drawn evenly over the lines,
 //! and all put into one text with an input that chooses.
 
+use carrystep_spec::tool::YOSYS;
+use carrystep_synthesis::kept;
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::Command;
 
 /// Which mutants are drawn, and on which other bit a conditional one depends.
 const SEED: u32 = 2009;
@@ -98,7 +99,7 @@ fn with_choice(verilog: &str, top: &str, width: u32) -> String {
 }
 
 pub(super) fn yosys(folder: &Path, script: &str) {
-    let output = Command::new("yosys").args(["-q", "-p", script]).current_dir(folder).output();
+    let output = kept::output(&YOSYS, folder, &["-q", "-p", script], |_| true);
     let output = output.expect("yosys is not installed: `cargo xtask tools` installs it");
     assert!(output.status.success(), "yosys: {}", String::from_utf8_lossy(&output.stderr));
 }

@@ -3,10 +3,11 @@
 
 use super::{Case, Promises};
 use carrystep_spec::tool::{Tool, YOSYS, YOSYS_ABC, YOSYS_SMTBMC, Z3};
+use carrystep_synthesis::kept;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 use thiserror::Error;
 
 /// Seconds for one question; the slowest takes a tenth of it on an idle machine.
@@ -109,9 +110,12 @@ fn holds(promises: &Promises, dir: &Path, question: &[&str]) -> Result<(bool, St
     let mut arguments = vec!["-s", "z3", "--unroll", "--noprogress", "--timeout", LIMIT];
     arguments.extend(question);
     arguments.push("promises.smt2");
-    let (fine, said) = run(dir, YOSYS_SMTBMC, &arguments)?;
-    let trouble = ["ERROR", "UNKNOWN", "unknown"].into_iter().any(|what| said.contains(what));
-    Ok((fine && said.contains("Status: PASSED") && !trouble, said))
+    let passed = |said: &str| {
+        let trouble = ["ERROR", "UNKNOWN", "unknown"].into_iter().any(|what| said.contains(what));
+        said.contains("Status: PASSED") && !trouble
+    };
+    let (fine, said) = run_until(dir, YOSYS_SMTBMC, &arguments, passed)?;
+    Ok((fine && passed(&said), said))
 }
 
 /// Whether so many assertions, which are all, fail within so many clocks, and all that was said.
@@ -119,15 +123,17 @@ pub(super) fn reached(dir: &Path, clocks: u32, count: usize) -> Result<(bool, St
     // One after the other: asked for all at once, bmc3 of ABC 1.01 may crash.
     let ask = |output| format!("read_aiger promises.aig; fold; cone -s -O {output}; bmc3 -F {clocks} -T {LIMIT}");
     let commands: Vec<String> = (0..count).map(ask).collect();
-    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &commands.join("; ")])?;
-    Ok((fine && count > 0 && said.matches("was asserted in frame").count() == count, said))
+    let all = |said: &str| count > 0 && said.matches("was asserted in frame").count() == count;
+    let (fine, said) = run_until(dir, YOSYS_ABC, &["-c", &commands.join("; ")], all)?;
+    Ok((fine && all(&said), said))
 }
 
 /// Whether any assertion fails within so many clocks.
 fn any_reached(dir: &Path, clocks: u32) -> Result<(bool, String), ProofError> {
     let ask = format!("read_aiger promises.aig; fold; orpos; bmc3 -F {clocks} -T {LIMIT}");
-    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &ask])?;
-    Ok((fine && said.contains("was asserted in frame"), said))
+    let is_reached = |said: &str| said.contains("was asserted in frame");
+    let (fine, said) = run_until(dir, YOSYS_ABC, &["-c", &ask], is_reached)?;
+    Ok((fine && is_reached(&said), said))
 }
 
 /// The steps of yosys: the exported text as it is, the promises, and names for what they see inside.
@@ -179,8 +185,21 @@ fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
 
 /// Whether it ended well, and all that it printed.
 pub(super) fn run(dir: &Path, tool: Tool, arguments: &[&str]) -> Result<(bool, String), ProofError> {
-    let output = Command::new(tool.name).args(arguments).current_dir(dir).output();
+    run_until(dir, tool, arguments, |_| true)
+}
+
+/// The same for a tool whose answer is kept only where it is a complete one: a solver may run out of time.
+pub(super) fn run_until(
+    dir: &Path,
+    tool: Tool,
+    arguments: &[&str],
+    is_complete: impl Fn(&str) -> bool,
+) -> Result<(bool, String), ProofError> {
+    let said = |output: &Output| {
+        let said = [&output.stdout[..], &output.stderr].concat();
+        String::from_utf8_lossy(&said).into_owned()
+    };
+    let output = kept::output(&tool, dir, arguments, |output| is_complete(&said(output)));
     let output = output.map_err(|_| ProofError::Missing(tool))?;
-    let said = [output.stdout, output.stderr].concat();
-    Ok((output.status.success(), String::from_utf8_lossy(&said).into_owned()))
+    Ok((output.status.success(), said(&output)))
 }

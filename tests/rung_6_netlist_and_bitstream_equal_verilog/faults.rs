@@ -5,7 +5,7 @@ use carrystep_levels::Level;
 use carrystep_levels::engine::replay::{self, Recording};
 use carrystep_spec::{Command, Segment};
 use carrystep_synthesis::equivalence::{self, Verdict};
-use carrystep_synthesis::{SynthesisError, ice40};
+use carrystep_synthesis::{SynthesisError, ice40, kept};
 use carrystep_tests::effort;
 use std::ops::Range;
 
@@ -47,6 +47,7 @@ fn faults_in_the_netlist_are_caught() {
         effort::say(&format!("{fault}: {verdict:?}"));
         assert!(matches!(verdict, Verdict::Open(..)), "nobody catches {fault}: {verdict:?}");
     }
+    kept::say();
 }
 
 /// A bit of a tile, flipped.
@@ -105,6 +106,7 @@ fn flipped_bits_in_the_bitstream_are_caught() {
         effort::say(&format!("{tile} row {row} column {column}: {}", if caught { "caught" } else { "no change" }));
         seen += usize::from(caught);
     }
+    kept::say();
     // A LUT may have bits for inputs that never come together, or that stand for one wire.
     assert!(seen * 10 >= count * 8, "{seen} of {count} flipped bits are seen");
 }

@@ -6,12 +6,14 @@
 //!   found by what the file is (device and inode), not by its name. Every input and every output of the
 //!   process is registered when it is opened here, so no command can forget to compare them.
 
+mod cache;
 mod input;
 mod names;
 mod output;
 mod place;
 mod registry;
 
+pub use cache::{CacheFailure, cache_folder, cache_folder_of, cache_holds};
 pub use input::{InputFailure, MAX_TEXT_BYTES, open, read_text};
 pub use names::{did_you_mean, nearest};
 pub use output::{Claim, NewFile, OutputFailure};

@@ -14,6 +14,7 @@ pub mod equivalence;
 mod error;
 pub mod ice40;
 mod inverses;
+pub mod kept;
 mod read_back;
 pub mod resources;
 mod tool;

@@ -1,19 +1,16 @@
 //! Running a tool in a folder, and files in that folder.
 
-use crate::SynthesisError;
+use crate::{SynthesisError, kept};
 use carrystep_spec::tool::Tool;
 pub(crate) use carrystep_spec::tool::{ICEBOX_VLOG, ICEPACK, ICETIME, ICEUNPACK, NEXTPNR, PYTHON, YOSYS};
 use std::path::Path;
-use std::process::Command;
 
 /// How much of a failed tool's words is kept.
 const LAST_LINES: usize = 12;
 
-/// Runs a tool to its end; what it writes to its standard output.
+/// Runs a tool to its end, or takes its kept answer; what it writes to its standard output.
 pub(crate) fn run(tool: &Tool, folder: &Path, arguments: &[&str]) -> Result<String, SynthesisError> {
-    let start = |name: &str| Command::new(name).args(arguments).current_dir(folder).output();
-    // The same tools from pip have a name of their own.
-    let output = start(tool.name).or_else(|_| start(&format!("yowasp-{}", tool.name)));
+    let output = kept::output(tool, folder, arguments, |_| true);
     let output = output.map_err(|_| SynthesisError::Missing(*tool))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     if output.status.success() {

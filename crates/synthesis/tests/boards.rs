@@ -3,6 +3,7 @@
 
 use carrystep_spec::board::{AllMeasured, Measured, board, boards};
 use carrystep_synthesis::board::page::{PAGE, built, page, placed};
+use carrystep_synthesis::kept;
 use std::path::Path;
 
 /// Holds a board against its figures.
@@ -12,6 +13,7 @@ fn builds(name: &str) {
     assert!(built.reaches(board.clocks[0].clock_hz), "{name}: {} MHz", built.mhz);
     assert!(built.bitstream.len() > 30_000);
     let found = Measured::Placed(placed(board, &built));
+    kept::say();
     assert_eq!(board.measured(), Some(found), "run `cargo xtask long boards`");
 }
 

@@ -10,7 +10,7 @@ use carrystep_spec::board::{Board, Toolchain};
 use carrystep_spec::clock::mhz;
 use carrystep_spec::{InputError, Machine};
 use carrystep_synthesis::board::{Built, Job, build};
-use carrystep_synthesis::ice40;
+use carrystep_synthesis::{ice40, kept};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::io::Write as _;
@@ -52,6 +52,8 @@ pub fn run(arguments: &Build) -> Result<(), Failure> {
     if let (Some(path), false) = (&arguments.machine, arguments.try_clock) {
         reachable(&board, arguments.part.as_deref(), path)?;
     }
+    // Whoever builds a bitstream expects the tools to be run.
+    kept::never();
     let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
     let files = gateware.files()?;
