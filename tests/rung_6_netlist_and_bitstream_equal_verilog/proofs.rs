@@ -3,6 +3,7 @@
 use crate::stages;
 use carrystep_tests::effort;
 use carrystep_tools::equivalence::{self, Verdict};
+use carrystep_tools::kept;
 
 #[test]
 fn netlist_is_proved_equal_to_the_verilog() {
@@ -10,6 +11,7 @@ fn netlist_is_proved_equal_to_the_verilog() {
     let verdict = equivalence::verilog_and_netlist(&stages.verilog, &stages.netlist, &stages.netlist.verilog);
     let verdict = verdict.expect("a verdict");
     effort::say(&format!("Verilog and netlist: {verdict:?}"));
+    kept::say();
     assert!(matches!(verdict, Verdict::Proved(pairs) if pairs > 1000), "{verdict:?}");
 }
 
@@ -18,6 +20,7 @@ fn bitstream_is_proved_equal_to_the_netlist() {
     let stages = stages::shipped();
     let verdict = equivalence::netlist_and_bitstream(&stages.netlist, &stages.read_back).expect("a verdict");
     effort::say(&format!("netlist and bitstream: {verdict:?}"));
+    kept::say();
     assert!(matches!(verdict, Verdict::Proved(pairs) if pairs > 800), "{verdict:?}");
 }
 

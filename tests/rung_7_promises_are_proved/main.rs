@@ -5,6 +5,7 @@
 use carrystep_tests::proofs::equivalence::{self, Asked, BUGS, EQUAL, Move, compare};
 use carrystep_tests::proofs::{self, Proof, Question, ask};
 use carrystep_tests::{effort, moves};
+use carrystep_tools::kept;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::sync::Mutex;
@@ -62,6 +63,7 @@ fn every_promise_is_proved_and_every_planted_bug_is_caught() {
     let proofs = proofs::all();
     let jobs: Vec<Job<'_>> = proofs.iter().flat_map(jobs).collect();
     let failures = do_all(&jobs, |job| job.name.clone(), |job| ask(&job.proof.promises, &job.case, job.question));
+    kept::say();
     assert!(failures.is_empty(), "{failures}");
     println!("\n{}", proofs::table());
     let bugs: usize = proofs.iter().map(|proof| proof.bugs.len()).sum();
@@ -81,6 +83,7 @@ fn engine_is_proved_equal_to_the_parallel_axes() {
     jobs.extend(equivalence::moves().pop().map(|pair| (pair, Asked::Covers)));
     let name = |(pair, asked): &(Move, Asked)| format!("{}: {asked:?}", pair.engine.name);
     let failures = do_all(&jobs, name, |(pair, asked)| compare(pair, *asked));
+    kept::say();
     assert!(failures.is_empty(), "{failures}");
     for label in EQUAL.labels() {
         assert!(BUGS.iter().any(|(_, bug)| bug.breaks == label), "no bug for {label}");

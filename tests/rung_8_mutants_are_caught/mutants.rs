@@ -9,6 +9,7 @@ use carrystep_tests::mutants::stimuli::{self, Stimulus};
 use carrystep_tests::mutants::survivors::{self, NO_REASON, PROVED, Survivors};
 use carrystep_tests::mutants::{Judgement, catchers, differs, judge};
 use carrystep_tests::{effort, jobs};
+use carrystep_tools::kept;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of mutants in every test run: the first ones of all.
@@ -45,6 +46,7 @@ fn mutants_are_caught_or_harmless() {
         assert_eq!(alive, listed, "docs/mutants.md is not what is known now: run `cargo xtask mutants --write`");
     }
     no_harm_is_proved_harmless(&sample, &caught);
+    kept::say();
 }
 
 /// The mutants that are not caught, with the reason why they are harmless: a proof if there is one,

@@ -4,7 +4,7 @@
 
 use carrystep_tests::effort;
 use carrystep_tools::resources::{self, EIGHT_TO_SIX, FAMILIES, LINES, LINK_BUDGET, PAGE, ROWS, Row};
-use carrystep_tools::{ice40, xilinx};
+use carrystep_tools::{ice40, kept, xilinx};
 use carrystep_verilog::ENGINE_NAME;
 
 #[test]
@@ -23,6 +23,7 @@ fn every_engine_build_fits_its_budget_of_logic_cells() {
         let fits = found.logic_cells <= row.budget.logic_cells && found.block_rams <= row.budget.block_rams;
         assert!(fits, "{found:?} used of {row:?}");
     }
+    kept::say();
 }
 
 #[test]
@@ -34,6 +35,7 @@ fn eight_axes_need_few_more_logic_cells_than_six() {
         f64::from(netlist.size(row.part).expect("a size").logic_cells)
     });
     effort::say(&format!("eight axes {eight}, six {six} logic cells: {:.1} % more", (eight / six - 1.0) * 100.0));
+    kept::say();
     assert!(eight <= six * most, "{eight} logic cells for eight axes, {six} for six");
 }
 
@@ -48,6 +50,7 @@ fn placed_engines_reach_their_clock() {
         effort::say(&format!("{} at {} ns: {mhz:?} MHz", row.part.device, row.tick_ns));
         assert!(mhz.is_some(), "no seed reaches the clock of {row:?}");
     }
+    kept::say();
 }
 
 #[test]
@@ -57,6 +60,7 @@ fn link_fits_its_budget() {
         assert!(found.logic_cells <= LINK_BUDGET.logic_cells, "{name}: {found:?} of {LINK_BUDGET:?}");
         assert!(found.block_rams <= LINK_BUDGET.block_rams, "{name}: {found:?} of {LINK_BUDGET:?}");
     }
+    kept::say();
 }
 
 #[test]
@@ -72,6 +76,7 @@ fn engines_of_other_families_fit_their_budgets() {
             && found.block_rams <= budget.block_rams;
         assert!(fits, "{found:?} used of {family:?}");
     }
+    kept::say();
 }
 
 #[test]

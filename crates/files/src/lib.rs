@@ -10,6 +10,7 @@
 //!   Files are compared by device and inode and not by name. This crate registers every input and
 //!   every output when it is opened, so that no command can omit the comparison.
 
+mod cache;
 pub mod decimal;
 pub mod driver;
 pub mod error;
@@ -24,6 +25,7 @@ mod registry;
 pub mod unit;
 
 pub use bigdecimal::BigDecimal;
+pub use cache::{CacheFailure, cache_folder, cache_folder_of, cache_holds};
 pub use error::{InputError, Source};
 pub use input::{InputFailure, MAX_TEXT_BYTES, open, read_text};
 pub use machine::{Axis, Machine, TooManyAxes};

@@ -5,11 +5,21 @@ use carrystep_tools::programs::Tool;
 pub(crate) use carrystep_tools::programs::{ICARUS, VERILATOR};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::Mutex;
 
-/// Checks that a tool can be started.
+/// Checks that a tool can be started, once for each tool of a process.
 pub(crate) fn find(tool: &Tool) -> Result<(), LevelError> {
+    static FOUND: Mutex<Vec<&str>> = Mutex::new(Vec::new());
+    let is_found = FOUND.lock().is_ok_and(|found| found.contains(&tool.name));
+    if is_found {
+        return Ok(());
+    }
     let started = Command::new(tool.name).args(tool.version).stdout(Stdio::null()).stderr(Stdio::null()).status();
-    started.map(|_| ()).map_err(|_| LevelError::Missing(*tool))
+    started.map_err(|_| LevelError::Missing(*tool))?;
+    if let Ok(mut found) = FOUND.lock() {
+        found.push(tool.name);
+    }
+    Ok(())
 }
 
 /// Runs a command to its end. If it fails, its output becomes the error.

@@ -17,6 +17,7 @@ pub mod equivalence;
 mod error;
 pub mod ice40;
 mod inverses;
+pub mod kept;
 pub mod programs;
 mod read_back;
 pub mod resources;

@@ -1,19 +1,16 @@
 //! Runs a tool in a directory, and reads and writes files there.
 
-use crate::SynthesisError;
 use crate::programs::Tool;
 pub(crate) use crate::programs::{ICEBOX_VLOG, ICEPACK, ICETIME, ICEUNPACK, NEXTPNR, PYTHON, YOSYS};
+use crate::{SynthesisError, kept};
 use std::path::Path;
-use std::process::Command;
 
 /// Number of lines of a failed tool's output that are kept.
 const LAST_LINES: usize = 12;
 
-/// Runs a tool to its end, and returns its standard output.
+/// Runs a tool to its end, or takes its kept answer; what it writes to its standard output.
 pub(crate) fn run(tool: &Tool, folder: &Path, arguments: &[&str]) -> Result<String, SynthesisError> {
-    let start = |name: &str| Command::new(name).args(arguments).current_dir(folder).output();
-    // The packages of pip install the same tools under another name.
-    let output = start(tool.name).or_else(|_| start(&format!("yowasp-{}", tool.name)));
+    let output = kept::output(tool, folder, arguments, |_| true);
     let output = output.map_err(|_| SynthesisError::Missing(*tool))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     if output.status.success() {

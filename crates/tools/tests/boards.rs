@@ -4,6 +4,7 @@
 
 use carrystep_boards::{AllMeasured, Measured, board, boards};
 use carrystep_tools::board::page::{PAGE, built, page, placed};
+use carrystep_tools::kept;
 use std::path::Path;
 
 /// Builds a board and compares the result with its figures.
@@ -13,6 +14,7 @@ fn builds(name: &str) {
     assert!(built.reaches(board.clocks[0].clock_hz), "{name}: {} MHz", built.mhz);
     assert!(built.bitstream.len() > 30_000);
     let found = Measured::Placed(placed(board, &built));
+    kept::say();
     assert_eq!(board.measured(), Some(found), "run `cargo xtask long boards`");
 }
 

@@ -79,6 +79,6 @@ fn simulate(profile: &str, phases: u32) -> Result<Value, String> {
     );
     fs::create_dir_all(shell::root().join("sim/out")).map_err(|error| error.to_string())?;
     fs::write(shell::root().join(&file), text).map_err(|error| format!("{file}: {error}"))?;
-    let json = shell::read("cargo", &["run", "--quiet", "--release", "--", "simulate", &file, "--json"])?;
+    let json = shell::carrystep(&["simulate", &file, "--json"])?;
     serde_json::from_str(&json).map_err(|error| format!("{file}: {error}"))
 }

@@ -1,10 +1,7 @@
 //! The ladder: tools, arrows, lints, then every rung as a test of its own.
 
 use crate::shell::{self, Done};
-use crate::{accuracy, arrows, decisions, readme, tools};
-
-/// Where random cases are drawn from, so that a red run is the change's doing; plain `cargo test` draws new ones.
-const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "2009");
+use crate::{accuracy, arrows, decisions, readme, testing, tools};
 
 /// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an error.
 pub fn climb() -> Done {
@@ -13,11 +10,10 @@ pub fn climb() -> Done {
     decisions::check()?;
     lint()?;
     bare()?;
-    shell::run_with(&[SEED], "cargo", &["test", "--release", "--workspace"])?;
+    let tests = testing::build()?;
     readme::check()?;
     accuracy::check()?;
-    shell::say("the whole ladder holds");
-    Ok(())
+    tests.run()
 }
 
 /// Rung 7 by itself, with its table.

@@ -4,6 +4,8 @@
 //! as it is over, passed or failed, and the page is whole at any time. A row is of the commit that it was run on, so
 //! nothing is run on files that are not committed.
 
+mod inputs;
+
 use crate::shell::{self, Done};
 use crate::tools;
 use std::fmt::Write as _;
@@ -114,6 +116,17 @@ const RUNS: [Run; 11] = [
 /// What stands for a run that has not been made.
 const NOT_YET: &str = "| not run yet | | | | |";
 
+/// Makes the runs that a change since a commit can break, and writes the page.
+pub fn run_since(base: &str) -> Done {
+    let names = inputs::touched(base)?;
+    if names.is_empty() {
+        shell::say(&format!("no long run depends on what has changed since {base}"));
+        return Ok(());
+    }
+    shell::say(&format!("changed since {base}: what {} depend on", names.join(", ")));
+    run(&names)
+}
+
 /// Makes the runs of these names, or all, and writes the page.
 pub fn run(names: &[String]) -> Done {
     if let Some(stranger) = names.iter().find(|name| RUNS.iter().all(|run| run.name != **name)) {
@@ -152,7 +165,7 @@ impl Run {
         let first: &[&str] = if is_test { &["test", "--release"] } else { &["run", "--release"] };
         let last: &[&str] = if is_test { &["--", "--nocapture"] } else { &[] };
         let mut command = shell::command("cargo", &[first, self.cargo, last].concat());
-        command.envs(self.asks.iter().copied()).stderr(Stdio::piped());
+        command.envs(self.asks.iter().copied()).env("CARRYSTEP_FRESH", "1").stderr(Stdio::piped());
         let mut running = command.spawn().map_err(|error| format!("cannot start cargo: {error}"))?;
         let mut figures = Vec::new();
         for line in

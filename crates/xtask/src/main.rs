@@ -7,6 +7,7 @@ mod ladder;
 mod long;
 mod readme;
 mod shell;
+mod testing;
 mod tools;
 
 use clap::{Parser, Subcommand};
@@ -32,6 +33,9 @@ enum Chore {
     Long {
         /// The runs; none: all.
         runs: Vec<String>,
+        /// Only those runs that depend on a file that has changed since this commit.
+        #[arg(long, value_name = "COMMIT", conflicts_with = "runs")]
+        since: Option<String>,
     },
     /// Ten million clocks of lock-step for each test of the engine, and its longest golden vectors.
     Lockstep,
@@ -87,7 +91,8 @@ fn main() -> ExitCode {
         Chore::Test => ladder::climb(),
         Chore::Prove => ladder::prove(),
         Chore::Tools => tools::install(),
-        Chore::Long { runs } => long::run(&runs),
+        Chore::Long { since: Some(base), .. } => long::run_since(&base),
+        Chore::Long { runs, .. } => long::run(&runs),
         Chore::Lockstep => ladder::lockstep(),
         Chore::Mutants { write } => ladder::mutants(write),
         Chore::Arrows { write: true } => arrows::write(),

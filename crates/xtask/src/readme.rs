@@ -54,7 +54,7 @@ pub fn write() -> Done {
 
 /// The table of the demo, and its plot.
 fn demo() -> Result<(String, String), String> {
-    let table = shell::read("cargo", &["run", "--quiet", "--release", "--", "demo"])?;
+    let table = shell::carrystep(&["demo"])?;
     Ok((table, read("sim/out/demo/demo.svg")?))
 }
 

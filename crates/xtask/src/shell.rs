@@ -2,7 +2,8 @@
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 
 /// Result of a task; the error is a sentence that says what failed.
 pub type Done = Result<(), String>;
@@ -41,7 +42,22 @@ pub fn run_with(variables: &[(&str, &str)], program: &str, arguments: &[&str]) -
     if status.success() { Ok(()) } else { Err(format!("`{program} {}` failed ({status})", arguments.join(" "))) }
 }
 
-/// Runs a command and returns its standard output.
+/// Runs a command whose complaints go to the terminal, and takes what it prints to its standard output.
+pub fn read_stdout(program: &str, arguments: &[&str]) -> Result<String, String> {
+    let output = command(program, arguments).stderr(Stdio::inherit()).output();
+    let output = output.map_err(|error| format!("cannot start {program}: {error}"))?;
+    if !output.status.success() {
+        return Err(format!("`{program} {}` failed ({})", arguments.join(" "), output.status));
+    }
+    String::from_utf8(output.stdout).map_err(|_| format!("{program} printed something that is not text"))
+}
+
+/// What could not be done with a file, and why.
+pub fn cannot(what: &str, path: &Path, error: &std::io::Error) -> String {
+    format!("cannot {what} {}: {error}", path.display())
+}
+
+/// Runs a command and takes what it prints.
 pub fn read(program: &str, arguments: &[&str]) -> Result<String, String> {
     let output = command(program, arguments).output().map_err(|error| format!("cannot start {program}: {error}"))?;
     if !output.status.success() {
@@ -49,6 +65,23 @@ pub fn read(program: &str, arguments: &[&str]) -> Result<String, String> {
         return Err(format!("`{program} {}` failed ({}): {stderr}", arguments.join(" "), output.status));
     }
     String::from_utf8(output.stdout).map_err(|_| format!("{program} printed something that is not text"))
+}
+
+/// The built command, where a chore has built it already.
+static CARRYSTEP: OnceLock<PathBuf> = OnceLock::new();
+
+/// From now on [`carrystep`] runs this file instead of asking cargo for it.
+pub fn use_carrystep(built: &Path) {
+    // A second one is the same.
+    let _ = CARRYSTEP.set(built.to_owned());
+}
+
+/// Runs carrystep and takes what it prints.
+pub fn carrystep(arguments: &[&str]) -> Result<String, String> {
+    match CARRYSTEP.get() {
+        Some(built) => read(&built.to_string_lossy(), arguments),
+        None => read("cargo", &[&["run", "--quiet", "--release", "--"], arguments].concat()),
+    }
 }
 
 /// Whether a program can be started.

@@ -2,11 +2,12 @@
 //! line. They are drawn evenly over the lines, and all of them are put into one Verilog text with
 //! an input that selects one.
 
+use carrystep_tools::kept;
+use carrystep_tools::programs::YOSYS;
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::Command;
 
 /// The seed for the drawing, and for the other bit on which a conditional mutant depends.
 const SEED: u32 = 2009;
@@ -103,7 +104,7 @@ fn with_choice(verilog: &str, top: &str, width: u32) -> String {
 }
 
 pub(super) fn yosys(folder: &Path, script: &str) {
-    let output = Command::new("yosys").args(["-q", "-p", script]).current_dir(folder).output();
+    let output = kept::output(&YOSYS, folder, &["-q", "-p", script], |_| true);
     let output = output.expect("yosys is not installed: `cargo xtask tools` installs it");
     assert!(output.status.success(), "yosys: {}", String::from_utf8_lossy(&output.stderr));
 }

@@ -10,10 +10,12 @@
 //! converted to flip-flops, whose outputs then begin at 0 on both sides.
 
 use super::draw::{Mutant, Sample, yosys};
+use carrystep_tools::kept;
+use carrystep_tools::programs::YOSYS_ABC;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::Command;
+use std::process::Output;
 
 /// The part of the engine around the mutant that a proof includes. A proof in a smaller scope also
 /// holds in a greater one.
@@ -80,10 +82,15 @@ const SIDE_BY_SIDE: &str = "design -copy-from gold -as gold gold\ndesign -copy-f
 
 fn holds(folder: &Path, limit: u32) -> bool {
     let ask = format!("read_aiger equal.aig; fold; strash; scorr; pdr -T {limit}");
-    let output = Command::new("yosys-abc").args(["-c", &ask]).current_dir(folder).output();
+    let verdicts = |output: &Output| {
+        let said = String::from_utf8_lossy(&output.stdout);
+        ["Property proved.", "was asserted in frame", "UNDECIDED"].map(|verdict| said.contains(verdict))
+    };
+    // What was not decided in time may be decided in another run.
+    let output = kept::output(&YOSYS_ABC, folder, &["-c", &ask], |output| !verdicts(output)[2]);
     let output = output.expect("yosys-abc is not installed: `cargo xtask tools` installs it");
     let said = String::from_utf8_lossy(&output.stdout);
-    let verdicts = ["Property proved.", "was asserted in frame", "UNDECIDED"].map(|verdict| said.contains(verdict));
+    let verdicts = verdicts(&output);
     assert!(output.status.success() && verdicts.iter().filter(|said| **said).count() == 1, "yosys-abc: {said}");
     verdicts[0]
 }

@@ -8,7 +8,7 @@
 //! if nothing is left of the miter. A planted bug is treated in the same way.
 
 use super::builds::{small, small_engine};
-use super::solver::{LIMIT, ProofError, reached, run};
+use super::solver::{LIMIT, ProofError, reached, run, run_until};
 use super::{Bug, Case, Promises};
 use carrystep_core::engine::Limits;
 use carrystep_core::{AXES, Build, PinTiming};
@@ -148,9 +148,10 @@ fn swept(dir: &Path, clocks: u32, assertions: usize, equal: bool) -> Result<(boo
     }
     let unrolled = format!("read_aiger promises.aig; scleanup; frames -i -F {clocks}; orpos; cleanup");
     let sweep = format!("{unrolled}; &get; &fraig -y; &put; dprove -T {LIMIT}");
-    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &sweep])?;
-    let answer = said.lines().find(|line| line.contains("SATISFIABLE")).map(|line| line.starts_with("UN"));
-    Ok((fine && answer == Some(equal), said))
+    let is_equal =
+        |said: &str| said.lines().find(|line| line.contains("SATISFIABLE")).map(|line| line.starts_with("UN"));
+    let (fine, said) = run_until(dir, YOSYS_ABC, &["-c", &sweep], |said| is_equal(said).is_some())?;
+    Ok((fine && is_equal(&said) == Some(equal), said))
 }
 
 /// The commands of yosys. Each core is flattened separately, because both have modules of the same

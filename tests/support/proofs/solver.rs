@@ -3,11 +3,12 @@
 //! bit, which is a hundred times faster.
 
 use super::{Case, Promises};
+use carrystep_tools::kept;
 use carrystep_tools::programs::{Tool, YOSYS, YOSYS_ABC, YOSYS_SMTBMC, Z3};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 use thiserror::Error;
 
 /// Time limit for one question in seconds; the slowest takes a tenth of it on an idle machine.
@@ -113,9 +114,12 @@ fn holds(promises: &Promises, dir: &Path, question: &[&str]) -> Result<(bool, St
     let mut arguments = vec!["-s", "z3", "--unroll", "--noprogress", "--timeout", LIMIT];
     arguments.extend(question);
     arguments.push("promises.smt2");
-    let (fine, said) = run(dir, YOSYS_SMTBMC, &arguments)?;
-    let trouble = ["ERROR", "UNKNOWN", "unknown"].into_iter().any(|what| said.contains(what));
-    Ok((fine && said.contains("Status: PASSED") && !trouble, said))
+    let passed = |said: &str| {
+        let trouble = ["ERROR", "UNKNOWN", "unknown"].into_iter().any(|what| said.contains(what));
+        said.contains("Status: PASSED") && !trouble
+    };
+    let (fine, said) = run_until(dir, YOSYS_SMTBMC, &arguments, passed)?;
+    Ok((fine && passed(&said), said))
 }
 
 /// Returns whether all `count` assertions fail within this number of clocks, and the output of the
@@ -124,15 +128,17 @@ pub(super) fn reached(dir: &Path, clocks: u32, count: usize) -> Result<(bool, St
     // They are asked one after the other: asked for all at once, bmc3 of ABC 1.01 may crash.
     let ask = |output| format!("read_aiger promises.aig; fold; cone -s -O {output}; bmc3 -F {clocks} -T {LIMIT}");
     let commands: Vec<String> = (0..count).map(ask).collect();
-    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &commands.join("; ")])?;
-    Ok((fine && count > 0 && said.matches("was asserted in frame").count() == count, said))
+    let all = |said: &str| count > 0 && said.matches("was asserted in frame").count() == count;
+    let (fine, said) = run_until(dir, YOSYS_ABC, &["-c", &commands.join("; ")], all)?;
+    Ok((fine && all(&said), said))
 }
 
 /// Returns whether any assertion fails within this number of clocks, and the output of the tool.
 fn any_reached(dir: &Path, clocks: u32) -> Result<(bool, String), ProofError> {
     let ask = format!("read_aiger promises.aig; fold; orpos; bmc3 -F {clocks} -T {LIMIT}");
-    let (fine, said) = run(dir, YOSYS_ABC, &["-c", &ask])?;
-    Ok((fine && said.contains("was asserted in frame"), said))
+    let is_reached = |said: &str| said.contains("was asserted in frame");
+    let (fine, said) = run_until(dir, YOSYS_ABC, &["-c", &ask], is_reached)?;
+    Ok((fine && is_reached(&said), said))
 }
 
 /// The commands of yosys: they read the unchanged exported text and the promises, and name the
@@ -187,8 +193,21 @@ fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
 
 /// Runs a tool; returns whether it succeeded, and its output.
 pub(super) fn run(dir: &Path, tool: Tool, arguments: &[&str]) -> Result<(bool, String), ProofError> {
-    let output = Command::new(tool.name).args(arguments).current_dir(dir).output();
+    run_until(dir, tool, arguments, |_| true)
+}
+
+/// The same for a tool whose answer is kept only where it is a complete one: a solver may run out of time.
+pub(super) fn run_until(
+    dir: &Path,
+    tool: Tool,
+    arguments: &[&str],
+    is_complete: impl Fn(&str) -> bool,
+) -> Result<(bool, String), ProofError> {
+    let said = |output: &Output| {
+        let said = [&output.stdout[..], &output.stderr].concat();
+        String::from_utf8_lossy(&said).into_owned()
+    };
+    let output = kept::output(&tool, dir, arguments, |output| is_complete(&said(output)));
     let output = output.map_err(|_| ProofError::Missing(tool))?;
-    let said = [output.stdout, output.stderr].concat();
-    Ok((output.status.success(), String::from_utf8_lossy(&said).into_owned()))
+    Ok((output.status.success(), said(&output)))
 }

@@ -6,6 +6,7 @@ use carrystep_boards::{Board, Family, board, boards};
 use carrystep_tests::board_session::Session;
 use carrystep_tests::{effort, jobs};
 use carrystep_tools::ice40::{self, Part};
+use carrystep_tools::kept;
 
 const PLL: &str = "
 module bench_pll #(
@@ -69,6 +70,7 @@ fn from_verilog_to_bitstream(board: &'static Board) {
         assert!(compare(&flipped).is_some(), "{name}: a flipped bit of a block RAM is not seen");
     }
     effort::say(&format!("{name}: {} cycles on every pin", session.cycles()));
+    kept::say();
     if effort::is_every_board() && name == "icestick" {
         let longer = Session::with_a_limit(board);
         assert_eq!(longer.difference(&simulated(&longer.verilog)), None, "{name}, a limit: the Verilog");

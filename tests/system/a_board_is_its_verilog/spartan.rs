@@ -5,7 +5,7 @@
 use carrystep_boards::{Toolchain, board};
 use carrystep_tests::board_session::Session;
 use carrystep_tests::{effort, jobs};
-use carrystep_tools::xilinx;
+use carrystep_tools::{kept, xilinx};
 
 /// One board of each family: Spartan-3, 3E, 6 and 7.
 const BOARDS: [&str; 4] = ["s3board", "nexys2", "papilio-pro", "arty-s7"];
@@ -54,6 +54,7 @@ fn from_verilog_to_edif(name: &str) {
         }
     }
     effort::say(&format!("{name}: {} cycles on every pin", session.cycles()));
+    kept::say();
 }
 
 #[test]

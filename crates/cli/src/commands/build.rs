@@ -9,7 +9,7 @@ use carrystep_boards::{Board, Toolchain};
 use carrystep_core::tick::mhz;
 use carrystep_files::{InputError, Machine};
 use carrystep_tools::board::{Built, Job, build};
-use carrystep_tools::ice40;
+use carrystep_tools::{ice40, kept};
 use carrystep_verilog::{Gateware, TextFile};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -52,6 +52,8 @@ pub fn run(arguments: &Build) -> Result<(), Failure> {
     if let (Some(path), false) = (&arguments.machine, arguments.try_clock) {
         reachable(&board, arguments.part.as_deref(), path)?;
     }
+    // Whoever builds a bitstream expects the tools to be run.
+    kept::never();
     let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
     let files = gateware.files()?;

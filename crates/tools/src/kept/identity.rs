@@ -1,0 +1,58 @@
+//! Which tool it is that answers: its version, and which file it is.
+
+use crate::programs::{ICEBOX_VLOG, ICETIME, PYTHON, Tool, YOSYS, YOSYS_ABC, YOSYS_SMTBMC, Z3};
+use std::collections::HashMap;
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::Mutex;
+
+/// Tools that others start, and those that come in one package and tell its version.
+const WITH: [(&str, &[Tool]); 5] = [
+    (YOSYS.name, &[YOSYS_ABC]),
+    (YOSYS_ABC.name, &[YOSYS]),
+    (YOSYS_SMTBMC.name, &[YOSYS, Z3]),
+    (ICEBOX_VLOG.name, &[PYTHON, ICETIME]),
+    (PYTHON.name, &[ICEBOX_VLOG]),
+];
+
+/// What a tool from pip is called.
+pub(super) fn name_of_pip(name: &str) -> String {
+    format!("yowasp-{name}")
+}
+
+/// A tool and those that it starts: place, size, date and version of each. None where it is not found.
+pub(super) fn of(tool: &Tool) -> Option<String> {
+    static KNOWN: Mutex<Option<HashMap<(&str, Option<std::ffi::OsString>), String>>> = Mutex::new(None);
+    // Tests change the path on which tools are looked for.
+    let key = (tool.name, std::env::var_os("PATH"));
+    let mut known = KNOWN.lock().ok()?;
+    let known = known.get_or_insert_default();
+    if let Some(text) = known.get(&key) {
+        return Some(text.clone());
+    }
+    let with = WITH.iter().find(|(name, _)| *name == tool.name).map_or(&[][..], |(_, with)| with);
+    let others = with.iter().map(|other| one(other).unwrap_or_default());
+    let text: String = [one(tool)?].into_iter().chain(others).collect();
+    known.insert(key, text.clone());
+    Some(text)
+}
+
+fn one(tool: &Tool) -> Option<String> {
+    let file = find(tool.name).or_else(|| find(&name_of_pip(tool.name)))?;
+    let file = fs::canonicalize(file).ok()?;
+    let there = fs::metadata(&file).ok()?;
+    let version = match tool.version {
+        Some(option) => {
+            let output = Command::new(&file).arg(option).output().ok()?;
+            String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned()
+        }
+        None => String::new(),
+    };
+    Some(format!("{} {} {:?} {version}\n", file.display(), there.len(), there.modified().ok()?))
+}
+
+fn find(name: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    std::env::split_paths(&path).map(|folder| folder.join(name)).find(|file| file.is_file())
+}

@@ -1,0 +1,152 @@
+//! What each long run depends on, so that a change makes those runs again that it can break.
+
+use crate::shell;
+
+/// A run, and the beginnings of the paths that it depends on.
+type Inputs = (&'static str, &'static [&'static str]);
+
+/// What every run depends on.
+const ALL: [&str; 3] = ["Cargo.toml", "Cargo.lock", "crates/xtask/src/long"];
+
+/// The engine, its model, and the levels that both run at.
+const LOCKSTEP: &[&str] = &[
+    "crates/core/",
+    "crates/model/",
+    "crates/hdl/",
+    "crates/verilog/",
+    "crates/simulators/",
+    "hdl-out/core/",
+    "tests/rung_4_model_equals_rust_hdl/",
+    "tests/rung_5_model_equals_verilog/",
+    "tests/support/engine_programs.rs",
+    "tests/support/effort.rs",
+];
+
+/// A board of models, and what talks with it.
+const BOARD: &[&str] = &["crates/core/", "crates/model/", "crates/link/", "crates/plan/", "crates/virtual-board/"];
+
+/// What is synthesised, and by which tools.
+const GATEWARE: &[&str] = &[
+    "crates/core/",
+    "crates/boards/",
+    "crates/files/",
+    "crates/hdl/",
+    "crates/verilog/",
+    "crates/tools/",
+    "hdl-out/",
+    "sim/six-axis.toml",
+];
+
+/// The inputs of each run.
+pub const INPUTS: [Inputs; 11] = [
+    ("lockstep", LOCKSTEP),
+    ("rust-hdl", LOCKSTEP),
+    (
+        "proofs",
+        &[
+            "crates/core/",
+            "crates/hdl/",
+            "crates/verilog/",
+            "hdl-out/core/",
+            "docs/promises.md",
+            "tests/support/proofs",
+            "tests/rung_7_promises_are_proved/",
+        ],
+    ),
+    (
+        "mutants",
+        &[
+            "crates/core/",
+            "crates/model/",
+            "crates/hdl/",
+            "crates/verilog/",
+            "crates/simulators/",
+            "hdl-out/core/",
+            "docs/mutants.md",
+            "tests/support/mutants",
+            "tests/support/proofs",
+            "tests/rung_8_mutants_are_caught/",
+        ],
+    ),
+    ("bad-line", BOARD),
+    ("garbage", BOARD),
+    ("dead-host", BOARD),
+    (
+        "verilog-board",
+        &[
+            "crates/core/",
+            "crates/hdl/",
+            "crates/verilog/",
+            "crates/simulators/",
+            "crates/link/",
+            "crates/plan/",
+            "crates/virtual-board/",
+        ],
+    ),
+    ("resources", GATEWARE),
+    ("boards", GATEWARE),
+    (
+        "equivalence",
+        &[
+            "crates/core/",
+            "crates/hdl/",
+            "crates/verilog/",
+            "crates/tools/",
+            "crates/simulators/",
+            "hdl-out/",
+            "tests/system/a_board_is_its_verilog",
+            "tests/support/board_session.rs",
+        ],
+    ),
+];
+
+/// The runs that a change since a commit can break. All, where git does not know the commit: a branch
+/// that is new on a server has none before it.
+///
+/// # Errors
+/// git cannot compare.
+pub fn touched(base: &str) -> Result<Vec<String>, String> {
+    let commit = format!("{base}^{{commit}}");
+    if shell::read("git", &["rev-parse", "--quiet", "--verify", &commit]).is_err() {
+        shell::say(&format!("no commit {base}: all runs are made"));
+        return Ok(INPUTS.iter().map(|(name, _)| (*name).to_owned()).collect());
+    }
+    let changed = shell::read("git", &["diff", "--name-only", &format!("{base}...HEAD")])?;
+    Ok(runs_of(&changed.lines().collect::<Vec<_>>()))
+}
+
+fn runs_of(changed: &[&str]) -> Vec<String> {
+    let depends = |inputs: &[&str]| {
+        let mut all = ALL.iter().chain(inputs);
+        all.any(|input| changed.iter().any(|path| path.starts_with(input)))
+    };
+    INPUTS.iter().filter(|(_, inputs)| depends(inputs)).map(|(name, _)| (*name).to_owned()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ALL, INPUTS, runs_of};
+    use crate::shell;
+
+    #[test]
+    fn a_change_makes_the_runs_that_it_can_break() {
+        assert!(runs_of(&["README.md", "crates/cli/src/main.rs"]).is_empty());
+        assert_eq!(runs_of(&["crates/link/src/lib.rs"]), ["bad-line", "garbage", "dead-host", "verilog-board"]);
+        assert_eq!(runs_of(&["README.md", "docs/mutants.md"]), ["mutants"]);
+        assert_eq!(runs_of(&["Cargo.lock"]).len(), INPUTS.len());
+    }
+
+    /// A path that is renamed would take its runs away in silence.
+    #[test]
+    fn every_input_is_there() {
+        for input in ALL.iter().chain(INPUTS.iter().flat_map(|(_, inputs)| *inputs)) {
+            assert!(shell::root().join(input).exists(), "{input}");
+        }
+    }
+
+    #[test]
+    fn every_run_has_inputs() {
+        let names: Vec<&str> = INPUTS.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, crate::long::RUNS.map(|run| run.name));
+    }
+}

@@ -1,0 +1,120 @@
+//! What the person at the terminal is shown: a line for each binary that has ended, and the whole
+//! output of those that failed.
+
+use super::binaries::Binary;
+use super::outcome::{Answers, Counts};
+use super::process::Ended;
+use super::slices::Slice;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// All that has ended so far.
+pub struct Report<'a> {
+    binaries: &'a [Binary],
+    slices: &'a [Slice],
+    outputs: &'a Path,
+    /// What each slice came to.
+    ended: Vec<Option<Ended>>,
+}
+
+/// A line on the standard output.
+pub fn line(text: &str) {
+    // Nobody is left to tell if this fails.
+    let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+/// The file for the output of a slice.
+pub fn part(outputs: &Path, binary: &Binary, slice: usize) -> PathBuf {
+    outputs.join(format!("{}.{slice}.part", file_name(&binary.id)))
+}
+
+/// A binary's id without what a file's name cannot have.
+fn file_name(id: &str) -> String {
+    id.replace("::", ".").replace('/', ".")
+}
+
+impl<'a> Report<'a> {
+    /// Of nothing that has ended yet.
+    pub fn new(binaries: &'a [Binary], slices: &'a [Slice], outputs: &'a Path) -> Self {
+        Self { binaries, slices, outputs, ended: slices.iter().map(|_| None).collect() }
+    }
+
+    /// A slice has ended; the last one of a binary has its line printed.
+    pub fn add(&mut self, slice: usize, ended: Ended) {
+        self.ended[slice] = Some(ended);
+        let place = self.slices[slice].binary;
+        let own = || (0..self.slices.len()).filter(|&other| self.slices[other].binary == place);
+        let parts: Option<Vec<&Ended>> = own().map(|slice| self.ended[slice].as_ref()).collect();
+        let Some(parts) = parts else { return };
+        let binary = &self.binaries[place];
+        line(&summary(&binary.id, &parts));
+        let output: String = parts.iter().map(|part| part.output.as_str()).collect();
+        let path = self.outputs.join(format!("{}.txt", file_name(&binary.id)));
+        if let Err(error) = fs::write(&path, &output) {
+            line(&format!("cannot write {}: {error}", path.display()));
+        }
+        for slice in own() {
+            // A file that stays is no harm: the next run empties the folder.
+            let _ = fs::remove_file(part(self.outputs, binary, slice));
+        }
+        if parts.iter().any(|part| part.counts.failed > 0) {
+            line(&output);
+        }
+    }
+
+    /// The tests of all binaries. A slice that has not ended was not run: that is a failure.
+    pub fn counts(&self) -> Counts {
+        let of = |(ended, slice): (&Option<Ended>, &Slice)| match ended {
+            Some(ended) => ended.counts,
+            None => Counts { failed: slice.count.unwrap_or(1), ..Counts::default() },
+        };
+        self.ended.iter().zip(self.slices).map(of).fold(Counts::default(), Counts::and)
+    }
+}
+
+/// `  12.3 s  5 passed, 0 failed, 0 ignored  carrystep-tests::rung_3`
+fn summary(id: &str, parts: &[&Ended]) -> String {
+    let seconds: f64 = parts.iter().map(|part| part.took.as_secs_f64()).sum();
+    let counts = parts.iter().map(|part| part.counts).fold(Counts::default(), Counts::and);
+    let Counts { passed, failed, ignored } = counts;
+    let mut text = format!("{seconds:>7.1} s  {passed} passed, {failed} failed, {ignored} ignored  {id}");
+    if parts.len() > 1 {
+        text += &format!(", in {} slices", parts.len());
+    }
+    let answers: Vec<Answers> = parts.iter().map(|part| Answers::of(&part.output)).collect();
+    let all: usize = answers.iter().map(|answers| answers.all).sum();
+    if all > 0 {
+        let kept: usize = answers.iter().map(|answers| answers.kept).sum();
+        text += &format!("; {all} answers of tools, {kept} of them kept from an earlier run");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Ended, file_name, summary};
+    use crate::testing::outcome::Counts;
+    use std::time::Duration;
+
+    #[test]
+    fn a_line_says_all_of_a_binary() {
+        let ended = |output: &str| Ended {
+            counts: Counts { passed: 2, failed: 0, ignored: 1 },
+            took: Duration::from_millis(1500),
+            seconds: Vec::new(),
+            output: output.to_owned(),
+        };
+        let plain = ended("");
+        assert_eq!(summary("a::b", &[&plain]), "    1.5 s  2 passed, 0 failed, 1 ignored  a::b");
+        let with_answers = ended("9 answers of tools, 4 of them kept from an earlier run\n");
+        let line = summary("a::b", &[&with_answers, &with_answers]);
+        assert!(line.contains("    3.0 s  4 passed, 0 failed, 2 ignored  a::b, in 2 slices"), "{line}");
+        assert!(line.ends_with("; 18 answers of tools, 8 of them kept from an earlier run"), "{line}");
+    }
+
+    #[test]
+    fn an_id_becomes_a_file() {
+        assert_eq!(file_name("a::bin/b"), "a.bin.b");
+    }
+}

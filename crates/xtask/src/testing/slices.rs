@@ -1,0 +1,121 @@
+//! Splits the tests of long binaries, so that none of them keeps one core busy at the end.
+
+use super::binaries::Binary;
+use super::memory::Memory;
+
+/// A slice is split where it is expected to take more seconds than this.
+const LONGEST: f64 = 40.0;
+
+/// Binaries that are not split, because their tests share something that takes long to make.
+const TOGETHER: [&str; 1] = ["carrystep-tests::rung_6_netlist_and_bitstream_equal_verilog"];
+
+/// Binaries whose tests start a worker for each core by themselves. They have all cores.
+const WIDE: [&str; 2] = ["carrystep-tests::rung_7_promises_are_proved", "carrystep-tests::rung_8_mutants_are_caught"];
+
+/// Tests of a binary that run in one process, one after the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slice {
+    /// Which binary.
+    pub binary: usize,
+    /// The tests, by name; none: all, without asking for their names.
+    pub names: Vec<String>,
+    /// How many tests it has, where that is known.
+    pub count: Option<usize>,
+    /// Whether it takes all cores.
+    pub is_wide: bool,
+    /// How long it is expected to take.
+    pub seconds: f64,
+}
+
+/// The slices of a binary; none where it has no tests.
+pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &Memory) -> Vec<Slice> {
+    let id = binary.id.as_str();
+    let is_wide = WIDE.contains(&id);
+    if !binary.lists {
+        let seconds = memory.expect(id, &[String::new()]).into_iter().sum();
+        return vec![Slice { binary: place, names: Vec::new(), count: None, is_wide, seconds }];
+    }
+    let expected = memory.expect(id, tests);
+    let seconds: f64 = expected.iter().sum();
+    let parts = if TOGETHER.contains(&id) || is_wide { 1.0 } else { (seconds / LONGEST).ceil().max(1.0) };
+    let parts = split(&expected, (parts as usize).min(tests.len()));
+    let is_whole = parts.len() == 1;
+    let slice = |part: Vec<usize>| Slice {
+        binary: place,
+        names: if is_whole { Vec::new() } else { part.iter().map(|&test| tests[test].clone()).collect() },
+        count: Some(part.len()),
+        is_wide,
+        seconds: part.iter().map(|&test| expected[test]).sum(),
+    };
+    parts.into_iter().map(slice).collect()
+}
+
+/// So many parts, of nearly equal length: each test, the longest first, goes to the part that is the
+/// shortest so far.
+fn split(seconds: &[f64], parts: usize) -> Vec<Vec<usize>> {
+    let mut order: Vec<usize> = (0..seconds.len()).collect();
+    order.sort_by(|&one, &other| seconds[other].total_cmp(&seconds[one]));
+    let mut all = vec![(0.0_f64, Vec::new()); parts];
+    for test in order {
+        let shortest = all.iter_mut().min_by(|one, other| one.0.total_cmp(&other.0));
+        if let Some((sum, part)) = shortest {
+            // A test of no time would leave parts without any.
+            *sum += seconds[test].max(1e-3);
+            part.push(test);
+        }
+    }
+    all.into_iter().map(|(_, part)| part).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Binary, LONGEST, Memory, TOGETHER, of, split};
+
+    fn binary(id: &str) -> Binary {
+        let (program, folder) = (id.into(), ".".into());
+        Binary { id: id.to_owned(), program, arguments: vec![], folder, environment: vec![], lists: true }
+    }
+
+    fn memory(id: &str, tests: &[(&str, f64)]) -> (Memory, Vec<String>) {
+        let mut memory = Memory::default();
+        let tests: Vec<(String, f64)> = tests.iter().map(|(name, seconds)| ((*name).to_owned(), *seconds)).collect();
+        memory.learn(id, &tests);
+        (memory, tests.into_iter().map(|(name, _)| name).collect())
+    }
+
+    #[test]
+    fn a_long_binary_is_split_and_no_test_is_lost() {
+        let seconds = [0.0, LONGEST, 1.0, 2.0, LONGEST, 30.0];
+        let named: Vec<(String, f64)> = (0..).map(|n: u32| format!("t{n}")).zip(seconds).collect();
+        let named: Vec<(&str, f64)> = named.iter().map(|(name, seconds)| (name.as_str(), *seconds)).collect();
+        let (memory, tests) = memory("a", &named);
+        let slices = of(3, &binary("a"), &tests, &memory);
+        assert_eq!(slices.len(), 3);
+        let mut names: Vec<String> = slices.iter().flat_map(|slice| slice.names.clone()).collect();
+        names.sort();
+        assert_eq!(names, tests);
+        assert!(slices.iter().all(|slice| slice.binary == 3 && slice.count == Some(slice.names.len())));
+        assert!(slices.iter().all(|slice| slice.seconds <= LONGEST + 2.0));
+    }
+
+    #[test]
+    fn short_binaries_and_those_that_share_stay_whole() {
+        for (id, seconds) in [("a", 1.0), (TOGETHER[0], 1000.0)] {
+            let (memory, tests) = memory(id, &[("x", seconds), ("y", seconds)]);
+            let slices = of(0, &binary(id), &tests, &memory);
+            assert_eq!(slices.len(), 1);
+            assert_eq!((slices[0].names.len(), slices[0].count), (0, Some(2)));
+        }
+    }
+
+    #[test]
+    fn a_binary_without_tests_has_no_slice() {
+        assert!(of(0, &binary("a"), &[], &Memory::default()).is_empty());
+    }
+
+    #[test]
+    fn no_part_is_empty() {
+        assert!(split(&[0.0; 5], 5).iter().all(|part| part.len() == 1));
+        assert!(split(&[], 0).is_empty());
+    }
+}
