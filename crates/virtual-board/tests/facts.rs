@@ -230,7 +230,7 @@ fn timeouts_equal_those_of_the_page() {
         format!("| busy, try again | after {} ms |", timing.pause),
         format!("| no answer at all, give up | after {silence} ms, or {lost} ms once the board has answered |"),
         format!("| power, a stop by ramps, a clear | {change} ms at most |"),
-        format!("| a look at the machine while there is nothing to send | every {look} ms |"),
+        format!("| read of the state while there is nothing to send | every {look} ms |"),
     ] {
         assert!(page.contains(&row), "{row}");
     }
