@@ -1,5 +1,8 @@
-//! The parallel core: each axis has adders of its own, so that all six make their step in the same
-//! clock. It is the article's picture and the independent sibling of [`crate::engine`].
+//! The parallel core: each of six axes has its own adders, so that all axes work in the same clock.
+//!
+//! It is the circuit that the article draws. It was written independently of [`crate::engine`] and
+//! is the reference for it: a proof compares the pulses of both. It costs far more flip-flops than
+//! the engine, which keeps the state of its axes in block RAM.
 
 pub mod axis;
 pub mod sequencer;
