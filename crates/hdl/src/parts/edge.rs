@@ -72,10 +72,10 @@ pub struct Edge {
     sign_fwd: Register<Bit>,
     sign_back: Register<Bit>,
     bisect_p: Register<Word<32>>, // `bp`
-    // `bv`, shifted right by one bit per clock, so that no barrel shifter is needed
+    // `bv`, shifted right by one bit per clock, so that no barrel shifter is needed.
     bisect_v: Register<Word<32>>,
     bisect_q: Register<Word<4>>, // `bq`
-    // the weight of the phase bit to decide next; 0 when the bisection has finished
+    // The weight of the phase bit to decide next; 0 when the bisection has finished.
     weight: Register<Word<4>>,
     emit: Register<Bit>,
     emit_back: Register<Bit>,
