@@ -13,7 +13,7 @@
 //!                        .--------.             .--------.  '-------'   '-------'
 //!   step, dir <----------| pulser |<--.         | limits |------|--> hit  ^   | frozen, ramp,
 //!                        '--------'   |         '--------'      |             v halted, cause
-//!                        one an axis  '---- the events of this phase
+//!                        one per axis '---- the events of this phase
 //! ```
 //!
 //! In each tick every axis has a time slot of 13 clocks, in which the adder advances its P, V and
@@ -26,7 +26,7 @@
 //!
 //! Cost: the state of an axis is in block RAM, except the pin timers of its pulser. The logic
 //! therefore grows little with the number of axes. The price is time: a tick must have at least 13
-//! N + 1 clocks.
+//! clocks per axis and one more.
 //!
 //! This file contains the ports and the parts; `wiring` connects them. Further terms of the code:
 //! `wheel` is the event wheel, in which pending steps wait for their phase; `owed` is a step that

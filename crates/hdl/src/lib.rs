@@ -3,12 +3,12 @@
 //! The modules implement docs/clock-by-clock.md register by register. The crate `carrystep-verilog`
 //! exports them as Verilog; the `*Sim` types of this crate simulate them clock by clock.
 //!
-//! - [`engine`]: the product. One adder serves up to eight axes, each in its own time slot.
+//! - [`mod@engine`]: the product. One adder serves up to eight axes, each in its own time slot.
 //! - [`parallel`]: the reference core. Each of six axes has its own adders, as the article draws
 //!   it. Read [`parallel::axis`] first: it is the accumulator in which every carry is a step.
 //! - [`parts`]: the modules of the parallel core that form pulses and divide time: the shaper, the
 //!   edge and the tick. The engine uses the tick as well.
-//! - [`link`] and [`line`]: the host's requests, and the UART or SPI that carries their bytes.
+//! - [`mod@link`] and [`line`]: the host's requests, and the UART or SPI that carries their bytes.
 //! - [`primitives`]: registers, memories, words and constants that Rust-HDL does not have.
 //!
 //! The folder of a module contains `promises.sv` where properties of the module are proved; the

@@ -12,8 +12,8 @@
 //!
 //! A small processor with its program ([`machine`]) handles the protocol. It stores a request in
 //! block RAM until the CRC has arrived and is correct; only then does a word of the request reach
-//! the engine. [`facts`] stores what the host can read: the constants of the build and the state of
-//! each axis.
+//! the engine. The module [`mod@facts`] stores what the host can read: the constants of the build
+//! and the state of each axis.
 //!
 //! Interface: bytes on the side of the line, the ports of the engine on the other side. The link
 //! accepts any [`crate::line`].

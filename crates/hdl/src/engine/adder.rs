@@ -8,7 +8,7 @@
 //!           |             +--> R   5     P + V, low         11     P + V, high: carry, a step
 //!           '-------------+        6     ticks - 1          12     bisection: P + V / 2
 //!   memory -----> B ------'        7     position           13-15  bisection: +- V / 4, / 8, / 16
-//!                 '-> B / 2        8     (a host's word)           of the turn before
+//!                 '-> B / 2        8     (a host's word)           of the slot before
 //! ```
 //!
 //! The 64-bit sums are computed as two halves. The carries of the three low halves wait in
@@ -21,7 +21,9 @@
 //! complement, as `top` selects, and the adder only ever adds. When halving drops the lowest bit of
 //! an odd number (`odd`), that bit re-enters as a carry.
 //!
-//! Cost: one adder of 32 bits with a carry at each end, and three registers of 32 bits.
+//! Cost: one adder of 32 bits with a carry at each end, and three registers of 32 bits. The price
+//! is time: one tick of one axis takes 13 clocks, where [`crate::parallel::axis`] takes one clock
+//! and three adders of 64 bits.
 
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};

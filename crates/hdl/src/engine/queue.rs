@@ -37,7 +37,7 @@ pub struct Queue {
     pub clock: Input<Clock>,
     /// The beats of [`super::turn`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
-    /// The axis of the slot.
+    /// The axis of the time slot.
     pub axis: Input<Word<3>>,
     /// The axis of the next clock.
     pub axis_next: Input<Word<3>>,

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! A stop is either a freeze, in which no new pulse starts, or a ramp, in which each axis slows
-//! down by its stop acceleration. The cause decides which, and for a limit the build; `docs/clock-by-clock.md` lists the
-//! causes. A freezing cause during a ramp freezes the axes too.
+//! down by its stop acceleration. The cause decides which, and for a limit the build does;
+//! `docs/clock-by-clock.md` lists the causes. A freezing cause during a ramp freezes the axes too.
 //!
 //! Interface: causes arrive from the time slots (`too_fast`, `limit`, `dry`), from the pulsers
 //! (`late`), from [`super::watch`] and from the host. Causes of a time slot take effect at the

@@ -4,7 +4,7 @@
 //! ```text
 //! address   axis 3 | slot 3 | word 3
 //! word      0 ticks - 1   1 2 V   3 4 A   5 6 J (low, high)   7: state of the axis, by slot:
-//! slot      0 1 P (low, high)   2 position   3 discarded   4 5 -s   6 7 s      s: stop acceleration
+//! slot      0 1 P (low, high)   2 position   3 discarded   4 5 -s   6 7 s    s: stop acceleration
 //!
 //! beat      0    1    2    3    4    5    6    7    8    9    10   11   12
 //! reads     A    J    V    P    n    pos  J'   A'   V'   P'   get

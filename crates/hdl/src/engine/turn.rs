@@ -16,7 +16,7 @@
 //! Interface: every module of the engine derives its schedule from `beat`.
 //!
 //! Cost: one flip-flop per beat, in a shift register of 17 bits, so that no module needs to decode
-//! a beat counter; and one per axis for `lane`.
+//! a beat counter; one flip-flop per axis for `lane`; and 3 bits for the number of the axis.
 
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};

@@ -1,16 +1,20 @@
-//! The event wheel: one block RAM with the steps and signs of all axes for each phase of four
-//! ticks.
+//! The event wheel: one block RAM that holds the pending steps and signs of all axes, with one word
+//! for each phase of four ticks.
 //!
-//! When the time slot of an axis finds a step in phase q, the wheel sets two bits in the event word
-//! of phase q, two ticks ahead: one for the step and one for its direction. When that phase begins,
-//! the word is read and every axis with a set bit steps in the same clock. The word is then
+//! When the time slot of an axis finds a step in phase q, the wheel writes two bits in the event
+//! word of phase q, two ticks ahead: one for the step and one for its direction. When that phase
+//! begins, the word is read and every axis with a set bit steps in the same clock. The word is then
 //! cleared.
 //!
 //! ```text
 //! address   tick 2 | kind 1 | phase 4        word: bit i for axis i, bit 8 + i for its direction
-//! kind 0    axis i steps, backward           read at the beginning of each phase
-//! kind 1    axis i has a sign, backward      read in the last cycle of the tick before
+//! kind 0    bit i: axis i steps              read at the beginning of each phase
+//! kind 1    bit i: axis i has V != 0         read in the last clock of the tick before
+//! bit 8 + i of both kinds: backward
 //! ```
+//!
+//! The pulsers set DIR from the events of kind 1, so that the set-up time begins before the step is
+//! due.
 //!
 //! Interface: the wheel contains the tick counter and provides `strobe` and `phase_start` to the
 //! engine. Events are written in clocks in which no word is cleared; a phase must therefore have at

@@ -17,7 +17,8 @@
 //! its tick.
 //!
 //! Cost: three adders of 64 bits, registers for P, V, A and J, and the waiting segment of the
-//! sequencer. The engine ([`crate::engine`]) performs the same additions on one adder of 32 bits.
+//! sequencer. The engine ([`mod@crate::engine`]) performs the same additions on one adder of 32
+//! bits.
 
 use crate::parallel::sequencer::Sequencer;
 use crate::parts::edge::Edge;
