@@ -162,7 +162,8 @@ pub struct Engine<const N: usize> {
     watch: Watch,
     pulser: Lanes<Pulser, N>,
     waits: Register<Bit>, // `armed`
-    // Of the start; it rotates with the time slots, so that bit 0 is the axis of the present slot.
+    // The axes of the start. The mask rotates with the time slots: bit 0 is the axis of the present
+    // slot.
     mask: Register<Word<N>>,
     going: Register<Bit>,
     taken: Register<Bit>,
@@ -175,7 +176,7 @@ pub struct Engine<const N: usize> {
     strobe: Signal<Local, Bit>,
     masked: Signal<Local, Bit>,
     nobody: Signal<Local, Bit>,
-    // The axis of `put_axis` can accept a word in this clock.
+    // The axis `put_axis` accepts a word in this clock if its queue has space.
     listens: Signal<Local, Bit>,
     take: Signal<Local, Bit>,
     may_start: Signal<Local, Bit>,

@@ -51,11 +51,11 @@ pub struct Limits<const N: usize> {
     pub hit: Signal<Out, Bit>,
     switches: Memory<4, 8>,
     max: Signal<Local, Bit>,
-    looks: Signal<Local, Bit>,
+    looks: Signal<Local, Bit>, // a switch is sampled in this clock
     pins: Signal<Local, Word<N>>,
     chosen: Signal<Local, Word<N>>,
-    sync: Register<Bit>,
-    now: Register<Bit>,
+    sync: Register<Bit>, // first flip-flop of the synchronizer
+    now: Register<Bit>,  // the synchronized pin
     word: Signal<Local, Word<8>>,
     differs: Signal<Local, Bit>,
     flips: Signal<Local, Bit>,
