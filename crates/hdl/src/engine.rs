@@ -95,7 +95,7 @@ pub struct Engine<const N: usize> {
     pub stop: Input<Bit>,
     /// The host has broken the segment protocol. The engine freezes all axes.
     pub broken: Input<Bit>,
-    /// The host sets anew which axes wait for their limit.
+    /// The host replaces the mask of the axes that wait for their limit.
     pub home_valid: Input<Bit>,
     /// The axes that wait for their limit from the next clock on, valid with `home_valid`; bit i is
     /// axis i.

@@ -79,7 +79,7 @@ pub struct Link<const N: usize> {
     pub stop: Signal<Out, Bit>,
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
-    /// The host sets anew which axes wait for their limit.
+    /// The host replaces the mask of the axes that wait for their limit.
     pub home_valid: Signal<Out, Bit>,
     /// The axes that wait for their limit, valid with `home_valid`; bit i is axis i.
     pub home_mask: Signal<Out, Word<N>>,

@@ -23,9 +23,9 @@ use rust_hdl::prelude::*;
 pub struct Homes<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The host sets anew which axes wait.
+    /// The host replaces the mask of the axes that wait for their limit.
     pub set: Input<Bit>,
-    /// The axes that wait, valid with `set`; bit i is axis i.
+    /// The new mask, valid with `set`; bit i is axis i.
     pub mask: Input<Word<N>>,
     /// Asserted in the last beat of a time slot.
     pub turn_ends: Input<Bit>,

@@ -58,7 +58,7 @@ pub struct Machine<const N: usize> {
     pub clear: Signal<Out, Bit>,
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
-    /// The axes in A, and no others, wait for their limit from now on.
+    /// A replaces the mask of the axes that wait for their limit.
     pub home_valid: Signal<Out, Bit>,
     /// The host has sent a valid request.
     pub kick: Signal<Out, Bit>,
@@ -74,7 +74,8 @@ pub struct Machine<const N: usize> {
     pub halted: Input<Bit>,
     /// All axes are at rest and no start is armed.
     pub idle: Input<Bit>,
-    /// The engine can accept a start.
+    /// The host requests power for the drivers and they have been powered for long enough, so that
+    /// the engine can accept a start.
     pub ready: Input<Bit>,
     /// A start is armed.
     pub armed: Input<Bit>,
