@@ -1,4 +1,5 @@
-//! The engine: one adder for up to eight axes, the same pulses as that many parallel ones (docs/engine.md).
+//! The engine: one adder serves up to eight axes and makes the same pulses as that many parallel
+//! axes (docs/engine.md).
 //!
 //! ```text
 //!             .------.  beat, axis                                    estop, kick, enable
@@ -12,13 +13,25 @@
 //!                        .--------.             .--------.  '-------'   '-------'
 //!   step, dir <----------| pulser |<--.         | limits |------|--> hit  ^   | frozen, ramp,
 //!                        '--------'   |         '--------'      |             v halted, cause
-//!                        one an axis  '---- the events of this phase
+//!                        one per axis '---- the events of this phase
 //! ```
 //!
-//! All state of an axis is in block RAM but its pins' timers. In each tick every axis has its turn; what
-//! the turns have found takes effect at the strobe that ends the tick, for all axes at once.
+//! In each tick every axis has a time slot of 13 clocks, in which the adder advances its P, V and
+//! A. The code calls the slot `turn` and the clocks of a slot `beats`. Results of all time slots
+//! are committed together at the end of the tick, the strobe.
 //!
-//! Here are its ports and its parts; `wiring` connects them.
+//! Interface: the host writes segments word by word (`put`) into a queue of seven segments per
+//! axis, starts axes by a mask, and reads P, the position and the discarded steps of any axis
+//! (`get`). The inputs `estop`, `limit_min` and `limit_max` come directly from pins.
+//!
+//! Cost: the state of an axis is in block RAM, except the pin timers of its pulser. The logic
+//! therefore grows little with the number of axes. The price is time: a tick must have at least 13
+//! clocks per axis and one more.
+//!
+//! This file contains the ports and the parts; `wiring` connects them. Further terms of the code:
+//! `wheel` is the event wheel, in which pending steps wait for their phase; `owed` is a step that
+//! the pin timing holds back; `late` means that a second step arrived while one was held back;
+//! `dry` means that a queue is empty when its next segment is due.
 
 use crate::HdlError;
 use crate::primitives::constant::{Literal, Parameter};
@@ -54,86 +67,89 @@ use turn::Turn;
 use watch::Watch;
 use wheel::Wheel;
 
-/// The engine of N axes.
+/// The engine of N axes, 1 to 8.
 #[derive(LogicBlock, Default)]
 pub struct Engine<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// A word of a segment is offered; it stays until it is taken.
+    /// The host offers a word of a segment and holds it until the engine accepts it.
     pub put_valid: Input<Bit>,
-    /// For this axis.
+    /// The axis of the offered word. Also the axis whose free queue space `room` reports.
     pub put_axis: Input<Word<3>>,
-    /// Which word; 7 commits.
+    /// The number of the word: 0 is ticks - 1, 1 and 2 V, 3 and 4 A, 5 and 6 J, low half first; 7
+    /// commits the segment.
     pub put_word: Input<Word<3>>,
-    /// The word; bit 0 of a commit: the segment is the last of its move.
+    /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
     pub put_data: Input<Word<32>>,
-    /// The offered word is taken in this cycle.
+    /// The engine accepts an offered word in this clock.
     pub put_ready: Signal<Out, Bit>,
-    /// A start is offered; it stays until it is taken.
+    /// The host offers a start and holds it until the engine accepts it.
     pub start_valid: Input<Bit>,
-    /// Of these axes.
+    /// The axes to start; bit i is axis i.
     pub start_mask: Input<Word<N>>,
-    /// The offered start is taken in this cycle.
+    /// The engine accepts an offered start in this clock.
     pub start_ready: Signal<Out, Bit>,
-    /// Resume after a stop: hold it until `fault` falls.
+    /// Clears a stop. The host holds it until `fault` falls.
     pub clear: Input<Bit>,
-    /// The host's controlled stop.
+    /// The host requests a controlled stop by a ramp.
     pub stop: Input<Bit>,
-    /// The host has broken the segment protocol: stop.
+    /// The host has broken the segment protocol. The engine freezes all axes.
     pub broken: Input<Bit>,
-    /// The host says anew which axes wait for their limit,
+    /// The host replaces the mask of the axes that wait for their limit.
     pub home_valid: Input<Bit>,
-    /// namely these.
+    /// The axes that wait for their limit from the next clock on, valid with `home_valid`; bit i is
+    /// axis i.
     pub home_mask: Input<Word<N>>,
-    /// The host was heard of: the watchdog starts anew.
+    /// A sign of life of the host: the watchdog restarts.
     pub kick: Input<Bit>,
-    /// The host wants the drivers to be powered.
+    /// The host requests power for the motor drivers.
     pub enable: Input<Bit>,
-    /// The e-stop's pin, asynchronous.
+    /// The e-stop pin; asynchronous.
     pub estop: Input<Bit>,
-    /// The limit pins at the low ends, asynchronous.
+    /// The pins of the limit switches at the low ends; bit i is axis i; asynchronous.
     pub limit_min: Input<Word<N>>,
-    /// The limit pins at the high ends, asynchronous.
+    /// The pins of the limit switches at the high ends; bit i is axis i; asynchronous.
     pub limit_max: Input<Word<N>>,
-    /// The axis that the host asks about.
+    /// The axis that the host reads.
     pub get_axis: Input<Word<3>>,
-    /// What it asks for: 0 and 1 P, low and high, 2 position, 3 discarded steps.
+    /// The item that the host reads: 0 and 1 P, low and high half; 2 position; 3 discarded steps.
     pub get_item: Input<Word<2>>,
-    /// The answer,
+    /// The item that the engine returns.
     pub get_data: Signal<Out, Word<32>>,
-    /// in this cycle, to what was asked in the cycle before.
+    /// `get_data` is the item requested in the clock before.
     pub get_valid: Signal<Out, Bit>,
-    /// `get_data` is the position of the axis of `turn`, which waits for its limit.
+    /// `get_data` is the position of the axis `latch_axis`, which waits for its limit.
     pub latch: Signal<Out, Bit>,
-    /// The axis whose turn it is.
+    /// The axis of the present time slot.
     pub latch_axis: Signal<Out, Word<3>>,
-    /// Segments that the axis of `put_axis` has room for,
+    /// The number of segments for which the queue of the axis `put_axis` has space, 0 to 7.
     pub room: Signal<Out, Word<3>>,
-    /// in this cycle.
+    /// `room` is valid in this clock, once in the time slot of that axis.
     pub room_valid: Signal<Out, Bit>,
     /// The STEP pins.
     pub step: Lanes<Signal<Out, Bit>, N>,
-    /// The DIR pins, 1 is backward.
+    /// The DIR pins; 1 is backward.
     pub dir: Lanes<Signal<Out, Bit>, N>,
-    /// The drivers are to be powered.
+    /// The motor drivers are to be powered.
     pub enabled: Signal<Out, Bit>,
-    /// All axes are done and no start is armed.
+    /// All axes are at rest and no start is armed.
     pub idle: Signal<Out, Bit>,
-    /// A stop has been called,
+    /// A stop has been called and has not been cleared.
     pub fault: Signal<Out, Bit>,
-    /// and no axis moves any more.
+    /// The stop is complete: no axis moves any more.
     pub halted: Signal<Out, Bit>,
-    /// Why, numbered as [`carrystep_core::engine::Cause`];
+    /// The first cause of the stop, numbered as [`carrystep_core::engine::Cause`].
     pub cause: Signal<Out, Word<3>>,
-    /// the axes that it came from.
+    /// The axes that caused the stop; bit i is axis i.
     pub culprits: Signal<Out, Word<N>>,
     /// A start is armed.
     pub armed: Signal<Out, Bit>,
-    /// The drivers have had power for long enough, and shall have it: starts can be taken.
+    /// The host requests power for the drivers and they have been powered for long enough, so that
+    /// a start can be accepted.
     pub ready: Signal<Out, Bit>,
-    /// The axes that wait for their limit.
+    /// The axes that wait for their limit; bit i is axis i.
     pub homing: Signal<Out, Word<N>>,
-    /// Axes start at the end of this cycle.
+    /// Axes start at the end of this clock.
     pub started: Signal<Out, Bit>,
     turn: Turn<N>,
     adder: Adder,
@@ -145,20 +161,23 @@ pub struct Engine<const N: usize> {
     stops: Stops<N>,
     watch: Watch,
     pulser: Lanes<Pulser, N>,
-    waits: Register<Bit>,    // `armed`
-    mask: Register<Word<N>>, // of the start, turning with the turns: bit 0 is the present axis
+    waits: Register<Bit>, // `armed`
+    // The axes of the start. The mask rotates with the time slots: bit 0 is the axis of the present
+    // slot.
+    mask: Register<Word<N>>,
     going: Register<Bit>,
     taken: Register<Bit>,
     taken_word: Register<Word<3>>,
-    unfed: Register<Bit>,  // a masked axis has nothing waiting
-    held: Register<Bit>,   // a masked axis runs on
-    active: Register<Bit>, // an axis runs or waits
-    rest_1: Register<Bit>, // none did in the last tick,
-    rest_2: Register<Bit>, // and none in the two before
+    unfed: Register<Bit>,  // an axis of the mask has no waiting segment
+    held: Register<Bit>,   // an axis of the mask still runs after this tick
+    active: Register<Bit>, // an axis runs or has a waiting segment
+    rest_1: Register<Bit>, // no axis was active in the last tick
+    rest_2: Register<Bit>, // no axis was active in the last two ticks
     strobe: Signal<Local, Bit>,
     masked: Signal<Local, Bit>,
     nobody: Signal<Local, Bit>,
-    listens: Signal<Local, Bit>, // the axis of `put_axis` looks at the port
+    // The axis `put_axis` accepts a word in this clock if its queue has space.
+    listens: Signal<Local, Bit>,
     take: Signal<Local, Bit>,
     may_start: Signal<Local, Bit>,
     free: Signal<Local, Bit>,
@@ -180,7 +199,8 @@ pub struct Engine<const N: usize> {
 }
 
 impl<const N: usize> Engine<N> {
-    /// The engine of this build, which has been checked and has N axes.
+    /// Makes the engine of a build. The caller has checked the build and ensures that it has N
+    /// axes.
     fn new(build: &EngineBuild) -> Result<Self, HdlError> {
         let mut pulser = Lanes::<Pulser, N>::default();
         for (pulser, pins) in pulser.iter_mut().zip(&build.pins) {

@@ -1,15 +1,21 @@
-//! The gateware as Rust-HDL modules: what docs/clock-by-clock.md says, register by register.
+//! The gateware of carrystep, written as Rust-HDL modules.
 //!
-//! - [`engine`]: the product. One adder serves up to eight axes in time slots.
-//! - [`parallel`]: its sibling, one adder chain an axis, as the article draws it. Read
-//!   [`parallel::axis`] first: the accumulator whose every carry is a step.
-//! - [`parts`]: what both are made of: the shaper of the pins, the edge, the tick.
-//! - [`link`] and [`line`]: the host's requests, and the bytes that carry them.
-//! - [`primitives`]: registers, memories, words and constants that Rust-HDL lacks.
+//! The modules implement docs/clock-by-clock.md register by register. The crate `carrystep-verilog`
+//! exports them as Verilog; the `*Sim` types of this crate simulate them clock by clock.
 //!
-//! What a module promises, and why it holds, is `promises.sv` in its folder: `cargo xtask prove` asks a solver.
+//! - [`mod@engine`]: the product. One adder serves up to eight axes, each in its own time slot.
+//! - [`parallel`]: the reference core. Each of six axes has its own adders, as the article draws
+//!   it. Read [`parallel::axis`] first: it is the accumulator in which every carry is a step.
+//! - [`parts`]: the modules of the parallel core that form pulses and divide time: the shaper, the
+//!   edge and the tick. The engine uses the tick as well.
+//! - [`mod@link`] and [`line`]: the host's requests, and the UART or SPI that carries their bytes.
+//! - [`primitives`]: registers, memories, words and constants that Rust-HDL does not have.
 //!
-//! A module's `Default` is its skeleton, all parameters zero: build modules with `new`.
+//! The folder of a module contains `promises.sv` where properties of the module are proved; the
+//! command `cargo xtask prove` gives them to a solver.
+//!
+//! Every module has a `Default`, because Rust-HDL requires it. The default leaves all parameters at
+//! zero and does not work as gateware; build a module with its `new`.
 
 pub mod engine;
 pub mod line;
@@ -28,24 +34,25 @@ use carrystep_core::build::MAX_CLOCKS;
 use carrystep_core::engine::EngineError;
 use thiserror::Error;
 
-/// Why there is no gateware for a build.
+/// The reason why a build cannot become gateware.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum HdlError {
-    /// A pin timing that the timers cannot count.
+    /// A pin timing is outside the range of the timers, 1 to [`MAX_CLOCKS`] clocks.
     #[error("pin timing {name} is {clocks} clocks: from 1 to {MAX_CLOCKS} can be counted")]
     PinTiming {
-        /// width, gap, setup or hold.
+        /// The name of the timing: width, gap, setup or hold.
         name: &'static str,
-        /// What was asked for.
+        /// The requested time in clocks.
         clocks: u32,
     },
-    /// Q is not 1, 4 or 16.
+    /// The number of phases per tick, Q, is not 1, 4 or 16.
     #[error("{0} phases: a tick has 1, 4 or 16 phases")]
     Phases(u32),
-    /// The engine has more to do in a tick than the tick has clocks, or counts further than it can.
+    /// The time slots of all axes do not fit in a tick, or a parameter exceeds the range of its
+    /// counter.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// Rust-HDL's own check of a module failed.
+    /// The check that Rust-HDL makes of every module has failed; the text is its message.
     #[error("Rust-HDL refuses the module: {0}")]
     Check(String),
 }

@@ -1,9 +1,9 @@
-//! The line to the host, as bytes: a UART or an SPI, with the same ports to the link.
+//! The line to the host, which carries bytes: a UART or an SPI, with the same ports to the link.
 //!
 //! ```text
-//! received_valid  ____/^\____________      received
-//! answer_valid    ________/^^^^^^\____      answer, offered until it is taken
-//! answer_take     _____________/^\____
+//! received_valid  ____/^\____________      one clock per received byte
+//! answer_valid    ________/^^^^^^\____      the link offers a byte until the line accepts it
+//! answer_take     _____________/^\____      the clock in which the line accepts the byte
 //! ```
 
 mod sim;

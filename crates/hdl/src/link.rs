@@ -1,4 +1,4 @@
-//! The host link: requests in, answers out (docs/protocol.md), by a little machine and its program.
+//! The host link: receives requests and sends answers (docs/protocol.md).
 //!
 //! ```text
 //!          .------. received .---------. put, start, home, control
@@ -10,7 +10,17 @@
 //!                                               '-------'
 //! ```
 //!
-//! A request lies in block RAM until its CRC has come; only then a word of it reaches the engine.
+//! A small processor with its program ([`machine`]) handles the protocol. It stores a request in
+//! block RAM until the CRC has arrived and is correct; only then does a word of the request reach
+//! the engine. The module [`mod@facts`] stores what the host can read: the constants of the build
+//! and the state of each axis.
+//!
+//! Interface: bytes on the side of the line, the ports of the engine on the other side. The link
+//! accepts any [`crate::line`].
+//!
+//! Cost: block RAM for the program, its data, the received bytes and the facts, and the few
+//! registers of the processor. The same protocol without a processor would need hundreds of logic
+//! cells.
 
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
@@ -28,89 +38,90 @@ pub use sim::{AnyLink, LinkSim, link};
 use self::facts::Facts;
 use machine::Machine;
 
-/// The link for an engine of N axes: a byte from the line, a byte to it; its other ports are the engine's.
+/// The link for an engine of N axes. Its ports are those of the line and of the engine.
 #[derive(LogicBlock, Default)]
 pub struct Link<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// A byte has come,
+    /// The line has received a byte; asserted for one clock per byte.
     pub received_valid: Input<Bit>,
-    /// this one.
+    /// The received byte.
     pub received: Input<Word<8>>,
-    /// A byte to the host is offered until it is taken,
+    /// The link offers a byte of the answer and holds it until the line accepts it.
     pub answer_valid: Signal<Out, Bit>,
-    /// this one.
+    /// The offered byte.
     pub answer: Signal<Out, Word<8>>,
-    /// It is taken in this cycle.
+    /// The line accepts the offered byte in this clock.
     pub answer_take: Input<Bit>,
-    /// A word of a segment is offered,
+    /// The link offers a word of a segment to the engine.
     pub put_valid: Signal<Out, Bit>,
-    /// for this axis,
+    /// The axis of the offered word. Also the axis whose free queue space the link reads.
     pub put_axis: Signal<Out, Word<3>>,
-    /// the word of this place,
+    /// The number of the offered word in its segment; 7 commits the segment.
     pub put_word: Signal<Out, Word<3>>,
-    /// this one.
+    /// The offered word.
     pub put_data: Signal<Out, Word<32>>,
-    /// It is taken.
+    /// The engine accepts the offered word in this clock.
     pub put_ready: Input<Bit>,
-    /// The axis of `put_axis` has room for so many segments,
+    /// The number of segments for which the queue of the axis `put_axis` has space.
     pub room: Input<Word<3>>,
-    /// in this cycle.
+    /// `room` is valid in this clock.
     pub room_valid: Input<Bit>,
-    /// A start is offered,
+    /// The link offers a start to the engine.
     pub start_valid: Signal<Out, Bit>,
-    /// of these axes.
+    /// The axes to start; bit i is axis i.
     pub start_mask: Signal<Out, Word<N>>,
-    /// It is taken.
+    /// The engine accepts an offered start in this clock.
     pub start_ready: Input<Bit>,
-    /// Resume after a stop.
+    /// The engine clears a stop.
     pub clear: Signal<Out, Bit>,
-    /// The host's controlled stop.
+    /// The host requests a controlled stop.
     pub stop: Signal<Out, Bit>,
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
-    /// The host says anew which axes wait for their limit,
+    /// The host replaces the mask of the axes that wait for their limit.
     pub home_valid: Signal<Out, Bit>,
-    /// namely these.
+    /// The axes that wait for their limit, valid with `home_valid`; bit i is axis i.
     pub home_mask: Signal<Out, Word<N>>,
-    /// The host was heard of.
+    /// The host has sent a valid request: the watchdog restarts.
     pub kick: Signal<Out, Bit>,
-    /// The drivers are to be powered.
+    /// The host requests power for the motor drivers.
     pub enable: Signal<Out, Bit>,
-    /// What is asked of the engine: of this axis,
+    /// The axis whose state the link reads from the engine.
     pub get_axis: Signal<Out, Word<3>>,
-    /// this item.
+    /// The item that the link reads: 0 and 1 P, low and high half; 2 position; 3 discarded steps.
     pub get_item: Signal<Out, Word<2>>,
-    /// Its answer,
+    /// The value that the engine returns.
     pub get_data: Input<Word<32>>,
-    /// in this cycle.
+    /// `get_data` is the value of the item requested in the clock before.
     pub get_valid: Input<Bit>,
-    /// `get_data` is a position,
+    /// `get_data` is the position of the axis `latch_axis`, which waits for its limit.
     pub latch: Input<Bit>,
-    /// of this axis, which waits for its limit.
+    /// The axis of `latch`.
     pub latch_axis: Input<Word<3>>,
-    /// A stop has been called.
+    /// The engine has latched a stop.
     pub fault: Input<Bit>,
-    /// No axis moves any more.
+    /// No axis moves any more after a stop.
     pub halted: Input<Bit>,
-    /// All axes are done.
+    /// All axes are at rest and no start is armed.
     pub idle: Input<Bit>,
-    /// Starts can be taken.
+    /// The host requests power for the drivers and they have been powered for long enough, so that
+    /// the engine can accept a start.
     pub ready: Input<Bit>,
     /// A start is armed.
     pub armed: Input<Bit>,
-    /// Why.
+    /// The first cause of the stop, numbered as [`carrystep_core::engine::Cause`].
     pub cause: Input<Word<3>>,
-    /// The axes that a stop came from.
+    /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,
-    /// The axes that wait for their limit.
+    /// The axes that wait for their limit; bit i is axis i.
     pub homing: Input<Word<N>>,
     machine: Machine<N>,
     facts: Facts,
 }
 
 impl<const N: usize> Link<N> {
-    /// The link of this build.
+    /// Makes the link of this build.
     fn new(build: &EngineBuild, id: BuildId) -> Self {
         Self { machine: Machine::new(&image()), facts: Facts::new(&facts(build, id)), ..Self::default() }
     }

@@ -1,5 +1,9 @@
-//! The parallel core: each axis has adders of its own, so that all six make their step in the same
-//! clock. It is the article's picture and the independent sibling of [`crate::engine`].
+//! The parallel core: each of six axes has its own adders, so that all axes work in the same clock.
+//!
+//! It is the circuit that the article draws, and the reference for [`mod@crate::engine`]: a proof
+//! compares the pulses of both. The two cores share only the tick counter and the primitives. The
+//! parallel core costs far more flip-flops than the engine, which keeps the state of its axes in
+//! block RAM.
 
 pub mod axis;
 pub mod sequencer;

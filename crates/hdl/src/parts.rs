@@ -1,4 +1,4 @@
-//! Modules that both cores are made of.
+//! The modules of one axis that turn steps into pulses, and the tick counter that both cores use.
 
 pub mod edge;
 pub mod shaper;

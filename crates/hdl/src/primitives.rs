@@ -1,5 +1,5 @@
-//! What Rust-HDL lacks, in the form that the exported Verilog needs: registers with their reset value,
-//! memories, words of bits, and constants that differ between builds.
+//! Building blocks that Rust-HDL does not have, in the form that the exported Verilog needs:
+//! registers with a reset value, memories, words of bits, and constants that differ between builds.
 
 pub mod constant;
 pub mod lanes;

@@ -1,40 +1,46 @@
-//! Drives the modules from outside, one clock cycle at a time.
+//! Drives a module from outside, one clock cycle at a time.
 //!
 //! ```text
 //! clock    ____/^^^^\____/^^^^\____
 //!            ^    ^    ^    ^
-//!       settle  clock  settle  clock      inputs change with the falling edge, outputs are read before the rising one
+//!       settle  clock  settle  clock
 //! ```
+//!
+//! The caller changes the inputs while the clock is low and calls `settle`, then reads the outputs,
+//! then calls `clock`, which raises the clock.
 
 use crate::HdlError;
 use rust_hdl::prelude::{Bit, Block, Out, Signal, check_all, simulate};
 
-/// Passes in which any module here settles, with room to spare.
+/// The largest number of simulation passes for one cycle. Every module of this crate settles in
+/// fewer.
 const PASSES: usize = 50;
 
-/// Lets the combinational outputs follow the inputs.
+/// Simulates until the combinational outputs have followed the inputs.
 pub(crate) fn settle<B: Block>(block: &mut B) {
     let settled = simulate(block, PASSES);
     debug_assert!(settled, "a combinational loop, which check_all would have refused");
 }
 
-/// Moves every register on: the clock edge reaches all of them in one pass ([`crate::primitives::register`]).
+/// Simulates a rising clock edge. One pass is enough, because the edge reaches every register in
+/// that pass ([`crate::primitives::register`]).
 pub(crate) fn rising_edge<B: Block>(block: &mut B) {
     block.update_all();
 }
 
+/// Connects the ports of a module and runs Rust-HDL's checks on it.
 pub(crate) fn connected<B: Block>(mut block: B) -> Result<Box<B>, HdlError> {
     block.connect_all();
     check_all(&block).map_err(|error| HdlError::Check(format!("{error:?}")))?;
     Ok(Box::new(block))
 }
 
-/// The pins of all axes, bit i is axis i.
+/// Collects one pin of each axis in a mask, in which bit i is the pin of axis i.
 pub(crate) fn mask(bits: &[Signal<Out, Bit>]) -> u8 {
     bits.iter().rev().fold(0, |mask, bit| mask << 1 | u8::from(bit.val()))
 }
 
-/// Rust-HDL's checks, its Verilog and yosys accept the module.
+/// Asserts that Rust-HDL's checks accept the module and that yosys accepts its Verilog.
 #[cfg(test)]
 pub(crate) fn assert_synthesizes<B: Block>(module: B, name: &str) {
     use rust_hdl::prelude::{generate_verilog, yosys_validate};

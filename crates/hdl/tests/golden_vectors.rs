@@ -1,5 +1,5 @@
-//! The axis module gives the first edges of the golden vectors, tick, phase and direction; rung 4 of the
-//! ladder goes on to the last.
+//! Checks that the axis module produces the first edges of the golden vectors, with tick, phase and
+//! direction. Rung 4 of the verification ladder compares all edges.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::{Segment, StartPhase};
@@ -26,7 +26,7 @@ fn segments(case: &Value) -> Vec<Segment> {
         .collect()
 }
 
-/// Runs a case for some ticks; the edges as `tick:phase:direction`.
+/// Runs a case for a number of ticks. Returns the edges as `tick:phase:direction`.
 fn run(case: &Value, ticks: u64) -> Vec<String> {
     let start = if number::<u64>(&case["P0"]) == 0 { StartPhase::Zero } else { StartPhase::Half };
     let mut axis = AxisSim::new(16, start).unwrap();
@@ -49,7 +49,7 @@ fn run(case: &Value, ticks: u64) -> Vec<String> {
 }
 
 #[test]
-fn the_first_edges_of_the_golden_vectors() {
+fn axis_produces_the_first_edges_of_the_golden_vectors() {
     let vectors: Value = serde_json::from_str(VECTORS).unwrap();
     for case in vectors["cases"].as_array().unwrap() {
         let first = case["first8"].as_array().unwrap();

@@ -1,4 +1,4 @@
-//! The core from its ports: starts, latency, faults and clear.
+//! Checks the six-axis core at its ports: starts, latency, faults and clear.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::ports::{Inputs, Outputs};
@@ -40,7 +40,7 @@ impl Bench {
         self.clock(Inputs { start: Some(mask), ..Inputs::default() }).start_ready
     }
 
-    /// The cycle in which this first holds.
+    /// Runs until the outputs fulfil the condition. Returns the first cycle in which they do.
     fn until(&mut self, what: impl Fn(&Outputs) -> bool) -> u64 {
         for _ in 0..10_000 {
             if what(&self.rest()) {
@@ -52,12 +52,12 @@ impl Bench {
 }
 
 #[test]
-fn the_first_edge_comes_after_the_latency() {
+fn first_edge_appears_after_the_latency() {
     let mut bench = Bench::new();
     assert!(bench.segment(2, LAST) && bench.start(1 << 2));
     let loaded = bench.until(|o| o.started) + 1;
     assert_eq!(loaded % C, 0);
-    // From half a step at 1/8 step per tick: tick 4 carries, at its very end.
+    // P begins at half a step and V is 1/8 step per tick: tick 4 carries at its very end.
     let edge = bench.until(|o| o.step == 1 << 2);
     assert_eq!(edge, loaded + 3 * C + 15 * 3 + 2 * C + 1);
     bench.until(|o| o.idle);
@@ -66,7 +66,7 @@ fn the_first_edge_comes_after_the_latency() {
 }
 
 #[test]
-fn all_axes_of_a_mask_start_on_one_tick() {
+fn all_axes_of_a_start_mask_start_on_one_tick() {
     let mut bench = Bench::new();
     for axis in 0..6 {
         let v = if axis % 2 == 0 { LAST.v } else { -LAST.v };
@@ -81,7 +81,7 @@ fn all_axes_of_a_mask_start_on_one_tick() {
 }
 
 #[test]
-fn a_start_of_an_axis_without_a_segment_breaks_the_protocol() {
+fn start_of_an_axis_without_a_segment_is_a_protocol_fault() {
     let mut bench = Bench::new();
     bench.segment(0, LAST);
     bench.start(3);
@@ -93,7 +93,7 @@ fn a_start_of_an_axis_without_a_segment_breaks_the_protocol() {
 }
 
 #[test]
-fn a_segment_for_nobody_or_of_no_ticks_breaks_the_protocol() {
+fn segment_for_no_axis_or_of_zero_ticks_is_a_protocol_fault() {
     for (axis, ticks) in [(6, 1), (7, 1), (0, 0)] {
         let mut bench = Bench::new();
         assert!(bench.segment(axis, Segment { ticks, ..LAST }));
@@ -102,7 +102,7 @@ fn a_segment_for_nobody_or_of_no_ticks_breaks_the_protocol() {
 }
 
 #[test]
-fn a_dry_queue_freezes_all_axes_and_clear_resumes() {
+fn underrun_freezes_all_axes_until_clear() {
     let mut bench = Bench::new();
     bench.segment(0, Segment { last: false, ..LAST });
     bench.segment(5, Segment { ticks: 1000, ..LAST });
@@ -121,7 +121,7 @@ fn a_dry_queue_freezes_all_axes_and_clear_resumes() {
 }
 
 #[test]
-fn a_rate_over_width_and_gap_is_an_overrun() {
+fn step_rate_above_the_pin_timing_is_an_overrun() {
     let mut bench = Bench::new();
     let timebase = Timebase::new(16_000_000, 1000, 16).unwrap();
     let pins = [PinTiming { width: 40, gap: 40, setup: 1, hold: 1 }; AXES];
@@ -130,7 +130,8 @@ fn a_rate_over_width_and_gap_is_an_overrun() {
     bench.start(1 << 4);
     bench.until(|o| o.faults.overrun == 1 << 4);
     bench.until(|o| o.step == 0);
-    // Every carry is a pulse or counted: 1 pulse, and what the shaper and the freeze discarded.
+    // Every carry is a pulse or is counted as discarded. Here one pulse was made; the shaper and
+    // the freeze discarded the other steps.
     for _ in 0..C {
         bench.rest();
     }

@@ -1,4 +1,5 @@
-//! The one adder: P + V, V + A, A + J, ticks - 1, positions, and the bisection, a word a beat.
+//! The only adder of the engine. It computes P + V, V + A, A + J, the remaining ticks, the
+//! positions and the bisection, with 32 bits per clock.
 //!
 //! ```text
 //!   memory --+--> A --.           beat   sum                beat   sum
@@ -7,48 +8,59 @@
 //!           |             +--> R   5     P + V, low         11     P + V, high: carry, a step
 //!           '-------------+        6     ticks - 1          12     bisection: P + V / 2
 //!   memory -----> B ------'        7     position           13-15  bisection: +- V / 4, / 8, / 16
-//!                 '-> B / 2        8     (a host's word)           of the turn before
+//!                 '-> B / 2        8     (a host's word)           of the slot before
 //! ```
 //!
-//! The bisection does not restore: where a part of V crosses, the next half of it is taken back, not
-//! added. Its sum then stays in R as its complement (`top` says so), so that the adder only ever adds:
-//! X is R, or not R. What halving an odd number loses (`odd`) comes back as a carry.
+//! The 64-bit sums are computed as two halves. The carries of the three low halves wait in
+//! flip-flops (`carry_0` to `carry_2`) until the high halves are added. The carry of P + V tells
+//! whether the tick contains a step.
+//!
+//! The bisection is non-restoring: if the sum with a part of V carries, the next half of that part
+//! is subtracted instead of added. To subtract, the adder adds the half to the complement of the
+//! sum; the result is the complement of the difference. The operand X is therefore R or its
+//! complement, as `top` selects, and the adder only ever adds. When halving drops the lowest bit of
+//! an odd number (`odd`), that bit re-enters as a carry.
+//!
+//! Cost: one adder of 32 bits with a carry at each end, and three registers of 32 bits. The price
+//! is time: one tick of one axis takes 13 clocks, where [`crate::parallel::axis`] takes one clock
+//! and three adders of 64 bits.
 
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
-/// Operands, sum, and what the sums say.
+/// The adder with its operand registers, its sum and the flags derived from the sums.
 #[derive(LogicBlock, Default)]
 pub struct Adder {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The beats of [`super::turn`].
+    /// The beats of [`super::turn`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
-    /// What the memory gives.
+    /// The word that the memory returns.
     pub word: Input<Word<32>>,
-    /// What the host puts.
+    /// The word that the host offers.
     pub put: Input<Word<32>>,
-    /// The axis runs: beat 6 counts its ticks down.
+    /// The axis runs: beat 6 subtracts one from its remaining ticks.
     pub counts: Input<Bit>,
-    /// Otherwise it counts a discarded step, if this is set; never both.
+    /// The axis is at rest, and beat 6 adds one to its discarded steps. Never asserted with
+    /// `counts`.
     pub lost: Input<Bit>,
-    /// Beat 7 counts a step forward.
+    /// Beat 7 adds one to the position.
     pub up: Input<Bit>,
-    /// Beat 7 counts a step back.
+    /// Beat 7 subtracts one from the position.
     pub down: Input<Bit>,
-    /// P becomes zero.
+    /// The sums that replace P are zero.
     pub wipe: Input<Bit>,
     /// The sum of the beat before.
     pub sum: Signal<Out, Word<32>>,
-    /// From beat 8: the segment is over after this tick.
+    /// From beat 8: the running segment ends with this tick.
     pub ended: Signal<Out, Bit>,
-    /// From beat 12: V + A does not fit.
+    /// From beat 12: V + A does not fit in 64 bits.
     pub overflow: Signal<Out, Bit>,
-    /// From beat 12: V + A has the other sign than V.
+    /// From beat 12: V + A and V have different signs.
     pub turned: Signal<Out, Bit>,
-    /// In beat 12: the tick steps.
+    /// In beat 12: the tick contains a step.
     pub crosses: Signal<Out, Bit>,
     /// From beat 12: V < 0.
     pub back: Signal<Out, Bit>,
@@ -56,29 +68,31 @@ pub struct Adder {
     pub still: Signal<Out, Bit>,
     /// From beat 12: V = -2^63.
     pub least: Signal<Out, Bit>,
-    /// After beat 16: the phase.
+    /// After beat 16: the phase of the step, in 1/16 tick.
     pub q: Signal<Out, Word<4>>,
     a: Register<Word<32>>,
     b: Register<Word<32>>,
     r: Register<Word<32>>,
-    top: Register<Bit>,     // bit 32 of the sum of R and a signed B
-    carry_0: Register<Bit>, // of the low halves, the last one first
+    top: Register<Bit>,     // bit 32 of the sum of X and the signed B
+    carry_0: Register<Bit>, // the carries of the low halves, the latest in `carry_0`
     carry_1: Register<Bit>,
     carry_2: Register<Bit>,
     over: Register<Bit>,      // `ended`
     unfit: Register<Bit>,     // `overflow`
-    sign_of_a: Register<Bit>, // a beat ago
-    sign_of_b: Register<Bit>, // likewise
+    sign_of_a: Register<Bit>, // the sign of A in the beat before
+    sign_of_b: Register<Bit>, // the sign of B in the beat before
     other: Register<Bit>,     // `turned`
     low_zero: Register<Bit>,
     minus: Register<Bit>,   // `back`
     zero: Register<Bit>,    // `still`
     bound: Register<Bit>,   // `least`
-    crossed: Register<Bit>, // the bisection's last sum but one was beyond the step
+    crossed: Register<Bit>, // the last bisection sum but one carried
     bisects: Register<Bit>,
-    carry_if_top: Register<Bit>, // the carry that comes in where `top` is set,
-    carry_if_not: Register<Bit>, // and where it is not: all else is known a beat ahead
-    bits: Register<Word<4>>,     // `q`
+    // The carry in if `top` is 1; computed one beat ahead.
+    carry_if_top: Register<Bit>,
+    // The carry in if `top` is 0; computed one beat ahead.
+    carry_if_not: Register<Bit>,
+    bits: Register<Word<4>>, // `q`
     x: Signal<Local, Word<32>>,
     half: Signal<Local, Word<32>>,
     ones_in: Signal<Local, Bit>,
@@ -88,10 +102,10 @@ pub struct Adder {
     halves_on: Signal<Local, Bit>,
     crosses_now: Signal<Local, Bit>,
     carry_due: Signal<Local, Bit>,
-    odd: Signal<Local, Bit>, // halving B loses its lowest bit
+    odd: Signal<Local, Bit>, // halving B drops a 1 at its lowest bit
     odd_beyond: Signal<Local, Bit>,
     carry_in: Signal<Local, Bit>,
-    extended: Signal<Local, Word<33>>, // B with its sign once more
+    extended: Signal<Local, Word<33>>, // B, sign-extended by one bit
     low: Signal<Local, Word<34>>,
     wide: Signal<Local, Word<34>>,
     empty: Signal<Local, Bit>,
@@ -126,7 +140,7 @@ impl Logic for Adder {
             other
         );
 
-        // A: from memory, in beat 7 from the host.
+        // Operand A is loaded from memory, in beat 7 from the host.
         if self.beat.val().get_bit(1)
             | self.beat.val().get_bit(4)
             | self.beat.val().get_bit(5)
@@ -140,7 +154,8 @@ impl Logic for Adder {
             self.a.d.next = self.put.val();
         }
 
-        // B: from memory; -1 or 0 for counting; its own half.
+        // Operand B is loaded from memory, set to -1 or 0 for counting, or halved for the
+        // bisection.
         self.counting.next = self.beat.val().get_bit(5) | self.beat.val().get_bit(6);
         self.ones_in.next =
             (self.beat.val().get_bit(5) & self.counts.val()) | (self.beat.val().get_bit(6) & !self.up.val());
@@ -162,11 +177,11 @@ impl Logic for Adder {
         } else if self.halve.val() {
             self.b.d.next = self.half.val();
         }
-        // The bisection goes on in the next beat.
+        // 1 if the bisection continues in the next beat.
         self.halves_on.next = self.beat.val().get_bit(12) | self.beat.val().get_bit(13) | self.beat.val().get_bit(14);
         self.bisects.d.next = self.halves_on.val();
 
-        // X: A; in the bisection R, straight or as its complement.
+        // Operand X is A, or in the bisection R or the complement of R.
         self.crosses_now.next = self.top.q.val() ^ self.crossed.q.val();
         self.x.next = self.a.q.val();
         if self.bisects.q.val() {
@@ -176,7 +191,7 @@ impl Logic for Adder {
             }
         }
 
-        // The sum; a carry comes in as 1 + 1 below the lowest bit.
+        // The sum. A carry enters as 1 + 1 in an additional bit below the lowest.
         self.carry_due.next = (self.beat.val().get_bit(5) & self.lost.val())
             | (self.beat.val().get_bit(6) & !self.down.val())
             | ((self.beat.val().get_bit(8) | self.beat.val().get_bit(9) | self.beat.val().get_bit(10))
@@ -208,7 +223,8 @@ impl Logic for Adder {
             self.r.d.next = self.nothing.val();
         }
         self.top.d.next = self.wide.val().get_bit(33);
-        // The carries of the low halves, a beat later: the sum's top bit without that of B. Then they come in, one a beat.
+        // The carry of a low half is known one beat later: it is the top bit of the sum without the
+        // sign extension of B. The high halves use these carries one per beat.
         self.sign_of_b.d.next = self.b.q.val().get_bit(31);
         if self.beat.val().get_bit(4)
             | self.beat.val().get_bit(5)
@@ -221,7 +237,7 @@ impl Logic for Adder {
             self.carry_2.d.next = self.carry_1.q.val();
         }
 
-        // What the sums say: the end of the segment, and V.
+        // The flags: the end of the segment, and the range and sign of V.
         if self.beat.val().get_bit(7) {
             self.over.d.next = self.top.q.val();
         }
@@ -240,7 +256,7 @@ impl Logic for Adder {
             self.bound.d.next = self.low_zero.q.val() & self.empty.val() & self.b.q.val().get_bit(31);
         }
 
-        // The phase: a bit for each part of V that does not cross.
+        // The phase: a part of V that does not carry sets its bit.
         if self.beat.val().get_bit(12) {
             self.crossed.d.next = false;
         }

@@ -1,45 +1,52 @@
-//! Homing: an axis that waits for its limit and meets it slows down alone, and its queue is emptied.
+//! Homing: when an axis that waits for its limit reaches it, only this axis ramps down, and its
+//! queue is emptied.
 //!
 //! ```text
-//! set      /^\_______________________________________
-//! waits    __/^^^^^^^^^^^^^^^^^^^^^\__________________   `axes`, a bit each: the engine's host sees them
-//! hit      _______________________/^\________________   the axis' own, in the last beat of its turn
-//! slows    _________________________/^^^^^^^^^^^^\____   in its turns only: a ramp, until it rests
+//! set      /^\_______________________________________   the host sets which axes wait
+//! waits    __/^^^^^^^^^^^^^^^^^^^^^\__________________   one bit per axis; output `axes`
+//! hit      _______________________/^\________________   in the last beat of the axis' slot
+//! slows    _________________________/^^^^^^^^^^^^\____   in its slots only, until it rests
 //! ```
+//!
+//! Interface: the host sets the mask of waiting axes; [`super::limits`] reports a reached limit;
+//! the queue ramps the axis down while `slows` is asserted in its time slot.
+//!
+//! Cost: two flip-flops per axis, and one that provides `slows` from the first beat of a slot on.
 
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
-/// The axes that wait for their limit, and those that have met it.
+/// The axes that wait for their limit, and those that have reached it and ramp down.
 #[derive(LogicBlock, Default)]
 pub struct Homes<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The host says anew which axes wait,
+    /// The host replaces the mask of the axes that wait for their limit.
     pub set: Input<Bit>,
-    /// namely these.
+    /// The new mask, valid with `set`; bit i is axis i.
     pub mask: Input<Word<N>>,
-    /// Last beat of a turn.
+    /// Asserted in the last beat of a time slot.
     pub turn_ends: Input<Bit>,
-    /// The axis of the turn, one bit.
+    /// The axis of the time slot, one-hot.
     pub lane: Input<Word<N>>,
-    /// It has reached a limit.
+    /// The axis of the slot has reached a limit.
     pub hit: Input<Bit>,
-    /// It runs in the next tick too.
+    /// The axis of the slot runs in the next tick too.
     pub goes_on: Input<Bit>,
-    /// The axes that wait for their limit.
+    /// The axes that wait for their limit; bit i is axis i.
     pub axes: Signal<Out, Word<N>>,
-    /// The axis of this turn does.
+    /// The axis of the slot waits for its limit.
     pub waits: Signal<Out, Bit>,
-    /// It has met its limit and slows down.
+    /// The axis of the slot has reached its limit and ramps down.
     pub slows: Signal<Out, Bit>,
     waiting: Register<Word<N>>,
     slowing: Register<Word<N>>,
     mine: Signal<Local, Bit>,
     lane_next: Signal<Local, Word<N>>,
-    mine_slows: Register<Bit>, // known with the turn's first beat: the whole ramp hangs on it
+    // Registered, because the whole ramp depends on it from the first beat of the slot.
+    mine_slows: Register<Bit>,
     caught: Signal<Local, Bit>,
     slower: Signal<Local, Word<N>>,
     none: Literal<N, 0>,
@@ -48,7 +55,7 @@ pub struct Homes<const N: usize> {
 }
 
 impl<const N: usize> Homes<N> {
-    /// The homing of N axes.
+    /// Makes the homing of N axes.
     pub fn new() -> Self {
         Self { to_top: Parameter::new(N as u64 - 1), ..Self::default() }
     }
@@ -72,7 +79,7 @@ impl<const N: usize> Logic for Homes<N> {
         if self.set.val() {
             self.waiting.d.next = self.mask.val();
         }
-        // Whoever rests has slowed down.
+        // The ramp of an axis is over when the axis does not run in the next tick.
         self.slower.next = self.none.val();
         if self.caught.val() {
             self.slower.next = self.lane.val();

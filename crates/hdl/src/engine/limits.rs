@@ -1,10 +1,18 @@
-//! The limit switches, one look in a turn: what is believed of each is in block RAM.
+//! Samples and debounces the limit switches, and reports when an axis has reached one.
 //!
 //! ```text
-//! word     state | looks against it, 7 bits          address   axis 3 | max
+//! word     state | count, 7 bits                      address   axis 3 | max
 //! ```
 //!
-//! The pin goes through two flip-flops behind the choice of the axis: it has the whole turn to settle.
+//! A memory holds one word per switch: `state` is the debounced state, and `count` is the number of
+//! consecutive samples that differ from it. The state changes after as many different samples in
+//! sequence as the build specifies (1 to 127). Each limit is sampled once per round of ticks, in
+//! the time slot of its axis.
+//!
+//! The pin of the slot's axis is selected first and then passes two flip-flops. These synchronize
+//! it, and it has the whole slot to settle.
+//!
+//! Cost: one synchronizer and one debouncer for all switches, and a memory of 16 words of 8 bits.
 
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::memory::Memory;
@@ -13,40 +21,41 @@ use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::engine::{Guard, Limits as Wiring};
 use rust_hdl::prelude::*;
 
-/// Debounce, and what a switch means for the axis.
+/// The debouncer of all limit switches, and the decision whether a switch stops the axis.
 #[derive(LogicBlock, Default)]
 pub struct Limits<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// Last beat of a turn.
+    /// Asserted in the last beat of a time slot.
     pub turn_ends: Input<Bit>,
-    /// The axis, as a number.
+    /// The axis of the slot, as a number.
     pub axis: Input<Word<3>>,
-    /// The axis of the next cycle.
+    /// The axis of the next clock, as a number.
     pub axis_next: Input<Word<3>>,
-    /// The axis, one bit.
+    /// The axis of the slot, one-hot.
     pub lane: Input<Word<N>>,
-    /// First tick of a round: `limit_min` is looked at.
+    /// The first tick of a round: `limit_min` is sampled.
     pub tick_0: Input<Bit>,
-    /// Second tick of a round: `limit_max` is looked at.
+    /// The second tick of a round: `limit_max` is sampled.
     pub tick_1: Input<Bit>,
-    /// The pins.
+    /// The pins at the low ends. With one switch per axis, the pin of that switch; with one for all
+    /// axes, bit 0. Asynchronous.
     pub limit_min: Input<Word<N>>,
-    /// The pins.
+    /// The pins at the high ends; asynchronous.
     pub limit_max: Input<Word<N>>,
-    /// The axis makes its tick, with a V that is not zero.
+    /// The axis moves in this tick, with V != 0.
     pub goes: Input<Bit>,
-    /// V < 0.
+    /// V < 0 in this tick.
     pub back: Input<Bit>,
     /// The axis has reached a limit.
     pub hit: Signal<Out, Bit>,
     switches: Memory<4, 8>,
     max: Signal<Local, Bit>,
-    looks: Signal<Local, Bit>,
+    looks: Signal<Local, Bit>, // a switch is sampled in this clock
     pins: Signal<Local, Word<N>>,
     chosen: Signal<Local, Word<N>>,
-    sync: Register<Bit>,
-    now: Register<Bit>,
+    sync: Register<Bit>, // first flip-flop of the synchronizer
+    now: Register<Bit>,  // the synchronized pin
     word: Signal<Local, Word<8>>,
     differs: Signal<Local, Bit>,
     flips: Signal<Local, Bit>,
@@ -71,7 +80,7 @@ pub struct Limits<const N: usize> {
 }
 
 impl<const N: usize> Limits<N> {
-    /// The limits of this guard, which has been checked.
+    /// Makes the limits of this guard. The caller has checked the guard.
     pub fn new(guard: &Guard) -> Self {
         let is = |wiring| Parameter::new(u64::from(guard.limits == wiring));
         Self {
@@ -91,7 +100,7 @@ impl<const N: usize> Logic for Limits<N> {
         dff_setup!(self, clock, sync, now);
         clock!(self, clock, switches);
 
-        // The pin of this turn.
+        // Selects and synchronizes the pin of this time slot.
         self.max.next = self.tick_1.val() & self.pair.val().any();
         self.looks.next = self.turn_ends.val() & (self.tick_0.val() | self.max.val());
         self.pins.next = self.limit_min.val();
@@ -105,7 +114,7 @@ impl<const N: usize> Logic for Limits<N> {
         self.sync.d.next = self.chosen.val().any() ^ self.low.val().any();
         self.now.d.next = self.sync.q.val();
 
-        // What is believed.
+        // The debounced state and its count.
         self.max_bit.next = self.no_side.val();
         if self.max.val() {
             self.max_bit.next = self.side.val();
@@ -132,7 +141,9 @@ impl<const N: usize> Logic for Limits<N> {
             self.switches.write_bits.next = self.all.val();
         }
 
-        // What it means: one of a pair stops one way; one alone stops what runs into it, and lets it go.
+        // A switch of a pair stops the axis in one direction, as long as it is active. A single
+        // switch stops the axis only when it becomes active, so that the axis can leave it in
+        // either direction.
         self.hit.next = self.looks.val()
             & self.exist.val().any()
             & self.goes.val()

@@ -1,4 +1,5 @@
-//! From events to pins: the shaper of the engine. Its pins are those of [`crate::parts::shaper`] in every clock.
+//! Turns requested steps into STEP and DIR pulses for one axis of the engine. Its pins equal those
+//! of [`crate::parts::shaper`] in every clock.
 //!
 //! ```text
 //! DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
@@ -7,9 +8,21 @@
 //!                    :<-W ->:<- S -->:
 //! ```
 //!
-//! Two counters run freely: `since` the last rise and `after` the last turn of DIR. Passing a bound only ends
-//! something (the pulse, the gap, the hold, the set-up), so they need not stop, and it is no matter that they wrap.
-//! Pulses and discarded steps are counted modulo eight; the engine carries them on in memory, one a tick.
+//! W is the pulse width, S the gap between pulses, D the set-up of DIR before STEP and H the hold
+//! of DIR after STEP rises, each in clocks. A step that this timing delays is held back (`owed` in
+//! the code), at most one. A second one calls the stop `overrun`. In the code, `turn` means that
+//! DIR changes.
+//!
+//! Two free-running counters measure the time: `since` counts clocks since STEP rose, `after`
+//! clocks since DIR changed. A counter that reaches a limit only ends a condition (the pulse, the
+//! gap, the hold or the set-up). The counters therefore need not stop, and their wrap-around has no
+//! effect.
+//!
+//! Pulses and discarded steps are counted modulo eight; the queue and the adder transfer these
+//! counts to the 32-bit counters in memory, one step per tick.
+//!
+//! Cost: this is the only module that exists once per axis. Its counters are as wide as the pin
+//! timing requires.
 
 use crate::HdlError;
 use crate::primitives::constant::{Literal, Parameter, used_bits};
@@ -19,43 +32,44 @@ use carrystep_core::PinTiming;
 use carrystep_core::build::MAX_CLOCKS;
 use rust_hdl::prelude::*;
 
-/// STEP and DIR of one axis.
+/// The STEP and DIR pins of one axis.
 #[derive(LogicBlock, Default)]
 pub struct Pulser {
     /// The clock.
     pub clock: Input<Clock>,
-    /// A fault is latched: nothing new rises, DIR stays.
+    /// Asserted in a freezing stop. No new pulse starts and DIR does not change.
     pub frozen: Input<Bit>,
-    /// A step is due.
+    /// A step is due in this clock.
     pub request: Input<Bit>,
-    /// It goes backward.
+    /// The requested step is backward.
     pub request_back: Input<Bit>,
-    /// The next tick's V is not zero.
+    /// V != 0 in the tick whose steps are made next.
     pub has_sign: Input<Bit>,
-    /// The next tick's V is negative.
+    /// V < 0 in the tick whose steps are made next.
     pub sign_back: Input<Bit>,
     /// The STEP pin.
     pub step: Signal<Out, Bit>,
-    /// The DIR pin, 1 is backward.
+    /// The DIR pin; 1 is backward.
     pub dir: Signal<Out, Bit>,
-    /// A step is owed.
+    /// A step is held back.
     pub owed: Signal<Out, Bit>,
-    /// Steps forward less steps backward, modulo 8; above that the discarded steps, modulo 8.
+    /// Bits 2 to 0: steps forward less steps backward, modulo 8. Bits 5 to 3: discarded steps,
+    /// modulo 8.
     pub counts: Signal<Out, Word<6>>,
-    /// A second step is owed: the stop comes with the next cycle.
+    /// A second step arrives while one is held back. The stop takes effect in the next clock.
     pub overruns: Signal<Out, Bit>,
     step_pin: Register<Bit>,
     dir_pin: Register<Bit>,
     want: Register<Bit>,
     due: Register<Bit>,        // `owed`
-    due_back: Register<Bit>,   // its direction
+    due_back: Register<Bit>,   // the direction of the step that is held back
     since: Register<Word<17>>, // clocks since STEP rose
-    after: Register<Word<16>>, // clocks since DIR turned
-    busy: Register<Bit>,       // pulse or gap
-    held: Register<Bit>,       // DIR may not turn
-    settled: Register<Bit>,    // DIR stands long enough
-    count: Register<Word<3>>,  // of `counts`
-    lost: Register<Word<3>>,
+    after: Register<Word<16>>, // clocks since DIR changed
+    busy: Register<Bit>,       // the pulse or its gap lasts
+    held: Register<Bit>,       // the hold time lasts: DIR may not change
+    settled: Register<Bit>,    // the set-up time has elapsed
+    count: Register<Word<3>>,  // the lower half of `counts`
+    lost: Register<Word<3>>,   // the upper half of `counts`
     pending: Signal<Local, Bit>,
     first_back: Signal<Local, Bit>,
     rise: Signal<Local, Bit>,
@@ -71,7 +85,7 @@ pub struct Pulser {
     setup_over: Parameter<16>,
     after_bits: Parameter<16>,
     holds: Parameter<1>,
-    instant: Parameter<1>, // no set-up to wait for
+    instant: Parameter<1>, // the set-up is one clock, so that no wait is needed
     since_rise: Literal<17, 0>,
     since_one: Literal<17, 1>,
     after_turn: Literal<16, 0>,
@@ -82,10 +96,10 @@ pub struct Pulser {
 }
 
 impl Pulser {
-    /// The pulser of an axis with this timing.
+    /// Makes the pulser of an axis with this timing.
     ///
     /// # Errors
-    /// [`HdlError::PinTiming`] where a figure is not from 1 to [`MAX_CLOCKS`].
+    /// Returns [`HdlError::PinTiming`] if a time is not from 1 to [`MAX_CLOCKS`] clocks.
     pub fn new(pins: &PinTiming) -> Result<Self, HdlError> {
         let &PinTiming { width, gap, setup, hold } = pins;
         for (name, clocks) in [("width", width), ("gap", gap), ("setup", setup), ("hold", hold)] {
@@ -115,7 +129,7 @@ impl Logic for Pulser {
         dff_setup!(self, clock, step_pin, dir_pin, want, due, due_back, since, after, busy, held, settled);
         dff_setup!(self, clock, count, lost);
 
-        // Which way DIR should point, and which step is due.
+        // The direction that DIR should have, and the direction of the step that is due.
         if self.has_sign.val() {
             self.want.d.next = self.sign_back.val();
         }
@@ -125,7 +139,7 @@ impl Logic for Pulser {
             self.first_back.next = self.due_back.q.val();
         }
 
-        // May it rise; may DIR turn.
+        // Decides whether STEP rises and whether DIR changes in this clock.
         self.rise.next = self.pending.val()
             & !self.frozen.val()
             & !self.busy.q.val()
@@ -142,7 +156,7 @@ impl Logic for Pulser {
             self.rise.val() | (self.step_pin.q.val() & (self.since.q.val() != self.pulse_over.val()));
         self.dir_pin.d.next = self.dir_pin.q.val() ^ self.turn.val();
 
-        // Time since STEP rose: the pulse, the gap, the hold.
+        // The time since STEP rose limits the pulse, the gap and the hold.
         self.since.d.next = (self.since.q.val() + self.since_one.val()) & self.since_bits.val();
         self.busy.d.next = self.busy.q.val() & (self.since.q.val() != self.gap_over.val());
         self.held.d.next = self.held.q.val() & (self.since.q.val() != self.hold_over.val());
@@ -152,7 +166,7 @@ impl Logic for Pulser {
             self.held.d.next = self.holds.val().any();
         }
 
-        // Time since DIR turned: the set-up.
+        // The time since DIR changed limits the set-up.
         self.after.d.next = (self.after.q.val() + self.after_one.val()) & self.after_bits.val();
         self.settled.d.next = self.settled.q.val() | (self.after.q.val() == self.setup_over.val());
         if self.turn.val() {
@@ -160,7 +174,7 @@ impl Logic for Pulser {
             self.settled.d.next = false;
         }
 
-        // Where the axis is.
+        // The position, modulo 8.
         self.change.next = self.one.val();
         if self.dir_pin.q.val() {
             self.change.next = self.minus_one.val();
@@ -169,7 +183,8 @@ impl Logic for Pulser {
             self.count.d.next = self.count.q.val() + self.change.val();
         }
 
-        // What is owed, and what is lost, one a clock: in silence nothing is.
+        // The step that is held back, and the count of discarded steps, at most one per clock.
+        // Every requested step is made, held back or counted as discarded.
         self.second.next = self.due.q.val() & self.request.val();
         self.late_now.next = self.second.val() & !self.rise.val() & !self.frozen.val();
         self.due.d.next = (self.pending.val() & !self.rise.val() & !self.frozen.val()) | self.second.val();

@@ -1,17 +1,28 @@
-//! Which segment an axis runs, and which ones wait: the control word of the axis whose turn it is.
+//! The segment queue of each axis, and the control word of the axis of the present time slot.
 //!
-//! An axis has eight slots. The running segment lives in slot `live`: its ticks, V and A are the axis' registers.
-//! The segments up to `newest` wait; the one after that is the host's to write.
+//! An axis has eight slots in memory, each of which holds one segment. The running segment is in
+//! slot `live`; its ticks, V and A serve as the registers of the axis. The segments up to `newest`
+//! wait. The host writes the slot after `newest`.
 //!
 //! ```text
 //! slot     | 0 | 1 | 2 | 3 | 4 | 5 | 6 | 7 |
-//!                live  waits   ^   ^ newest + 1: being written
+//!                live  waits   ^   ^ newest + 1: the host writes it
 //!                              '-- newest                           empty: newest == live
 //! ```
 //!
-//! The word comes from memory with the turn and goes back in its last beat:
-//! `live 3, newest 3, running, unfit, position's low bits 3, discarded's low bits 3, back, known`: the last two
-//! belong to a ramp, whose first tick finds which way the axis goes.
+//! The control word of an axis is read at the beginning of its time slot and written back in the
+//! last beat. Its fields, from the lowest bit:
+//!
+//! ```text
+//! bits     0-2    3-5      6         7       8-10              11-13              14     15
+//! field    live   newest   running   unfit   position mod 8    discarded mod 8    back   known
+//! ```
+//!
+//! `unfit` means that the next V does not fit in 64 bits. `back` and `known` belong to a ramp: its
+//! first tick stores the sign of V in `back` and sets `known`.
+//!
+//! Cost: a memory of 8 words of 16 bits for the control words and one of 64 bits for the marks of
+//! last segments. A transition to the next segment only increments `live`; no segment is copied.
 
 use crate::primitives::constant::Literal;
 use crate::primitives::memory::Memory;
@@ -19,80 +30,80 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
-/// The control words, and the present one at work.
+/// The control words of all axes, and the update of the present one.
 #[derive(LogicBlock, Default)]
 pub struct Queue {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The beats of [`super::turn`].
+    /// The beats of [`super::turn`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
-    /// The axis.
+    /// The axis of the time slot.
     pub axis: Input<Word<3>>,
-    /// The axis of the next cycle.
+    /// The axis of the next clock.
     pub axis_next: Input<Word<3>>,
-    /// This axis starts in this tick.
+    /// The axis starts in this tick.
     pub starts: Input<Bit>,
-    /// No axis runs.
+    /// A stop is complete: no axis runs.
     pub halted: Input<Bit>,
-    /// All axes slow down.
+    /// The axis ramps down.
     pub ramp: Input<Bit>,
-    /// Forget all segments.
+    /// Removes all segments.
     pub clear: Input<Bit>,
-    /// In beat 12: forget what waits.
+    /// In beat 12: removes the waiting segments.
     pub empties: Input<Bit>,
-    /// The host's word is taken in this cycle.
+    /// The engine accepts the host's word in this clock.
     pub take: Input<Bit>,
-    /// It commits.
+    /// The accepted word commits a segment.
     pub commit: Input<Bit>,
     /// The committed segment is the last of its move.
     pub last: Input<Bit>,
-    /// The segment is over after this tick.
+    /// The running segment ends with this tick.
     pub ended: Input<Bit>,
-    /// V + A does not fit.
+    /// V + A does not fit in 64 bits.
     pub overflow: Input<Bit>,
     /// V = -2^63.
     pub least: Input<Bit>,
-    /// V + A has the other sign than V.
+    /// V + A and V have different signs.
     pub turned: Input<Bit>,
     /// V < 0.
     pub back: Input<Bit>,
-    /// Low bits of the pulses on the pins.
+    /// The low bits of the position, from the pulser.
     pub pulses: Input<Word<3>>,
-    /// Low bits of the discarded steps.
+    /// The low bits of the discarded steps, from the pulser.
     pub losses: Input<Word<3>>,
     /// The slot of the running segment.
     pub live: Signal<Out, Word<3>>,
     /// The slot that the host writes.
     pub fresh: Signal<Out, Word<3>>,
-    /// The host cannot write.
+    /// No slot is free for the host.
     pub full: Signal<Out, Bit>,
-    /// Segments that there is room for.
+    /// The number of segments for which the queue has space, 0 to 7.
     pub room: Signal<Out, Word<3>>,
-    /// Nothing waits.
+    /// No segment waits.
     pub empty: Signal<Out, Bit>,
     /// The axis runs in this tick.
     pub running: Signal<Out, Bit>,
-    /// Its V fits, as far as is known before beat 12.
+    /// The axis runs, and V is in range as far as is known before beat 12.
     pub sound: Signal<Out, Bit>,
-    /// V slows down in this tick.
+    /// V changes by the stop acceleration in this tick.
     pub slows: Signal<Out, Bit>,
-    /// From below zero.
+    /// The ramp began with V < 0, so that V increases.
     pub upward: Signal<Out, Bit>,
-    /// V stays as it is in this tick.
+    /// V stays unchanged in this tick, the first of a ramp.
     pub steady: Signal<Out, Bit>,
-    /// In beat 12: it runs and its V fits.
+    /// In beat 12: the axis runs and its V is in range.
     pub moves: Signal<Out, Bit>,
-    /// In beat 12: it runs in the next tick too.
+    /// In beat 12: the axis runs in the next tick too.
     pub goes_on: Signal<Out, Bit>,
-    /// In beat 12, fault: its V does not fit.
+    /// In beat 12, fault: V is out of range.
     pub too_fast: Signal<Out, Bit>,
-    /// In beat 12, fault: nothing follows.
+    /// In beat 12, fault: the segment ends, it is not the last of its move, and no segment waits.
     pub dry: Signal<Out, Bit>,
-    /// From beat 5: a step forward is to be counted.
+    /// From beat 5: a step forward is added to the position.
     pub up: Signal<Out, Bit>,
-    /// From beat 5: a step back is to be counted.
+    /// From beat 5: a step backward is subtracted from the position.
     pub down: Signal<Out, Bit>,
-    /// From beat 5: a discarded step is to be counted, if the axis rests.
+    /// From beat 5: a discarded step is counted. Asserted only while the axis does not run.
     pub lost: Signal<Out, Bit>,
     control: Memory<3, 16>,
     lasts: Memory<6, 1>,
@@ -145,7 +156,7 @@ impl Logic for Queue {
         dff_setup!(self, clock, committed, forward, backward, gone);
         clock!(self, clock, control, lasts);
 
-        // The word of this turn.
+        // The control word of this time slot.
         self.word.next = self.control.read_data.val();
         self.old_live.next = self.word.val().get_bits::<3>(0);
         self.newest.next = self.word.val().get_bits::<3>(3);
@@ -158,7 +169,7 @@ impl Logic for Queue {
         self.fits.next = self.runs.val() & !self.word.val().get_bit(7);
         self.none.next = self.newest.val() == self.live_now.val();
 
-        // What comes after this tick.
+        // Decides what follows after this tick.
         self.last_one.next = self.lasts.read_data.val().any();
         self.ramps.next = self.ramp.val() & self.word.val().get_bit(15);
         self.follows.next = self.ended.val() & !self.last_one.val() & !self.none.val() & !self.ramp.val();
@@ -172,7 +183,8 @@ impl Logic for Queue {
         self.too_fast.next = self.runs.val() & (self.word.val().get_bit(7) | self.least.val());
         self.dry.next = self.moves.val() & self.ended.val() & !self.last_one.val() & self.none.val() & !self.ramp.val();
 
-        // Pulses and losses are counted one a tick: the low bits say what is missing in memory.
+        // Pulses and discarded steps are transferred to memory one per tick. The difference of the
+        // low bits shows which are not transferred yet.
         self.missing.next = self.pulses.val() - self.word.val().get_bits::<3>(8);
         self.unseen.next = self.losses.val() ^ self.word.val().get_bits::<3>(11);
         if self.beat.val().get_bit(4) {
@@ -181,7 +193,7 @@ impl Logic for Queue {
             self.gone.d.next = self.unseen.val().any() & !self.runs.val();
         }
 
-        // The host's word.
+        // The host's commit.
         if self.beat.val().get_bit(0) {
             self.committed.d.next = false;
         }
@@ -201,12 +213,13 @@ impl Logic for Queue {
             self.lasts.write_bits.next = self.set.val();
         }
 
-        // The word of this axis' next turn.
+        // The control word for the next time slot of this axis.
         self.next_live.next = self.live_now.val();
         if self.moves.val() & self.follows.val() {
             self.next_live.next = self.live_now.val() + self.one.val();
         }
-        // The slot that the host writes stays, whatever is forgotten.
+        // Emptying the queue changes `live` only, so that the slot that the host writes stays the
+        // same.
         if self.empties.val() {
             self.next_live.next = self.newest.val();
         }

@@ -1,4 +1,4 @@
-//! The engine of a build, whose number of axes is known only when it is built; and the same under simulation.
+//! Makes the engine of a build, whose number of axes is known only at run time, and simulates it.
 
 use super::Engine;
 use crate::HdlError;
@@ -8,24 +8,26 @@ use carrystep_core::EngineBuild;
 use carrystep_core::engine::{CAUSES, EngineError, EngineInputs, EngineOutputs, Put};
 use rust_hdl::prelude::{Block, check_all};
 
-/// An engine of any number of axes.
+/// An engine whose number of axes is not part of its type.
 pub trait AnyEngine: Block {
-    /// Drives the inputs; the outputs of the present cycle.
+    /// Applies the inputs and returns the outputs of the present cycle.
     fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs;
-    /// Goes to the next cycle, with the inputs as last settled.
+    /// Advances to the next cycle. The inputs are those of the last call of `settle`.
     fn clock(&mut self);
-    /// Asks the `get` port; its answer of the present cycle, if it speaks.
+    /// Requests an item at the `get` port. Returns `get_data` of the present cycle if `get_valid`
+    /// is asserted.
     fn get(&mut self, axis: usize, item: usize) -> Option<u32>;
-    /// What the `get` port says, whatever it is.
+    /// The present value of `get_data`, whether valid or not.
     fn said(&self) -> u32;
-    /// What the memory keeps.
+    /// Reads an item of an axis directly from the simulated memory.
     fn kept(&self, axis: usize, item: usize) -> u32;
 }
 
-/// The engine of this build, with as many axes as the build has.
+/// Makes the engine of this build, with the number of axes of the build.
 ///
 /// # Errors
-/// [`HdlError::Engine`] where a parameter cannot be, [`HdlError::PinTiming`] where an axis' timing is out of range.
+/// Returns [`HdlError::Engine`] if a parameter of the build is out of range, and
+/// [`HdlError::PinTiming`] if the pin timing of an axis is out of range.
 pub fn engine(build: &EngineBuild) -> Result<Box<dyn AnyEngine>, HdlError> {
     build.check()?;
     Ok(match build.axes() {
@@ -101,16 +103,16 @@ impl<const N: usize> AnyEngine for Engine<N> {
     }
 }
 
-/// The engine under simulation.
+/// A simulated engine.
 pub struct EngineSim {
     core: Box<dyn AnyEngine>,
 }
 
 impl EngineSim {
-    /// The engine of this build in cycle 0.
+    /// Makes the engine of this build, in cycle 0.
     ///
     /// # Errors
-    /// [`HdlError`] where the build cannot be made.
+    /// Returns an [`HdlError`] if the build is invalid or Rust-HDL's checks reject the module.
     pub fn new(build: &EngineBuild) -> Result<Self, HdlError> {
         let mut core = engine(build)?;
         core.connect_all();
@@ -118,27 +120,31 @@ impl EngineSim {
         Ok(Self { core })
     }
 
-    /// The outputs of the present cycle with these inputs; what is not offered is driven as zero.
+    /// Applies the inputs and returns the outputs of the present cycle. Inputs that are not offered
+    /// are driven as zero.
     pub fn settle(&mut self, inputs: &EngineInputs) -> EngineOutputs {
         self.core.settle(inputs)
     }
 
-    /// Goes to the next cycle, with the inputs as last settled.
+    /// Advances to the next cycle. The inputs are those of the last call of `settle`.
     pub fn clock(&mut self) {
         self.core.clock();
     }
 
-    /// What the `get` port says of an axis in the present cycle, if it speaks; `item` as in [`Engine::get_item`].
+    /// Requests an item of an axis at the `get` port; `item` is numbered as in
+    /// [`Engine::get_item`]. Returns `get_data` of the present cycle if `get_valid` is asserted; it
+    /// answers the request of the cycle before.
     pub fn get(&mut self, axis: usize, item: usize) -> Option<u32> {
         self.core.get(axis, item)
     }
 
-    /// The position of the axis of `latch`, in the present cycle.
+    /// The position of the axis `latch_axis`, valid in a cycle in which `latch` is asserted.
     pub fn latched(&self) -> u32 {
         self.core.said()
     }
 
-    /// What the memory keeps of an axis; `item` as in [`Engine::get_item`].
+    /// Reads an item of an axis directly from the simulated memory; `item` is numbered as in
+    /// [`Engine::get_item`].
     pub fn kept(&self, axis: usize, item: usize) -> u32 {
         self.core.kept(axis, item)
     }

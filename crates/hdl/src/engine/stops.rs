@@ -1,13 +1,23 @@
-//! Who stops the axes, and how far the stop has come.
+//! Latches the first cause of a stop and controls the stop until it is cleared.
 //!
 //! ```text
-//! fault    ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\____   the first cause stays, with its axes
-//! frozen   ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\____   a freeze: the pins, at once
+//! fault    ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\____   the first cause is latched
+//! frozen   ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\____   only in a freeze
 //! ramp     ________/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\____   from the strobe on
-//! halted   ________/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\____   a freeze: likewise; a ramp: when all axes rest
-//! settled  ____________/^^^^^^^^^^^^^^^^^^^^^^^^^^^^\____
-//! clearing ____________________________________/^^^^\____
+//! halted   ________/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\____   in a ramp: only when all axes rest
+//! settled  ____________/^^^^^^^^^^^^^^^^^^^^^^^^^^^^\____   one tick later
+//! clearing ____________________________________/^^^\____   the tick that clears everything
 //! ```
+//!
+//! A stop is either a freeze, in which no new pulse starts, or a ramp, in which each axis slows
+//! down by its stop acceleration. The cause decides which, and for a limit the build does;
+//! `docs/clock-by-clock.md` lists the causes. A freezing cause during a ramp freezes the axes too.
+//!
+//! Interface: causes arrive from the time slots (`too_fast`, `limit`, `dry`), from the pulsers
+//! (`late`), from [`super::watch`] and from the host. Causes of a time slot take effect at the
+//! strobe.
+//!
+//! Cost: about a dozen flip-flops, two registers of 3 bits for causes, and one flip-flop per axis.
 
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
@@ -15,54 +25,55 @@ use crate::primitives::word::Word;
 use carrystep_core::engine::Guard;
 use rust_hdl::prelude::*;
 
-/// The stop that is under way.
+/// The state of the present stop.
 #[derive(LogicBlock, Default)]
 pub struct Stops<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// Last cycle of a tick.
+    /// Asserted in the last clock of a tick.
     pub strobe: Input<Bit>,
-    /// Last beat of a turn: what the axis finds counts.
+    /// Asserted in the last beat of a time slot. The inputs about the slot's axis are valid in this
+    /// clock.
     pub turn_ends: Input<Bit>,
-    /// The axis, one bit.
+    /// The axis of the slot, one-hot.
     pub lane: Input<Word<N>>,
-    /// It runs in this tick.
+    /// The axis of the slot runs in this tick.
     pub runs: Input<Bit>,
-    /// Its V does not fit.
+    /// The V of the axis is out of range.
     pub too_fast: Input<Bit>,
-    /// It has reached a limit.
+    /// The axis has reached a limit.
     pub limit: Input<Bit>,
-    /// Its queue is dry.
+    /// The axis needs a segment, and its queue is empty.
     pub dry: Input<Bit>,
-    /// These axes owe a second step.
+    /// The axes at which a second step arrives while one is held back.
     pub late: Input<Word<N>>,
-    /// The e-stop is pressed.
+    /// The e-stop is active.
     pub pressed: Input<Bit>,
-    /// The host breaks the protocol.
+    /// The host breaks the segment protocol.
     pub breaks: Input<Bit>,
-    /// The host is missed.
+    /// The watchdog has timed out.
     pub missed: Input<Bit>,
-    /// The host asks for a stop.
+    /// The host requests a controlled stop.
     pub asked: Input<Bit>,
-    /// The host wants to go on.
+    /// The host requests that the stop is cleared.
     pub clear: Input<Bit>,
-    /// A step is owed, or a STEP is high.
+    /// A step is held back, or a STEP pin is high.
     pub pins_busy: Input<Bit>,
-    /// A stop is called.
+    /// A stop has been called and has not been cleared.
     pub fault: Signal<Out, Bit>,
-    /// This tick has found a cause.
+    /// A time slot of this tick has found a cause.
     pub finds: Signal<Out, Bit>,
-    /// No new edges.
+    /// The stop is a freeze: no new pulse starts.
     pub frozen: Signal<Out, Bit>,
-    /// All axes slow down.
+    /// All axes ramp down.
     pub ramp: Signal<Out, Bit>,
-    /// No axis moves.
+    /// No axis moves any more.
     pub halted: Signal<Out, Bit>,
-    /// In this tick everything is cleared.
+    /// This tick clears the state of all axes.
     pub clearing: Signal<Out, Bit>,
     /// The first cause.
     pub cause: Signal<Out, Word<3>>,
-    /// The axes that it came from.
+    /// The axes that caused the stop; bit i is axis i.
     pub culprits: Signal<Out, Word<N>>,
     called: Register<Bit>, // `fault`
     freeze: Register<Bit>, // `frozen`
@@ -73,7 +84,7 @@ pub struct Stops<const N: usize> {
     first: Register<Word<3>>,
     axes: Register<Word<N>>,
     found: Register<Bit>,
-    kind: Register<Word<3>>, // of what is found
+    kind: Register<Word<3>>, // the cause found by a time slot
     found_freezing: Register<Bit>,
     ran: Register<Bit>,
     finds_now: Signal<Local, Bit>,
@@ -93,7 +104,7 @@ pub struct Stops<const N: usize> {
 }
 
 impl<const N: usize> Stops<N> {
-    /// The stops of this guard.
+    /// Makes the stop control of this guard.
     pub fn new(guard: &Guard) -> Self {
         Self { limit_freezes: Parameter::new(u64::from(guard.limit_freezes)), ..Self::default() }
     }
@@ -105,7 +116,7 @@ impl<const N: usize> Logic for Stops<N> {
         dff_setup!(self, clock, called, freeze, slow, still, settled, wiping);
         dff_setup!(self, clock, first, axes, found, kind, found_freezing, ran);
 
-        // What the turns find.
+        // Collects the causes that the time slots find.
         self.finds_now.next = self.turn_ends.val() & (self.too_fast.val() | self.limit.val() | self.dry.val());
         if self.finds_now.val() {
             self.found.d.next = true;
@@ -126,7 +137,8 @@ impl<const N: usize> Logic for Stops<N> {
             self.ran.d.next = true;
         }
 
-        // The first call.
+        // Latches the first cause. Of several causes in one clock, the one assigned last below has
+        // priority.
         self.urgent.next = self.late.val().any() | (self.strobe.val() & self.pressed.val()) | self.breaks.val();
         self.ripe.next = self.strobe.val() & self.found.q.val();
         self.by_host.next = (self.strobe.val() & self.missed.val()) | self.asked.val();
@@ -157,7 +169,7 @@ impl<const N: usize> Logic for Stops<N> {
             }
         }
 
-        // How far it has come.
+        // The progress of the stop.
         if self.calls.val() {
             self.called.d.next = true;
         }

@@ -1,16 +1,22 @@
-//! The memory of all axes: segments, which are also their registers, and what an axis keeps between moves.
+//! The memory of all axes. It holds the segments, which also serve as registers, and the state that
+//! an axis keeps between moves.
 //!
 //! ```text
 //! address   axis 3 | slot 3 | word 3
-//! word      0 ticks - 1   1 2 V   3 4 A   5 6 J (low, high)   7: what the axis keeps, by slot:
-//! slot      0 1 P (low, high)   2 position   3 discarded   4 5 -s   6 7 s      s: stop acceleration
+//! word      0 ticks - 1   1 2 V   3 4 A   5 6 J (low, high)   7: state of the axis, by slot:
+//! slot      0 1 P (low, high)   2 position   3 discarded   4 5 -s   6 7 s    s: stop acceleration
 //!
 //! beat      0    1    2    3    4    5    6    7    8    9    10   11   12
-//! reads     A    J    V    P    n    pos  J'   A'   V'   P'   get             n: ticks, or discarded at rest
-//! writes                        A    V    P    n    pos  put  A'   V'   P'    ': high halves
+//! reads     A    J    V    P    n    pos  J'   A'   V'   P'   get
+//! writes                        A    V    P    n    pos  put  A'   V'   P'
+//!           ': high halves      n: ticks - 1, or at rest the discarded steps
 //! ```
 //!
-//! A sum is written four beats after its word was read, the host's word in between.
+//! Each sum is written four beats after its word was read. Beat 9 writes the word that the host has
+//! put. In a ramp the memory returns -s or s in place of A, so that a ramp needs no additional
+//! adder.
+//!
+//! Cost: one memory of 512 words of 32 bits.
 
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::memory::Memory;
@@ -19,44 +25,45 @@ use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::StartPhase;
 use rust_hdl::prelude::*;
 
-/// The memory and its addresses.
+/// The memory and the selection of its addresses.
 #[derive(LogicBlock, Default)]
 pub struct Store {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The beats of [`super::turn`].
+    /// The beats of [`super::turn`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
-    /// The axis.
+    /// The axis of the time slot.
     pub axis: Input<Word<3>>,
-    /// The slot of its running segment.
+    /// The slot of the running segment of the axis.
     pub live: Input<Word<3>>,
     /// The slot that the host writes.
     pub fresh: Input<Word<3>>,
-    /// The axis runs.
+    /// The axis runs in this tick.
     pub running: Input<Bit>,
-    /// It runs, and its V fits as far as is known.
+    /// The axis runs, and V is in range as far as is known.
     pub sound: Input<Bit>,
-    /// In beat 12: it runs and its V fits.
+    /// In beat 12: the axis runs and its V is in range.
     pub moves: Input<Bit>,
-    /// In a ramp -s or s stands for A,
+    /// The axis ramps down: the stop acceleration replaces A.
     pub slows: Input<Bit>,
-    /// namely s,
+    /// The stop acceleration is added (s), because the ramp began with V < 0. Otherwise it is
+    /// subtracted (-s).
     pub upward: Input<Bit>,
-    /// or V stays.
+    /// V stays unchanged in this tick.
     pub steady: Input<Bit>,
-    /// P becomes its start value.
+    /// P is set to its start value.
     pub wipe: Input<Bit>,
-    /// In beat 9: the host's word is to be written.
+    /// In beat 9: the word of the host is written.
     pub put: Input<Bit>,
-    /// Which word of the segment it is.
+    /// The number of that word in its segment.
     pub put_word: Input<Word<3>>,
-    /// The axis that the host asks about.
+    /// The axis that the host reads.
     pub get_axis: Input<Word<3>>,
-    /// What it asks for, as the slot of word 7.
+    /// The item that the host reads; it is the slot of word 7.
     pub get_item: Input<Word<2>>,
-    /// What is written.
+    /// The sum to write.
     pub sum: Input<Word<32>>,
-    /// What was read.
+    /// The word that was read.
     pub word: Signal<Out, Word<32>>,
     pub(crate) segments: Memory<9, 32>,
     read_axis: Signal<Local, Word<3>>,
@@ -89,7 +96,8 @@ pub struct Store {
 }
 
 impl Store {
-    /// The memory of axes that start in this phase of a step, with their stop accelerations.
+    /// Makes the memory. `start` is the start value of P; `stops` are the stop accelerations of the
+    /// axes in 2^-64 step per tick^2.
     pub fn new(start: StartPhase, stops: &[u64]) -> Self {
         let start_high = start.start_value() >> 32;
         let mut kept = Vec::new();
@@ -107,7 +115,7 @@ impl Logic for Store {
     fn update(&mut self) {
         clock!(self, clock, segments);
 
-        // What is read.
+        // The read address.
         self.read_axis.next = self.axis.val();
         self.read_slot.next = self.live.val();
         self.read_word.next = self.kept.val();
@@ -168,7 +176,7 @@ impl Logic for Store {
             | bit_cast::<9, 3>(self.read_word.val());
         self.word.next = self.segments.read_data.val();
 
-        // What is written.
+        // The write address and the written word.
         self.write_slot.next = self.live.val();
         self.write_word.next = self.kept.val();
         self.writes.next = false;

@@ -1,4 +1,4 @@
-//! Which engines there are, and that yosys takes them.
+//! Checks which builds make an engine, and that yosys accepts the Verilog of the engines.
 
 use super::*;
 use carrystep_core::engine::EngineError;
@@ -10,7 +10,7 @@ fn build() -> EngineBuild {
     EngineBuild::minimal(&build, 1 << 40)
 }
 
-/// As many axes as asked for, in a tick that holds them.
+/// Makes a build with this number of axes, whose tick is long enough for them.
 fn of_axes(axes: usize) -> EngineBuild {
     let mut build = build();
     build.pins.resize(axes, PinTiming::SHORTEST);
@@ -27,7 +27,7 @@ fn engine_synthesizes() {
 }
 
 #[test]
-fn there_are_engines_of_one_to_eight_axes() {
+fn engine_accepts_one_to_eight_axes() {
     for axes in 1..=8 {
         assert!(engine(&of_axes(axes)).is_ok(), "{axes} axes");
     }
@@ -37,7 +37,7 @@ fn there_are_engines_of_one_to_eight_axes() {
 }
 
 #[test]
-fn a_tick_that_is_too_short_is_refused() {
+fn engine_rejects_a_tick_shorter_than_the_time_slots() {
     let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
     let refused = engine(&EngineBuild { timebase, ..build() });
     assert!(matches!(refused.err(), Some(HdlError::Engine(EngineError::Schedule { .. }))));

@@ -1,33 +1,42 @@
-//! Whose turn it is: one axis after the other, thirteen beats each.
+//! The schedule of the engine: gives each axis in sequence a time slot of thirteen clocks.
+//!
+//! The code calls a time slot `turn` and its clocks `beats`.
 //!
 //! ```text
 //! strobe  /^\________________________________________________
 //! axis       | 0                     | 1                     | ...
 //! beat       | 0 | 1 | 2 | ...  | 12 | 0 | 1 | 2 | ...
-//!                                    |13 |14 |15 |16 |            the bisection of axis 0 ends in the turn of axis 1
+//!                                    |13 |14 |15 |16 |
 //! ```
 //!
-//! A beat is one flip-flop of a long shift register: what happens in a beat costs no decoder.
+//! The bisection of an axis needs four further beats, 13 to 16, which overlap the slot of the next
+//! axis. The slots begin in the clock after the strobe. After the last slot no beat is asserted
+//! until the next strobe.
+//!
+//! Interface: every module of the engine derives its schedule from `beat`.
+//!
+//! Cost: one flip-flop per beat, in a shift register of 17 bits, so that no module needs to decode
+//! a beat counter; one flip-flop per axis for `lane`; and 3 bits for the number of the axis.
 
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
-/// The beats, and the axis, of N.
+/// The beats and the axis of the present time slot, for N axes.
 #[derive(LogicBlock, Default)]
 pub struct Turn<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// Last cycle of a tick.
+    /// Asserted in the last clock of a tick.
     pub strobe: Input<Bit>,
-    /// Bit i: beat i; bits 13 to 16 belong to the axis of the turn before.
+    /// Bit i is asserted in beat i. Bits 13 to 16 belong to the axis of the slot before.
     pub beat: Signal<Out, Word<17>>,
-    /// The axis, as a number.
+    /// The axis of the slot, as a number.
     pub axis: Signal<Out, Word<3>>,
-    /// The axis of the next cycle.
+    /// The axis of the next clock, as a number.
     pub axis_next: Signal<Out, Word<3>>,
-    /// The axis, one bit each; after the last turn the first one.
+    /// The axis of the slot, one-hot. After the last slot it is the first axis.
     pub lane: Signal<Out, Word<N>>,
     beats: Register<Word<17>>,
     number: Register<Word<3>>,
@@ -45,7 +54,7 @@ pub struct Turn<const N: usize> {
 }
 
 impl<const N: usize> Turn<N> {
-    /// The turns of N axes.
+    /// Makes the schedule of N axes.
     pub fn new() -> Self {
         Self {
             lanes: Register::new(Word::new(1)),
@@ -96,7 +105,7 @@ mod tests {
     use carrystep_core::engine::TURN;
 
     #[test]
-    fn every_axis_has_thirteen_beats() {
+    fn turn_gives_every_axis_thirteen_beats() {
         let mut turn = Turn::<AXES>::new();
         turn.connect_all();
         for cycle in 0..100_u32 {
@@ -107,7 +116,7 @@ mod tests {
             let (axis, beat) = ((cycle.wrapping_sub(1)) / TURN, (cycle.wrapping_sub(1)) % TURN);
             let beats = turn.beat.val().value() as u32;
             assert_eq!(beats & 0x1fff, if turns { 1 << beat } else { 0 }, "cycle {cycle}");
-            // The lanes have gone round once the turns are over.
+            // After the last time slot, `lane` is axis 0 again.
             assert_eq!(turn.lane.val().value() as u32, if turns { 1 << axis } else { 1 }, "cycle {cycle}");
             turn.clock.next = true.into();
             rising_edge(&mut turn);

@@ -1,10 +1,19 @@
-//! What is watched beside the axes: the e-stop, the host's signs of life, the drivers' power.
+//! Monitors the e-stop and the host, times the power of the drivers, and counts the rounds.
 //!
 //! ```text
 //! strobe   _/^\__/^\__/^\__/^\__/^\__/^\__/^\__/^\__
-//! round     0 |  1 |  2 |  3 |  0 |  1 |  2 |  3 |      slow times are counted in rounds
-//! e-stop   __________/^^^^^^^^^^^^^^                    pressed when it has been so for a tick
+//! round     0 |  1 |  2 |  3 |  0 |  1 |  2 |  3 |      long times are counted in rounds of ticks
+//! e-stop   __________/^^^^^^^^^^^^^^                    pressed if active in a whole tick
 //! ```
+//!
+//! A round is a number of ticks, a power of two. The watchdog and the warm-up of the drivers count
+//! rounds, so that their counters stay short.
+//!
+//! Interface: `pressed` and `missed` call stops at a strobe ([`super::stops`]); `warm` permits
+//! starts.
+//!
+//! Cost: a counter of the ticks in a round, up to 10 bits, and two counters of rounds, up to 12
+//! bits each.
 
 use crate::primitives::constant::{Literal, Parameter, used_bits};
 use crate::primitives::register::{Input, Register};
@@ -12,32 +21,32 @@ use crate::primitives::word::Word;
 use carrystep_core::engine::Guard;
 use rust_hdl::prelude::*;
 
-/// E-stop, watchdog, ENABLE, and the round.
+/// The e-stop, the watchdog, the power of the drivers, and the round.
 #[derive(LogicBlock, Default)]
 pub struct Watch {
     /// The clock.
     pub clock: Input<Clock>,
-    /// Last cycle of a tick.
+    /// Asserted in the last clock of a tick.
     pub strobe: Input<Bit>,
-    /// The e-stop's pin.
+    /// The e-stop pin; asynchronous.
     pub estop: Input<Bit>,
-    /// The host was heard of.
+    /// A sign of life of the host: the watchdog restarts.
     pub kick: Input<Bit>,
-    /// The host wants the drivers to be powered.
+    /// The host requests power for the motor drivers.
     pub enable: Input<Bit>,
-    /// Nothing moves or will.
+    /// All axes are at rest and no start is armed.
     pub idle: Input<Bit>,
-    /// At a strobe: the e-stop was active for a tick.
+    /// At a strobe: the e-stop was active in the whole tick.
     pub pressed: Signal<Out, Bit>,
-    /// The host has been silent for too long.
+    /// The watchdog has timed out: no `kick` for the specified number of rounds.
     pub missed: Signal<Out, Bit>,
-    /// The drivers are to be powered,
+    /// The drivers are to be powered.
     pub enabled: Signal<Out, Bit>,
-    /// and have been for long enough.
+    /// The drivers have been powered for the specified number of rounds.
     pub warm: Signal<Out, Bit>,
-    /// First tick of a round.
+    /// The first tick of a round.
     pub tick_0: Signal<Out, Bit>,
-    /// Second tick of a round.
+    /// The second tick of a round.
     pub tick_1: Signal<Out, Bit>,
     sync: Register<Bit>,
     now: Register<Bit>,
@@ -62,7 +71,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// The watch of this guard, which has been checked.
+    /// Makes the monitor of this guard. The caller has checked the guard.
     pub fn new(guard: &Guard) -> Self {
         let [watchdog, enable] = [guard.watchdog, guard.enable].map(u64::from);
         Self {
@@ -96,7 +105,7 @@ impl Logic for Watch {
         self.tick_0.next = self.round.q.val() == self.first_tick.val();
         self.tick_1.next = self.round.q.val() == self.one_tick.val();
 
-        // The host.
+        // The watchdog.
         self.silent.next = self.silence.q.val() == self.watchdog.val();
         if self.round_over.val() & !self.silent.val() {
             self.silence.d.next = (self.silence.q.val() + self.one_round.val()) & self.silence_bits.val();
@@ -106,7 +115,7 @@ impl Logic for Watch {
         }
         self.missed.next = self.silent.val() & self.watchdog.val().any();
 
-        // The drivers.
+        // The power of the drivers, and the time since it was switched on.
         self.power.d.next = self.enable.val() | (self.power.q.val() & !self.idle.val());
         self.is_warm.next = self.warmth.q.val() == self.warm_at.val();
         if self.round_over.val() & !self.is_warm.val() {

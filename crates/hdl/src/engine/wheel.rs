@@ -1,15 +1,27 @@
-//! The wheel of events: what the pins do in each phase of the ticks to come, in one block RAM.
+//! The event wheel: one block RAM that holds the pending steps and signs of all axes, with one word
+//! for each phase of four ticks.
 //!
-//! A turn finds that its tick steps in phase q: it leaves two bits in the word of that phase, two ticks
-//! ahead. When time comes by, the word is read, every axis of it steps in the same clock, and the word is wiped.
+//! When the time slot of an axis finds a step in phase q, the wheel writes two bits in the event
+//! word of phase q, two ticks ahead: one for the step and one for its direction. When that phase
+//! begins, the word is read and every axis with a set bit steps in the same clock. The word is then
+//! cleared.
 //!
 //! ```text
 //! address   tick 2 | kind 1 | phase 4        word: bit i for axis i, bit 8 + i for its direction
-//! kind 0    axis i steps, backward           read for each phase
-//! kind 1    axis i has a sign, backward      read in the last cycle of the tick before
+//! kind 0    bit i: axis i steps              read at the beginning of each phase
+//! kind 1    bit i: axis i has V != 0         read in the last clock of the tick before
+//! bit 8 + i of both kinds: backward
 //! ```
 //!
-//! So no axis keeps its phase, compares it, or waits for it.
+//! The pulsers set DIR from the events of kind 1, so that the set-up time begins before the step is
+//! due.
+//!
+//! Interface: the wheel contains the tick counter and provides `strobe` and `phase_start` to the
+//! engine. Events are written in clocks in which no word is cleared; a phase must therefore have at
+//! least two clocks.
+//!
+//! Cost: one memory of 128 words of 16 bits. The axes need no phase register and no comparator; one
+//! memory holds all pending step events.
 
 use crate::parts::tick::Tick;
 use crate::primitives::constant::{Literal, Parameter};
@@ -19,46 +31,47 @@ use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::Timebase;
 use rust_hdl::prelude::*;
 
-/// The tick, and the events in it.
+/// The tick counter and the event memory.
 #[derive(LogicBlock, Default)]
 pub struct Wheel<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// Last beat of a turn: what follows is of its axis.
+    /// Asserted in the last beat of a time slot. The inputs of the following beats belong to its
+    /// axis.
     pub turn_ends: Input<Bit>,
-    /// The axis of the present turn, one bit each.
+    /// The axis of the present time slot, one-hot.
     pub lane: Input<Word<N>>,
-    /// Its tick steps.
+    /// The tick of the axis contains a step.
     pub crosses: Input<Bit>,
-    /// Its V is not zero.
+    /// The V of the axis is not zero.
     pub has_sign: Input<Bit>,
-    /// From the beat after: its V is negative.
+    /// From the following beat on: V < 0.
     pub back: Input<Bit>,
-    /// Four beats later: its phase is there.
+    /// Asserted four beats after `turn_ends`: `q` is valid from the next clock on.
     pub phase_known: Input<Bit>,
-    /// The phase, of 16.
+    /// The phase of the step, in 1/16 tick.
     pub q: Input<Word<4>>,
-    /// Last cycle of a tick.
+    /// Asserted in the last clock of a tick.
     pub strobe: Signal<Out, Bit>,
-    /// First cycle of a phase: what `events` say of kind 0 happens.
+    /// Asserted in the first clock of a phase, in which `events` are step events.
     pub phase_start: Signal<Out, Bit>,
-    /// Bit i: axis i.
+    /// Bit i: axis i has an event.
     pub events: Signal<Out, Word<N>>,
-    /// Bit i: backward.
+    /// Bit i: the event of axis i is backward.
     pub backward: Signal<Out, Word<N>>,
-    tick: Tick, // a cycle ahead of the pins
+    tick: Tick, // runs one clock ahead of the pins
     rim: Memory<7, 16>,
     turned: Register<Bit>,    // `strobe`
     started: Register<Bit>,   // `phase_start`
-    ahead: Register<Word<2>>, // the tick, a cycle ahead
-    read: Register<Word<7>>,  // what is there to be wiped
+    ahead: Register<Word<2>>, // the number of the tick, one clock ahead
+    read: Register<Word<7>>,  // the address of the word to clear
     place: Signal<Local, Word<7>>,
     wipes: Signal<Local, Bit>,
     sign_due: Register<Bit>,
     step_due: Register<Bit>,
     step_known: Register<Bit>,
-    when: Register<Word<2>>,       // the tick before the one in which it happens
-    whose: Signal<Local, Word<N>>, // the axis before
+    when: Register<Word<2>>,       // the tick before the one in which the event takes place
+    whose: Signal<Local, Word<N>>, // the axis of the slot before, one-hot
     writes_sign: Signal<Local, Bit>,
     writes_step: Signal<Local, Bit>,
     now: Signal<Local, Word<2>>,
@@ -79,7 +92,7 @@ pub struct Wheel<const N: usize> {
 }
 
 impl<const N: usize> Wheel<N> {
-    /// The wheel of this timebase.
+    /// Makes the wheel of this timebase.
     pub fn new(timebase: &Timebase) -> Self {
         Self {
             tick: Tick::ahead(timebase),
@@ -98,14 +111,14 @@ impl<const N: usize> Logic for Wheel<N> {
         dff_setup!(self, clock, turned, started, ahead, read, sign_due, step_due, step_known, when);
         clock!(self, clock, tick, rim);
 
-        // Time, as the pins have it.
+        // The strobe and the phase start of the pins, and the number of the tick.
         self.turned.d.next = self.tick.strobe.val();
         self.started.d.next = self.tick.phase_start.val();
         if self.tick.strobe.val() {
             self.ahead.d.next = self.ahead.q.val() + self.one_tick.val();
         }
 
-        // Read a cycle ahead; then wipe.
+        // Each word is read one clock before its event, and cleared in the clock of the event.
         self.place.next =
             (bit_cast::<7, 2>(self.ahead.q.val()) << self.at_5.val()) | bit_cast::<7, 4>(self.tick.phase.val());
         if self.tick.strobe.val() {
@@ -117,7 +130,8 @@ impl<const N: usize> Logic for Wheel<N> {
         self.rim.read_address.next = self.place.val();
         self.wipes.next = self.turned.q.val() | self.started.q.val();
 
-        // What a turn has found: first the sign, then the step, between two wipes.
+        // Writes the results of a time slot, the sign first and then the step, in clocks without a
+        // clear.
         self.writes_sign.next = !self.wipes.val() & self.sign_due.q.val();
         self.writes_step.next =
             !self.wipes.val() & !self.sign_due.q.val() & self.step_due.q.val() & self.step_known.q.val();

@@ -1,12 +1,15 @@
-//! How the engine's parts are connected; and what is decided between them: words taken, starts, rest, pins.
+//! Connects the parts of the engine, and decides about accepted words, starts, rest and the pins.
 //!
 //! ```text
 //! start_valid  _/^^^^^^^\______________________
 //! strobe       _______/^\_____/^\_____/^\______
-//! armed        _________/^^^^^^^^^^^^^^^\______   until no axis of the mask runs on; one without a segment is a fault
+//! armed        _________/^^^^^^^^^^^^^^^\______   until no axis of the mask runs on
 //! started      _______________________/^\______
-//! going        _________________________/^^^^^   its axes start in their turns of this tick
+//! going        _________________________/^^^^^   the axes start in their time slots of this tick
 //! ```
+//!
+//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on. An axis of
+//! the mask without a waiting segment is a breach of the protocol.
 
 use super::Engine;
 use crate::primitives::word::bit_cast;
@@ -21,7 +24,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.strobe.next = self.wheel.strobe.val();
         self.masked.next = self.mask.q.val().get_bit(0);
 
-        // The host's words.
+        // The words of the host.
         self.nobody.next = bit_cast::<4, 3>(self.put_axis.val()) >= self.axes.val();
         self.listens.next = self.turn.beat.val().get_bit(7) & (self.turn.axis.val() == self.put_axis.val());
         self.put_ready.next =
@@ -37,7 +40,8 @@ impl<const N: usize> Logic for Engine<N> {
             self.taken_word.d.next = self.put_word.val();
         }
 
-        // Starts: armed at a strobe, then at the first strobe at which every axis of the mask rests and waits.
+        // A start is armed at a strobe. It takes effect at the first later strobe at which every
+        // axis of its mask is at rest or comes to rest, and has a waiting segment.
         self.may_start.next = self.enable.val() & self.watch.warm.val();
         self.start_ready.next =
             self.strobe.val() & !self.waits.q.val() & !self.stops.fault.val() & self.may_start.val();
@@ -58,7 +62,7 @@ impl<const N: usize> Logic for Engine<N> {
             self.waits.d.next = false;
         }
 
-        // What the turns find.
+        // Collects the results of the time slots.
         if self.turn.beat.val().get_bit(12) {
             self.unfed.d.next = self.unfed.q.val() | (self.masked.val() & self.queue.empty.val());
             self.held.d.next =
@@ -104,7 +108,7 @@ impl<const N: usize> Logic for Engine<N> {
         }
         self.rests.next = self.rest_2.q.val() & !self.waits.q.val() & !self.pins_busy.val();
 
-        // The modules.
+        // The inputs of the parts.
         self.turn.strobe.next = self.strobe.val();
         self.queue.beat.next = self.turn.beat.val();
         self.queue.axis.next = self.turn.axis.val();

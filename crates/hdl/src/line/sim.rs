@@ -1,4 +1,4 @@
-//! A line under simulation.
+//! Simulates a line to the host, clock by clock.
 
 use super::{Spi, UartLine};
 use crate::HdlError;
@@ -6,16 +6,16 @@ use crate::primitives::word::Word;
 use crate::sim::{connected, rising_edge, settle};
 use carrystep_core::link::Uart;
 
-/// What a line tells the link.
+/// The outputs of a line to the link in one cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LineOutputs {
-    /// A byte from the host.
+    /// The byte that was received from the host in this cycle, if any.
     pub received: Option<u8>,
-    /// The offered byte is taken.
+    /// The line accepts the byte that the link offers.
     pub take: bool,
 }
 
-/// Both kinds of line have the same ports to the link.
+/// Drives and reads the ports to the link, which are the same for both kinds of line.
 macro_rules! byte_ports {
     ($line:expr, $offered:expr) => {{
         $line.answer.next = Word::from(u64::from($offered.unwrap_or(0)));
@@ -26,21 +26,22 @@ macro_rules! byte_ports {
     }};
 }
 
-/// A UART under simulation.
+/// A simulated UART.
 pub struct UartSim {
     line: Box<UartLine>,
 }
 
 impl UartSim {
-    /// The line in cycle 0.
+    /// Makes the line, in cycle 0.
     ///
     /// # Errors
-    /// [`HdlError`] where it cannot be made.
+    /// Returns an [`HdlError`] if Rust-HDL's checks reject the module.
     pub fn new(uart: Uart) -> Result<Self, HdlError> {
         Ok(Self { line: connected(UartLine::new(uart))? })
     }
 
-    /// The outputs of the present cycle, and the line to the host, while this byte is offered.
+    /// Applies the line from the host and the byte that the link offers. Returns the outputs to the
+    /// link in the present cycle, and the line to the host.
     pub fn settle(&mut self, rx: bool, offered: Option<u8>) -> (LineOutputs, bool) {
         self.line.clock.next = false.into();
         self.line.rx.next = rx;
@@ -48,29 +49,30 @@ impl UartSim {
         (outputs, self.line.tx.val())
     }
 
-    /// Goes to the next cycle, with the inputs as last settled.
+    /// Advances to the next cycle. The inputs are those of the last call of `settle`.
     pub fn clock(&mut self) {
         self.line.clock.next = true.into();
         rising_edge(self.line.as_mut());
     }
 }
 
-/// An SPI under simulation.
+/// A simulated SPI.
 pub struct SpiSim {
     line: Box<Spi>,
     said: LineOutputs,
 }
 
 impl SpiSim {
-    /// The line in cycle 0.
+    /// Makes the line, in cycle 0.
     ///
     /// # Errors
-    /// [`HdlError`] where it cannot be made.
+    /// Returns an [`HdlError`] if Rust-HDL's checks reject the module.
     pub fn new() -> Result<Self, HdlError> {
         Ok(Self { line: connected(Spi::new())?, said: LineOutputs::default() })
     }
 
-    /// The outputs of the present cycle, and MISO, while this byte is offered; `pins` are SCK, select (low) and MOSI.
+    /// Applies the pins and the byte that the link offers. `pins` are SCK, the select (active low)
+    /// and MOSI. Returns the outputs to the link in the present cycle, and MISO.
     pub fn settle(&mut self, pins: [bool; 3], offered: Option<u8>) -> (LineOutputs, bool) {
         self.line.clock.next = false.into();
         [self.line.sck.next, self.line.select_n.next, self.line.mosi.next] = pins;
@@ -78,12 +80,12 @@ impl SpiSim {
         (self.said, self.line.miso.val())
     }
 
-    /// What it last told the link.
+    /// The outputs to the link of the last call of `settle`.
     pub fn last(&self) -> LineOutputs {
         self.said
     }
 
-    /// Goes to the next cycle, with the inputs as last settled.
+    /// Advances to the next cycle. The inputs are those of the last call of `settle`.
     pub fn clock(&mut self) {
         self.line.clock.next = true.into();
         rising_edge(self.line.as_mut());

@@ -1,15 +1,23 @@
-//! SPI mode 0, eight bits, most significant first, up to a fifth of the clock.
+//! An SPI peripheral in mode 0: eight bits, most significant first. SCK may be up to a fifth of the
+//! clock.
 //!
 //! ```text
 //! select_n  ^^\___________________________________/^^^
 //! sck       ______/^^\__/^^\__ ... __/^^\_____________
-//! mosi      ---< bit 7 >< bit 6 > ... < bit 0 >--------   taken where SCK rises, seen two to three clocks later
-//! miso      ---< bit 7    >< bit 6   > ... < bit 0  >---   turns three clocks after SCK has risen: long before it
-//!                                                         rises again, and long after the host has looked
+//! mosi      ---< bit 7 >< bit 6 > ... < bit 0 >--------   sampled where SCK rises
+//! miso      ---< bit 7    >< bit 6   > ... < bit 0  >---   changes after SCK has risen
 //! ```
 //!
-//! MISO waits for no fall of SCK: with the two clocks that it takes to see an edge, half a bit would be too short.
-//! Where there is nothing to say it says END; an END behind an END is not passed on, so the host may ask by ENDs.
+//! The module detects a rising SCK two to three clocks later, and samples MOSI then. MISO changes
+//! three clocks after SCK has risen. That is after the host has sampled it and before SCK rises
+//! again. MISO does not wait for the falling SCK: detecting that edge takes two clocks as well, and
+//! the rest of half a bit would be too short at the highest rate.
+//!
+//! When the link offers no byte, the module sends END. Of several END bytes in sequence the module
+//! passes only the first to the link, so that the host can send END bytes in order to read an
+//! answer.
+//!
+//! Cost: two shift registers of 8 bits, a counter of 3 bits, and the synchronizers of the pins.
 
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
@@ -17,28 +25,30 @@ use crate::primitives::word::Word;
 use carrystep_core::link::END;
 use rust_hdl::prelude::*;
 
-/// The host's SPI, to which this is a peripheral.
+/// The SPI peripheral. The host is the controller.
 #[derive(LogicBlock, Default)]
 pub struct Spi {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The host's clock, asynchronous.
+    /// The serial clock from the host; asynchronous.
     pub sck: Input<Bit>,
-    /// Low while the host speaks, asynchronous.
+    /// The select from the host, active low; asynchronous.
     pub select_n: Input<Bit>,
-    /// From the host.
+    /// The data from the host; asynchronous.
     pub mosi: Input<Bit>,
-    /// To the host.
+    /// The data to the host.
     pub miso: Signal<Out, Bit>,
-    /// A byte,
+    /// The received byte, valid in the clocks in which `received_valid` is asserted.
     pub received: Signal<Out, Word<8>>,
-    /// in this cycle.
+    /// Asserted for one clock per received byte.
     pub received_valid: Signal<Out, Bit>,
-    /// A byte to the host,
+    /// The byte of the answer that the link offers.
     pub answer: Input<Word<8>>,
-    /// which is offered until it is taken: in the next byte's time, or the frame is cut by an END.
+    /// The link offers a byte and holds it until the line accepts it. The link must offer the next
+    /// byte of a frame within the duration of one byte; otherwise the line sends an END, which ends
+    /// the frame early.
     pub answer_valid: Input<Bit>,
-    /// The offered byte is taken in this cycle.
+    /// The line accepts the offered byte in this clock.
     pub answer_take: Signal<Out, Bit>,
     sck_1: Register<Bit>,
     sck_2: Register<Bit>,
@@ -46,11 +56,11 @@ pub struct Spi {
     mosi_1: Register<Bit>,
     mosi_2: Register<Bit>,
     rest_1: Register<Bit>,
-    rest_2: Register<Bit>, // not selected
+    rest_2: Register<Bit>, // 1 while the module is not selected
     bits: Register<Word<8>>,
     goes: Register<Word<8>>,
     count: Register<Word<3>>,
-    ended: Register<Bit>, // the last byte was an END
+    ended: Register<Bit>, // the last received byte was an END
     rise: Signal<Local, Bit>,
     last: Signal<Local, Bit>,
     comes: Signal<Local, Word<8>>,
@@ -64,7 +74,7 @@ pub struct Spi {
 }
 
 impl Spi {
-    /// An SPI whose host has not yet spoken.
+    /// Makes an SPI peripheral that has not received a byte yet.
     pub fn new() -> Self {
         Self {
             rest_1: Register::new(true),

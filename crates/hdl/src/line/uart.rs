@@ -1,4 +1,4 @@
-//! A UART: both directions of it.
+//! A UART: the receiver and the transmitter with the ports of a line.
 
 use super::uart_in::UartIn;
 use super::uart_out::UartOut;
@@ -7,31 +7,32 @@ use crate::primitives::word::Word;
 use carrystep_core::link::Uart;
 use rust_hdl::prelude::*;
 
-/// Receiver and transmitter.
+/// A UART with a receiver and a transmitter.
 #[derive(LogicBlock, Default)]
 pub struct UartLine {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The line from the host, asynchronous; high at rest.
+    /// The line from the host, high when idle; asynchronous.
     pub rx: Input<Bit>,
     /// The line to the host.
     pub tx: Signal<Out, Bit>,
-    /// A byte,
+    /// The received byte. It is valid while `received_valid` is asserted and stays until the next
+    /// byte begins.
     pub received: Signal<Out, Word<8>>,
-    /// in this cycle. It stays until the next one begins.
+    /// Asserted for one clock per received byte.
     pub received_valid: Signal<Out, Bit>,
-    /// A byte to the host,
+    /// The byte of the answer that the link offers.
     pub answer: Input<Word<8>>,
-    /// which is offered until it is taken.
+    /// The link offers a byte and holds it until the line accepts it.
     pub answer_valid: Input<Bit>,
-    /// The offered byte is taken in this cycle.
+    /// The line accepts the offered byte in this clock.
     pub answer_take: Signal<Out, Bit>,
     uart_in: UartIn,
     uart_out: UartOut,
 }
 
 impl UartLine {
-    /// The line of this UART.
+    /// Makes the line for the baud rate and the clock of this UART.
     pub fn new(uart: Uart) -> Self {
         let bit_clocks = uart.bit_clocks();
         Self { uart_in: UartIn::new(bit_clocks), uart_out: UartOut::new(bit_clocks), ..Self::default() }

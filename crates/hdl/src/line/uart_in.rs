@@ -1,32 +1,39 @@
-//! Bytes from the UART's line: eight data bits, low bit first, no parity, one stop bit.
+//! The UART receiver: eight data bits, least significant first, no parity, one stop bit.
 //!
 //! ```text
 //! line     ^^^\_______/ bit 0 / bit 1 / ... / bit 7 /^^^^^^^^
 //!             |<- B ->|
-//! looks            (start)  ^       ^            ^       ^      the first B + B/2 clocks after the fall, then every B
-//! valid                                             /^\    where the stop bit is high; else there was no byte
+//! samples          (start)  ^       ^            ^       ^
+//! valid                                             /^\
 //! ```
+//!
+//! B is the duration of a bit in clocks. The receiver samples the first bit B + B/2 clocks after
+//! the line has fallen, then one bit every B clocks. It asserts `valid` if the stop bit is high;
+//! otherwise it discards the byte.
+//!
+//! Cost: a shift register of 9 bits and a timer that is as wide as B requires.
 
 use crate::primitives::constant::{Literal, Parameter, used_bits};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
-/// The receiver.
+/// The UART receiver.
 #[derive(LogicBlock, Default)]
 pub struct UartIn {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The line, asynchronous; high at rest.
+    /// The line from the host, high when idle; asynchronous.
     pub line: Input<Bit>,
-    /// A byte,
+    /// The received byte. It is valid while `valid` is asserted and stays until the next byte
+    /// begins.
     pub data: Signal<Out, Word<8>>,
-    /// in this cycle. It stays until the next one begins.
+    /// Asserted for one clock per received byte.
     pub valid: Signal<Out, Bit>,
     sync: Register<Bit>,
     now: Register<Bit>,
     busy: Register<Bit>,
-    bits: Register<Word<9>>, // a mark comes down behind the byte
+    bits: Register<Word<9>>, // a 1 is shifted down behind the byte and marks its end
     timer: Register<Word<16>>,
     due: Signal<Local, Bit>,
     done: Signal<Local, Bit>,
@@ -40,7 +47,8 @@ pub struct UartIn {
 }
 
 impl UartIn {
-    /// A receiver for bits of so many clocks, which the build has checked.
+    /// Makes a receiver for bits of `bit_clocks` clocks. The build has checked the range of
+    /// `bit_clocks`.
     pub fn new(bit_clocks: u32) -> Self {
         let bit = u64::from(bit_clocks);
         let to_first = bit + bit / 2 - 1;

@@ -1,31 +1,35 @@
-//! Bytes to the UART's line.
+//! The UART transmitter: a start bit, eight data bits, least significant first, and one stop bit.
 //!
 //! ```text
 //! take     /^\_______________________________________________
-//! line     ^^^\_______/ bit 0 / bit 1 / ... / bit 7 /^^^^^^^^   start, low bit first, stop
+//! line     ^^^\_______/ bit 0 / bit 1 / ... / bit 7 /^^^^^^^^
 //!             |<- B ->|
 //! ```
+//!
+//! B is the duration of a bit in clocks.
+//!
+//! Cost: a shift register of 9 bits and a timer that is as wide as B requires.
 
 use crate::primitives::constant::{Literal, Parameter, used_bits};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
-/// The transmitter.
+/// The UART transmitter.
 #[derive(LogicBlock, Default)]
 pub struct UartOut {
     /// The clock.
     pub clock: Input<Clock>,
-    /// A byte,
+    /// The byte that the link offers.
     pub data: Input<Word<8>>,
-    /// which is offered until it is taken.
+    /// The link offers a byte and holds it until the transmitter accepts it.
     pub valid: Input<Bit>,
-    /// The offered byte is taken in this cycle.
+    /// The transmitter accepts the offered byte in this clock.
     pub take: Signal<Out, Bit>,
-    /// The line.
+    /// The line to the host.
     pub line: Signal<Out, Bit>,
     pin: Register<Bit>,      // `line`
-    bits: Register<Word<9>>, // the stop bit comes down behind the byte
+    bits: Register<Word<9>>, // the stop bit is shifted down behind the byte
     timer: Register<Word<16>>,
     due: Signal<Local, Bit>,
     taken: Signal<Local, Bit>,
@@ -37,7 +41,8 @@ pub struct UartOut {
 }
 
 impl UartOut {
-    /// A transmitter for bits of so many clocks, which the build has checked.
+    /// Makes a transmitter for bits of `bit_clocks` clocks. The build has checked the range of
+    /// `bit_clocks`.
     pub fn new(bit_clocks: u32) -> Self {
         let last = u64::from(bit_clocks) - 1;
         Self {
@@ -56,7 +61,7 @@ impl Logic for UartOut {
         self.due.next = !self.timer.q.val().any();
         self.taken.next = self.due.val() & !self.bits.q.val().any() & self.valid.val();
 
-        // At rest the timer stands at zero, so that a byte begins at once.
+        // While no byte is sent the timer stays at zero, so that a new byte begins at once.
         if !self.due.val() {
             self.timer.d.next = (self.timer.q.val() - self.one.val()) & self.timer_bits.val();
         }

@@ -1,34 +1,38 @@
-//! The CRC of frames, both ways, and the words of a segment, made of their bytes: a bit a clock, eight clocks a byte.
+//! A 32-bit shift register that computes the CRC of frames and assembles the words of a segment
+//! from their bytes. It processes one bit per clock, eight clocks per byte.
 //!
 //! ```text
-//! step     __/^^^^^^^^^^^^^^^^^\____      held until `over`
+//! step     __/^^^^^^^^^^^^^^^^^\____      the machine holds `step` until `over`
 //! count       | 0 | 1 | ... | 7 |
 //! over     ________________/^^^\____
 //! ```
+//!
+//! Cost: one register of 32 bits, which both uses share, and a counter of 3 bits.
 
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
-/// The CRC's register.
+/// The shift register for CRCs and words.
 #[derive(LogicBlock, Default)]
 pub struct Check {
     /// The clock.
     pub clock: Input<Clock>,
-    /// All ones,
+    /// Loads the register: with all ones, or with `word` if `feed` is set.
     pub begins: Input<Bit>,
-    /// or, with `feed`, this.
+    /// The word that `begins` loads if `feed` is set.
     pub word: Input<Word<32>>,
-    /// Eight bits further,
+    /// Shifts the register by one bit per clock. It is held for eight clocks.
     pub step: Input<Bit>,
-    /// with this byte fed to it,
+    /// The byte that is processed.
     pub data: Input<Word<8>>,
-    /// or, if this is not set, shifted in above it: its next byte comes down.
+    /// If 1 during `step`, the byte enters the CRC. If 0, the byte is shifted into the upper end of
+    /// the register, and the next byte of the register moves to the lower end.
     pub feed: Input<Bit>,
-    /// The eighth of eight clocks.
+    /// Asserted in the eighth of the eight clocks.
     pub over: Signal<Out, Bit>,
-    /// All of it.
+    /// The content of the register.
     pub word_out: Signal<Out, Word<32>>,
     sum: Register<Word<32>>,
     count: Register<Word<3>>,

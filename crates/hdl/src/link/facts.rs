@@ -1,12 +1,16 @@
-//! What can be read: the build's facts, and what the engine has last said of each axis.
+//! The memory that the host can read: the constants of the build, and the last known state of each
+//! axis.
 //!
 //! ```text
-//! address   0 .. 31     facts, written when the gateware is made
-//!           64 + 8 axis + item    0 1 P   2 position   3 discarded   4 the position at the limit
+//! address   0 .. 31              constants of the build, part of the initial content of the memory
+//!           64 + 8 axis + item   0 1 P   2 position   3 discarded   4 the position at the limit
 //! ```
 //!
-//! All items are asked for in turn, all the time; so they are never older than a few ticks. An axis that waits for its
-//! limit says its position in each of its turns, and the last one stays.
+//! The module requests items 0 to 3 of all axes from the engine in a continuous cycle, so that the
+//! stored values are at most a few ticks old. An axis that waits for its limit outputs its position
+//! in each of its time slots (`latch`); item 4 keeps the last of these positions.
+//!
+//! Cost: one memory of 128 words of 32 bits and a counter of 5 bits.
 
 use crate::primitives::constant::Literal;
 use crate::primitives::memory::Memory;
@@ -14,28 +18,29 @@ use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
-/// The memory of facts.
+/// The memory of constants and of the state of the axes.
 #[derive(LogicBlock, Default)]
 pub struct Facts {
     /// The clock.
     pub clock: Input<Clock>,
-    /// What is read,
+    /// The address to read.
     pub address: Input<Word<7>>,
-    /// and says this in the next cycle.
+    /// The word at the address of the clock before.
     pub data: Signal<Out, Word<32>>,
-    /// The engine is asked about this axis,
+    /// The axis that is requested from the engine.
     pub get_axis: Signal<Out, Word<3>>,
-    /// this item,
+    /// The item that is requested from the engine.
     pub get_item: Signal<Out, Word<2>>,
-    /// and says this,
+    /// The value that the engine returns.
     pub get_data: Input<Word<32>>,
-    /// in this cycle.
+    /// `get_data` is the value of the requested item.
     pub get_valid: Input<Bit>,
-    /// It says the position of an axis that waits for its limit,
+    /// `get_data` is the position of the axis `latch_axis`, which waits for its limit.
     pub latch: Input<Bit>,
-    /// namely of this one.
+    /// The axis of `latch`.
     pub latch_axis: Input<Word<3>>,
-    /// The last item of the last axis is.
+    /// The last item of the last axis arrives in this clock, so that one cycle through all items is
+    /// complete.
     pub scanned: Signal<Out, Bit>,
     known: Memory<7, 32>,
     asked: Register<Word<5>>,
@@ -51,7 +56,7 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// The memory with these facts, by address.
+    /// Makes the memory with these constants, each given as its address and its value.
     pub fn new(facts: &[(u8, u32)]) -> Self {
         let words: Vec<_> =
             facts.iter().map(|&(address, fact)| (usize::from(address), Word::from(u64::from(fact)))).collect();

@@ -1,9 +1,20 @@
-//! The little machine that reads requests, does what they ask for and writes answers: `carrystep_core::link::machine`
-//! says what its instructions are, `carrystep_core::link::program` what it does.
+//! A small processor that reads requests, executes them and writes the answers.
+//!
+//! `carrystep_core::link::machine` defines its instructions, and `carrystep_core::link::program` is
+//! its program. It has an accumulator A and an index X, and takes three clocks per instruction. A
+//! wait or a step of the CRC extends the third.
 //!
 //! ```text
-//! stage     | fetch | address | execute |       the program memory, the data memory, what comes of it
+//! stage     | fetch | address | execute |
+//!             |       |         '-- writes A, X, data memory and ports
+//!             |       '-- reads the data memory
+//!             '-- reads the program memory
 //! ```
+//!
+//! Received bytes enter a ring buffer (`ring`) of 256 bytes, from which the program reads them.
+//!
+//! Cost: three memories of 256 words: the program with 16 bits per word, the data and the ring
+//! buffer with 8.
 
 use super::check::Check;
 use crate::primitives::constant::Literal;
@@ -13,68 +24,71 @@ use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::link::Image;
 use rust_hdl::prelude::*;
 
-/// The machine for N axes.
+/// The processor of the link for N axes.
 #[derive(LogicBlock, Default)]
 pub struct Machine<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// A byte was received,
+    /// The line has received a byte; asserted for one clock per byte.
     pub received: Input<Bit>,
-    /// this one.
+    /// The received byte.
     pub received_data: Input<Word<8>>,
-    /// A is a byte of the answer, which is offered until it is taken.
+    /// A is a byte of the answer. The machine offers it until the line accepts it.
     pub answer_valid: Signal<Out, Bit>,
-    /// The offered byte is taken in this cycle.
+    /// The line accepts the offered byte in this clock.
     pub answer_take: Input<Bit>,
-    /// X: where the facts are read; also which word is put.
+    /// X: the address of the facts that are read, and the number of the word that is offered.
     pub x: Signal<Out, Word<8>>,
-    /// A: the byte; the axis that a word is put to; the axes of a start, and those that wait for their limit.
+    /// A: the byte of the answer, the axis of an offered word, the axes of a start, or the axes
+    /// that wait for their limit.
     pub a: Signal<Out, Word<8>>,
-    /// The facts at X.
+    /// The word of the facts at address X.
     pub facts: Input<Word<32>>,
-    /// A word of a segment is offered,
+    /// The machine offers a word of a segment to the engine.
     pub put_valid: Signal<Out, Bit>,
-    /// this one.
+    /// The offered word.
     pub put_data: Signal<Out, Word<32>>,
-    /// It is taken in this cycle.
+    /// The engine accepts the offered word in this clock.
     pub put_ready: Input<Bit>,
-    /// A start is offered.
+    /// The machine offers a start of the axes in A.
     pub start_valid: Signal<Out, Bit>,
-    /// It is taken in this cycle.
+    /// The engine accepts an offered start in this clock.
     pub start_ready: Input<Bit>,
-    /// The engine is to clear.
+    /// The engine clears a stop.
     pub clear: Signal<Out, Bit>,
-    /// The segment protocol is broken.
+    /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
-    /// The axes of A wait for their limit.
+    /// A replaces the mask of the axes that wait for their limit.
     pub home_valid: Signal<Out, Bit>,
-    /// The host was heard of.
+    /// The host has sent a valid request.
     pub kick: Signal<Out, Bit>,
-    /// The drivers are to be powered.
+    /// The host requests power for the motor drivers.
     pub enable: Signal<Out, Bit>,
-    /// All axes are to stop.
+    /// The host requests a controlled stop of all axes.
     pub stop: Signal<Out, Bit>,
-    /// All items of all axes have been asked for.
+    /// A cycle through all items of all axes is complete.
     pub scanned: Input<Bit>,
-    /// A stop has been called.
+    /// The engine has latched a stop.
     pub fault: Input<Bit>,
-    /// No axis moves any more.
+    /// No axis moves any more after a stop.
     pub halted: Input<Bit>,
-    /// All axes are done.
+    /// All axes are at rest and no start is armed.
     pub idle: Input<Bit>,
-    /// Starts can be taken.
+    /// The host requests power for the drivers and they have been powered for long enough, so that
+    /// the engine can accept a start.
     pub ready: Input<Bit>,
     /// A start is armed.
     pub armed: Input<Bit>,
-    /// Why. Without a fault it says anything, as do the axes that a stop came from.
+    /// The first cause of the stop. Without a fault its value and that of `culprits` have no
+    /// meaning.
     pub cause: Input<Word<3>>,
-    /// The axis of A has room for so many segments,
+    /// The number of segments for which the queue of the axis in A has space.
     pub room: Input<Word<3>>,
-    /// in this cycle.
+    /// `room` is valid in this clock.
     pub room_valid: Input<Bit>,
-    /// The axes that a stop came from.
+    /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,
-    /// The axes that wait for their limit.
+    /// The axes that wait for their limit; bit i is axis i.
     pub homing: Input<Word<N>>,
     instructions: Memory<8, 16>,
     data: Memory<8, 8>,
@@ -82,9 +96,11 @@ pub struct Machine<const N: usize> {
     check: Check,
     stage: Register<Word<2>>,
     pc: Register<Word<8>>,
-    sum: Register<Word<8>>,     // A
-    index: Register<Word<8>>,   // X
-    written: Register<Word<8>>, // of the ring
+    sum: Register<Word<8>>,   // A
+    index: Register<Word<8>>, // X
+    // The address of the next byte to write in the ring buffer.
+    written: Register<Word<8>>,
+    // The address of the next byte to read in the ring buffer.
     read: Register<Word<8>>,
     space: Register<Word<3>>, // `room`
     control: Register<Word<2>>,
@@ -95,7 +111,7 @@ pub struct Machine<const N: usize> {
     stores: Signal<Local, Bit>,
     jumps: Signal<Local, Bit>,
     acts: Signal<Local, Bit>,
-    does: Signal<Local, Bit>, // and neither sets nor stores
+    does: Signal<Local, Bit>, // the instruction acts, and neither sets nor stores
     waits: Signal<Local, Bit>,
     waited: Signal<Local, Bit>,
     steps: Signal<Local, Bit>,
@@ -134,7 +150,7 @@ pub struct Machine<const N: usize> {
 }
 
 impl<const N: usize> Machine<N> {
-    /// The machine with this in its memories.
+    /// Makes the machine with this initial content of its program and data memories.
     pub fn new(image: &Image) -> Self {
         let program: Vec<_> =
             image.program.iter().enumerate().map(|(at, code)| (at, Word::from(u64::from(*code)))).collect();
@@ -154,7 +170,7 @@ impl<const N: usize> Logic for Machine<N> {
         dff_setup!(self, clock, stage, pc, sum, index, written, read, space, control, clears);
         clock!(self, clock, instructions, data, ring, check);
 
-        // The instruction, and what it does.
+        // The present instruction, decoded.
         self.instructions.read_address.next = self.pc.q.val();
         self.instructions.write_address.next = self.none.val();
         self.instructions.write_data.next = self.no_code.val();
@@ -201,7 +217,7 @@ impl<const N: usize> Logic for Machine<N> {
             self.stage.d.next = self.fetch.val();
         }
 
-        // Where it goes on.
+        // The condition of a jump, and the address of the next instruction.
         self.empty.next = self.read.q.val() == self.written.q.val();
         self.holds.next = true;
         if self.code.val().get_bits::<3>(8) == self.if_zero.val() {
@@ -232,7 +248,7 @@ impl<const N: usize> Logic for Machine<N> {
             }
         }
 
-        // The value.
+        // The value that an instruction writes to A.
         self.port.next = self.state.val();
         if self.code.val().get_bit(0) {
             self.port.next = bit_cast::<8, 3>(self.space.q.val());
@@ -274,7 +290,7 @@ impl<const N: usize> Logic for Machine<N> {
             self.index.d.next = self.index.q.val() + self.one.val();
         }
 
-        // The data.
+        // The data memory.
         self.place.next = self.code.val().get_bits::<8>(0);
         if self.code.val().get_bit(8) {
             self.place.next = self.index.q.val();
@@ -287,14 +303,14 @@ impl<const N: usize> Logic for Machine<N> {
             self.data.write_bits.next = self.all.val();
         }
 
-        // The CRC.
+        // The CRC and word register.
         self.check.begins.next = self.does.val() & self.code.val().get_bit(4);
         self.check.step.next = self.steps.val();
         self.check.feed.next = self.code.val().get_bit(3);
         self.check.data.next = self.sum.q.val();
         self.check.word.next = self.facts.val();
 
-        // Bytes that come.
+        // The ring buffer of received bytes.
         self.ring.read_address.next = self.read.q.val();
         if self.sets.val() & (self.code.val().get_bits::<3>(8) == self.from_ring.val()) {
             self.read.d.next = self.read.q.val() + self.one.val();
@@ -309,7 +325,7 @@ impl<const N: usize> Logic for Machine<N> {
             self.written.d.next = self.written.q.val() + self.one.val();
         }
 
-        // The engine.
+        // The ports of the engine.
         if self.room_valid.val() {
             self.space.d.next = self.room.val();
         }

@@ -1,4 +1,4 @@
-//! The link of a build, whose number of axes is known only when it is built; and the same under simulation.
+//! Makes the link of a build, whose number of axes is known only at run time, and simulates it.
 
 use super::Link;
 use crate::HdlError;
@@ -10,20 +10,20 @@ use carrystep_core::engine::{EngineError, EngineInputs, Put};
 use carrystep_core::link::{BuildId, LinkInputs, LinkOutputs, Uart};
 use rust_hdl::prelude::{Block, check_all};
 
-/// A link for any number of axes.
+/// A link whose number of axes is not part of its type.
 pub trait AnyLink: Block {
-    /// Drives the inputs; the outputs of the present cycle, but for those of the line.
+    /// Applies the inputs and returns the outputs of the present cycle, except those of the line.
     fn settle(&mut self, inputs: &LinkInputs, line: LineOutputs) -> LinkOutputs;
-    /// The byte that is offered to the line.
+    /// The byte that the link offers to the line, if any.
     fn offered(&self) -> Option<u8>;
-    /// Goes to the next cycle, with the inputs as last settled.
+    /// Advances to the next cycle. The inputs are those of the last call of `settle`.
     fn clock(&mut self);
 }
 
-/// The link of this build, which has as many axes as the build.
+/// Makes the link of this build, with the number of axes of the build.
 ///
 /// # Errors
-/// [`HdlError::Engine`] where a parameter of the build cannot be.
+/// Returns [`HdlError::Engine`] if a parameter of the build is out of range.
 pub fn link(build: &EngineBuild, id: BuildId) -> Result<Box<dyn AnyLink>, HdlError> {
     build.check()?;
     Ok(match build.axes() {
@@ -48,7 +48,8 @@ impl<const N: usize> AnyLink for Link<N> {
         self.get_data.next = Word::from(u64::from(inputs.get_data));
         self.get_valid.next = inputs.get_valid;
         let engine = &inputs.engine;
-        // Without a fault these two are what the last stop has left.
+        // Without a fault these two ports keep the values of the last stop. The simulation drives 7
+        // and 0xff, so that a use of them without a fault shows.
         let (cause, culprits) = engine.fault.map_or((7, 0xff), |(cause, culprits)| (cause as u64, culprits));
         self.put_ready.next = engine.put_ready;
         self.room.next = Word::from(u64::from(engine.room.unwrap_or(0)));
@@ -96,7 +97,7 @@ impl<const N: usize> AnyLink for Link<N> {
     }
 }
 
-/// The link and a UART under simulation.
+/// A simulated link with a simulated UART.
 pub struct LinkSim {
     link: Box<dyn AnyLink>,
     line: UartSim,
@@ -104,10 +105,10 @@ pub struct LinkSim {
 }
 
 impl LinkSim {
-    /// Both of this build in cycle 0.
+    /// Makes the link and the UART of this build, in cycle 0.
     ///
     /// # Errors
-    /// [`HdlError`] where the build cannot be made.
+    /// Returns an [`HdlError`] if the build is invalid or Rust-HDL's checks reject a module.
     pub fn new(build: &EngineBuild, uart: Uart) -> Result<Self, HdlError> {
         let mut link = link(build, uart.build_id(build))?;
         link.connect_all();
@@ -115,20 +116,22 @@ impl LinkSim {
         Ok(Self { link, line: UartSim::new(uart)?, said: LineOutputs::default() })
     }
 
-    /// The outputs of the present cycle with these inputs.
+    /// Applies the inputs and returns the outputs of the present cycle.
     pub fn settle(&mut self, inputs: &LinkInputs) -> LinkOutputs {
-        // What is offered comes from registers; whether it is taken does not.
+        // The offered byte depends on registers only, so it is known before the link settles.
+        // Whether the line accepts it is known only after the line has settled.
         let (line, tx) = self.line.settle(inputs.rx, self.link.offered());
         self.said = line;
         LinkOutputs { tx, ..self.link.settle(inputs, line) }
     }
 
-    /// What goes between link and line in the present cycle: from the line, and the byte that is offered to it.
+    /// The signals between link and line in the present cycle: the outputs of the line, and the
+    /// byte that the link offers.
     pub fn bytes(&self) -> (LineOutputs, Option<u8>) {
         (self.said, self.link.offered())
     }
 
-    /// Goes to the next cycle, with the inputs as last settled.
+    /// Advances to the next cycle. The inputs are those of the last call of `settle`.
     pub fn clock(&mut self) {
         self.link.clock();
         self.line.clock();

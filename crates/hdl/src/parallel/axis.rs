@@ -1,16 +1,24 @@
-//! One axis: the article's accumulator. Every carry is a step.
+//! The accumulator of one axis of the parallel core. Every carry out of P is a step.
 //!
 //! ```text
-//!      J ----> + ----> A ----> + ----> V ----> + ----> P        on each tick, all from the old values
+//!      J ----> + ----> A ----> + ----> V ----> + ----> P    each tick, from the old values
 //!              ^-------'       ^-------'       ^-------'
 //!                                              `-- carry out: a step
 //! ```
 //!
-//! P is the fraction of a step, V the speed per tick, A the acceleration, J the jerk, all in units of
-//! 2^-64 step. A position that passes a whole step carries out of the 64 bits: forward that carry is the
-//! step; backward (V is negative, so all but small P carry) the missing carry is.
+//! P is the position within a step, V the speed per tick, A the acceleration and J the jerk, all in
+//! units of 2^-64 step. Each tick adds J to A, A to V and V to P, always with the values from
+//! before the tick. When P passes a whole step, the 64-bit addition carries. Forward, the carry is
+//! the step. Backward, V is a negative number in two's complement, so that every addition carries
+//! except the one that passes a whole step; there the missing carry is the step.
 //!
-//! The [`Sequencer`] says which segment is loaded when, [`Edge`] when inside the tick the step is due.
+//! Interface: the axis accepts one segment while another runs, and requests steps from the shaper.
+//! The [`Sequencer`] decides when a segment is loaded; [`Edge`] finds the phase of a step within
+//! its tick.
+//!
+//! Cost: three adders of 64 bits, registers for P, V, A and J, and the waiting segment of the
+//! sequencer. The engine ([`mod@crate::engine`]) performs the same additions on one adder of 32
+//! bits.
 
 use crate::parallel::sequencer::Sequencer;
 use crate::parts::edge::Edge;
@@ -20,64 +28,65 @@ use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::StartPhase;
 use rust_hdl::prelude::*;
 
-/// One axis, from offered segment to requested step.
+/// One axis of the parallel core, from the offered segment to the requested step.
 #[derive(LogicBlock, Default)]
 pub struct Axis {
     /// The clock.
     pub clock: Input<Clock>,
-    /// Last cycle of a tick.
+    /// Asserted in the last clock of a tick.
     pub strobe: Input<Bit>,
-    /// First cycle of a phase.
+    /// Asserted in the first clock of a phase.
     pub phase_start: Input<Bit>,
-    /// The phase.
+    /// The number of the present phase, 0 to Q - 1.
     pub phase: Input<Word<4>>,
-    /// A fault is latched somewhere: no axis moves.
+    /// Asserted while a fault of any axis is latched. The axis does not move.
     pub frozen: Input<Bit>,
-    /// Back to the start value, and forget segments and faults.
+    /// Sets P to its start value and clears the segments and the faults.
     pub clear: Input<Bit>,
-    /// The waiting segment may start this axis at the strobe of this cycle.
+    /// The waiting segment may start this axis at the strobe in this clock.
     pub go: Input<Bit>,
-    /// Take the offered segment.
+    /// The axis stores the offered segment in this clock.
     pub push: Input<Bit>,
-    /// Offered segment: ticks.
+    /// Offered segment: its duration in ticks.
     pub seg_ticks: Input<Word<32>>,
-    /// Offered segment: speed.
+    /// Offered segment: the initial speed V.
     pub seg_v: Input<Word<64>>,
-    /// Offered segment: acceleration.
+    /// Offered segment: the initial acceleration A.
     pub seg_a: Input<Word<64>>,
-    /// Offered segment: jerk.
+    /// Offered segment: the jerk J.
     pub seg_j: Input<Word<64>>,
-    /// Offered segment: the axis rests after it.
+    /// Offered segment: it is the last of its move, and the axis rests after it.
     pub seg_last: Input<Bit>,
-    /// A segment waits.
+    /// A segment is stored and not yet loaded.
     pub waiting: Signal<Out, Bit>,
-    /// It could start at a strobe in this cycle.
+    /// The waiting segment could start at a strobe in this clock.
     pub startable: Signal<Out, Bit>,
-    /// A step is due, one cycle.
+    /// Asserted for one clock when a step is due.
     pub request: Signal<Out, Bit>,
-    /// It goes backward.
+    /// The requested step is backward.
     pub request_back: Signal<Out, Bit>,
-    /// DIR is to go forward.
+    /// V > 0 in the tick that is being emitted.
     pub want_fwd: Signal<Out, Bit>,
-    /// DIR is to go backward.
+    /// V < 0 in the tick that is being emitted.
     pub want_back: Signal<Out, Bit>,
-    /// A step is on its way to the shaper.
+    /// A step has been found and may not have reached the shaper.
     pub in_flight: Signal<Out, Bit>,
-    /// At rest, with nothing waiting and no step on its way.
+    /// The axis is at rest, no segment waits, and every step has reached the shaper.
     pub drained: Signal<Out, Bit>,
-    /// Fault: V would have left (-2^63, 2^63).
+    /// Latched fault: the next V would have been outside -2^63 < V < 2^63.
     pub overspeed: Signal<Out, Bit>,
-    /// Fault: the queue ran dry.
+    /// Latched fault: a segment that was not the last of its move ended, and no segment was
+    /// waiting.
     pub underrun: Signal<Out, Bit>,
-    /// To be watched: the last tick stepped.
+    /// For observation: the last tick contained a step.
     pub crossed: Signal<Out, Bit>,
-    /// To be watched: it had V < 0.
+    /// For observation: V < 0 in the last tick.
     pub back: Signal<Out, Bit>,
-    /// To be watched: its phase, when the bisection is over.
+    /// For observation: the phase of that step, valid when the bisection has finished.
     pub q: Signal<Out, Word<4>>,
-    /// To be watched: P.
+    /// For observation: P.
     pub p: Signal<Out, Word<64>>,
-    /// To be watched: V.
+    /// For observation: V.
     pub v: Signal<Out, Word<64>>,
     position: Register<Word<64>>, // P
     speed: Register<Word<64>>,    // V
@@ -99,7 +108,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// An axis for ticks of Q phases, which are 1, 4 or 16 ([`carrystep_core::Timebase`] checks that).
+    /// Makes an axis for ticks of Q phases. [`carrystep_core::Timebase`] has checked that Q is 1, 4
+    /// or 16.
     pub(crate) fn new(phases: u32, start: StartPhase) -> Self {
         let start = start.start_value();
         Self {
@@ -117,7 +127,7 @@ impl Logic for Axis {
         dff_setup!(self, clock, position, speed, accel, jerk, too_fast);
         clock!(self, clock, sequencer, step_edge);
 
-        // The accumulator.
+        // The addition P + V. Its carry, compared with the sign of V, tells whether the tick steps.
         self.tick.next = self.strobe.val() & !self.frozen.val();
         self.sum.next = bit_cast::<65, 64>(self.position.q.val()) + bit_cast::<65, 64>(self.speed.q.val());
         self.backward.next = self.speed.q.val().get_bit(63);
@@ -126,7 +136,7 @@ impl Logic for Axis {
             self.position.d.next = self.sum.val().get_bits::<64>(0);
         }
 
-        // The next speed, and whether it fits.
+        // The next V, and whether it is in range.
         self.faster.next = self.speed.q.val() + self.accel.q.val();
         self.overflow.next = (self.backward.val() == self.accel.q.val().get_bit(63))
             & (self.backward.val() != self.faster.val().get_bit(63));
@@ -139,7 +149,7 @@ impl Logic for Axis {
         self.off_limits.next = self.tick.val()
             & ((self.next_speed.val() == self.least.val()) | (self.sequencer.advance.val() & self.overflow.val()));
 
-        // V <- V + A, A <- A + J; or a new segment; or rest.
+        // At a tick, V and A advance, or a segment is loaded, or the axis comes to rest.
         if self.tick.val() {
             self.speed.d.next = self.next_speed.val();
         }
@@ -163,7 +173,7 @@ impl Logic for Axis {
             self.too_fast.d.next = false;
         }
 
-        // Which segment.
+        // The inputs of the sequencer.
         self.sequencer.strobe.next = self.tick.val();
         self.sequencer.frozen.next = self.frozen.val();
         self.sequencer.stop.next = self.off_limits.val();
@@ -176,7 +186,7 @@ impl Logic for Axis {
         self.sequencer.seg_j.next = self.seg_j.val();
         self.sequencer.seg_last.next = self.seg_last.val();
 
-        // When in the tick.
+        // The inputs of the edge.
         self.step_edge.strobe.next = self.strobe.val();
         self.step_edge.phase_start.next = self.phase_start.val();
         self.step_edge.phase.next = self.phase.val();
@@ -223,7 +233,7 @@ mod tests {
     const QUARTER: i64 = 1 << 62;
 
     #[test]
-    fn every_carry_is_a_step() {
+    fn axis_steps_at_every_carry() {
         let segment = Segment { ticks: 9, v: QUARTER, a: 0, j: 0, last: true };
         let mut axis = started(StartPhase::Zero, segment);
         let steps: Vec<bool> = (0..12).map(|_| axis.tick(false).crossed).collect();
@@ -232,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn backward_every_missing_carry_is_a_step() {
+    fn axis_steps_backward_at_every_missing_carry() {
         let segment = Segment { ticks: 5, v: -QUARTER, a: 0, j: 0, last: true };
         let mut axis = started(StartPhase::Zero, segment);
         let steps: Vec<bool> = (0..6).map(|_| axis.tick(false).crossed).collect();
@@ -240,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn all_sums_are_of_the_old_values() {
+    fn axis_adds_the_values_from_before_the_tick() {
         let segment = Segment { ticks: 4, v: 100, a: 10, j: 1, last: false };
         let mut axis = started(StartPhase::Zero, segment);
         let ticks: Vec<(u64, i64)> = (0..3).map(|_| axis.tick(false)).map(|tick| (tick.p, tick.v)).collect();
@@ -248,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_speed_that_does_not_fit_is_a_fault_and_stops() {
+    fn speed_out_of_range_stops_the_axis_with_overspeed() {
         let segment = Segment { ticks: 9, v: QUARTER, a: QUARTER, j: 0, last: true };
         let mut axis = started(StartPhase::Half, segment);
         assert_eq!(axis.tick(false).v, 0);
@@ -258,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn phases_are_checked() {
+    fn axis_rejects_an_invalid_number_of_phases() {
         assert!(AxisSim::new(8, StartPhase::Half).is_err());
     }
 

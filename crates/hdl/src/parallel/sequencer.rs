@@ -1,4 +1,5 @@
-//! Which segment an axis follows: the one that runs, and one that waits.
+//! Holds the running and one waiting segment of an axis, and decides when the waiting one is
+//! loaded.
 //!
 //! ```text
 //!              load            load (no gap)    last: the axis rests
@@ -7,59 +8,64 @@
 //! left           n  n-1 ...  2  1  m  m-1 ... 1
 //! ```
 //!
-//! A segment that waits is loaded at the strobe that ends the one before it, or, where the axis rests or
-//! comes to rest there, when the core says `go`. A queue that is dry after a segment not marked last is
-//! the fault `underrun`.
+//! The sequencer loads a waiting segment at the strobe that ends the running segment. If the axis
+//! is at rest, or comes to rest at that strobe, it loads the segment only when the core asserts
+//! `go`. If a segment that is not marked last ends and no segment waits, the sequencer latches the
+//! fault `underrun`.
+//!
+//! Cost: registers for one waiting segment (225 bits) and a counter of the remaining ticks (32
+//! bits).
 
 use crate::primitives::constant::Literal;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
-/// The sequencer of one axis.
+/// The segment sequencer of one axis.
 #[derive(LogicBlock, Default)]
 pub struct Sequencer {
     /// The clock.
     pub clock: Input<Clock>,
-    /// Last cycle of a tick, not frozen.
+    /// Asserted in the last clock of a tick, unless the core is frozen.
     pub strobe: Input<Bit>,
-    /// A fault is latched: the axis does not run.
+    /// Asserted while a fault is latched. The axis stops running.
     pub frozen: Input<Bit>,
-    /// The next V does not fit: the axis stops running.
+    /// The next V is out of range. The axis stops running.
     pub stop: Input<Bit>,
-    /// Forget the waiting segment and the fault.
+    /// Clears the waiting segment and the fault.
     pub clear: Input<Bit>,
-    /// The waiting segment may start an axis at rest, in this cycle.
+    /// The waiting segment may start an axis at rest in this clock.
     pub go: Input<Bit>,
-    /// Take the offered segment.
+    /// The sequencer stores the offered segment in this clock.
     pub push: Input<Bit>,
-    /// Offered segment: ticks.
+    /// Offered segment: its duration in ticks.
     pub seg_ticks: Input<Word<32>>,
-    /// Offered segment: speed.
+    /// Offered segment: the initial speed V.
     pub seg_v: Input<Word<64>>,
-    /// Offered segment: acceleration.
+    /// Offered segment: the initial acceleration A.
     pub seg_a: Input<Word<64>>,
-    /// Offered segment: jerk.
+    /// Offered segment: the jerk J.
     pub seg_j: Input<Word<64>>,
-    /// Offered segment: the axis rests after it.
+    /// Offered segment: it is the last of its move, and the axis rests after it.
     pub seg_last: Input<Bit>,
-    /// A segment waits.
+    /// A segment is stored and not yet loaded.
     pub waiting: Signal<Out, Bit>,
-    /// It could start at a strobe in this cycle.
+    /// The waiting segment could start at a strobe in this clock.
     pub startable: Signal<Out, Bit>,
     /// A segment runs.
     pub running: Signal<Out, Bit>,
-    /// V, A and J are to be loaded.
+    /// The axis loads V, A and J from the waiting segment.
     pub load: Signal<Out, Bit>,
-    /// The running segment goes on.
+    /// The running segment continues: the axis advances V and A.
     pub advance: Signal<Out, Bit>,
-    /// The waiting segment's speed.
+    /// The V of the waiting segment.
     pub v: Signal<Out, Word<64>>,
-    /// The waiting segment's acceleration.
+    /// The A of the waiting segment.
     pub a: Signal<Out, Word<64>>,
-    /// The waiting segment's jerk.
+    /// The J of the waiting segment.
     pub j: Signal<Out, Word<64>>,
-    /// Fault: the queue ran dry.
+    /// Latched fault: a segment that was not the last of its move ended, and no segment was
+    /// waiting.
     pub underrun: Signal<Out, Bit>,
     wait_full: Register<Bit>, // `waiting`
     wait_ticks: Register<Word<32>>,
@@ -128,7 +134,7 @@ mod tests {
     use super::*;
     use crate::sim::{assert_synthesizes, rising_edge, settle};
 
-    /// One clock; what the sequencer said before the edge: (load, advance).
+    /// Runs one clock. Returns the outputs `load` and `advance` before its rising edge.
     fn clock(sequencer: &mut Sequencer) -> (bool, bool) {
         sequencer.clock.next = false.into();
         settle(sequencer);
@@ -156,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_at_rest_waits_for_go() {
+    fn sequencer_at_rest_loads_only_with_go() {
         let mut sequencer = connected();
         push(&mut sequencer, 2, true);
         assert!(sequencer.startable.val());
@@ -167,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_segment_follows_without_a_gap_and_the_last_one_rests() {
+    fn sequencer_loads_the_next_segment_without_a_gap_and_rests_after_the_last() {
         let mut sequencer = connected();
         push(&mut sequencer, 2, false);
         sequencer.go.next = true;
@@ -180,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dry_queue_is_an_underrun_until_cleared() {
+    fn missing_segment_is_an_underrun_until_cleared() {
         let mut sequencer = connected();
         push(&mut sequencer, 1, false);
         sequencer.go.next = true;

@@ -1,4 +1,4 @@
-//! Drives the parallel core, and one of its axes by itself, one clock at a time.
+//! Simulates the parallel core, or one of its axes alone, clock by clock.
 
 use crate::HdlError;
 use crate::parallel::axis::Axis;
@@ -8,22 +8,22 @@ use crate::sim::{connected, mask, rising_edge, settle};
 use carrystep_core::ports::{Inputs, Outputs};
 use carrystep_core::{AXES, Build, Faults, Segment, StartPhase};
 
-/// The six-axis core under simulation.
+/// A simulated six-axis core.
 pub struct SixAxisSim {
     core: Box<SixAxis>,
 }
 
 impl SixAxisSim {
-    /// The core of this build in cycle 0.
+    /// Makes the core of this build, in cycle 0.
     ///
     /// # Errors
-    /// [`HdlError`] where the build cannot be made.
+    /// Returns an [`HdlError`] if the core cannot be built.
     pub fn new(build: &Build) -> Result<Self, HdlError> {
         Ok(Self { core: connected(SixAxis::new(build)?)? })
     }
 
-    /// The outputs of the present cycle with these inputs. What is not offered is driven as zero, so that
-    /// `seg_ready` without a segment is that of axis 0.
+    /// Applies the inputs and returns the outputs of the present cycle. Inputs that are not offered
+    /// are driven as zero, so that `seg_ready` without a segment is that of axis 0.
     pub fn settle(&mut self, inputs: &Inputs) -> Outputs {
         let core = &mut self.core;
         core.clock.next = false.into();
@@ -42,7 +42,7 @@ impl SixAxisSim {
         self.outputs()
     }
 
-    /// Goes to the next cycle, with the inputs as last settled.
+    /// Advances to the next cycle. The inputs are those of the last call of `settle`.
     pub fn clock(&mut self) {
         if self.core.clock.val().clk {
             self.core.clock.next = false.into();
@@ -52,7 +52,8 @@ impl SixAxisSim {
         rising_edge(self.core.as_mut());
     }
 
-    /// P of each axis in the present cycle: at rest after a whole move it is the start value again.
+    /// The P of each axis in the present cycle. At rest after a whole move it equals the start
+    /// value.
     pub fn fractions(&self) -> [u64; AXES] {
         std::array::from_fn(|axis| self.core.axis[axis].p.val().value() as u64)
     }
@@ -80,14 +81,14 @@ impl SixAxisSim {
 
 const NO_SEGMENT: Segment = Segment { ticks: 0, v: 0, a: 0, j: 0, last: false };
 
-/// What one tick of an axis did.
+/// The result of one tick of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AxisTick {
-    /// It stepped.
+    /// The tick contained a step.
     pub crossed: bool,
-    /// V was negative.
+    /// V was negative in the tick.
     pub back: bool,
-    /// The phase of the step, where there is one.
+    /// The phase of the step, if there is one.
     pub q: u8,
     /// P after the tick.
     pub p: u64,
@@ -95,17 +96,18 @@ pub struct AxisTick {
     pub v: i64,
 }
 
-/// One axis without tick and shaper, for long runs: a tick is as short as its bisection allows.
+/// A simulated axis without tick counter and shaper, for long runs. Each tick lasts only as many
+/// clocks as its bisection needs.
 pub struct AxisSim {
     axis: Box<Axis>,
     bisection: u32,
 }
 
 impl AxisSim {
-    /// An axis at rest, for ticks of Q phases.
+    /// Makes an axis at rest, for ticks of Q phases.
     ///
     /// # Errors
-    /// [`HdlError::Phases`] unless Q is 1, 4 or 16.
+    /// Returns [`HdlError::Phases`] unless Q is 1, 4 or 16.
     pub fn new(phases: u32, start: StartPhase) -> Result<Self, HdlError> {
         if ![1, 4, 16].contains(&phases) {
             return Err(HdlError::Phases(phases));
@@ -113,7 +115,7 @@ impl AxisSim {
         Ok(Self { axis: connected(Axis::new(phases, start))?, bisection: phases.ilog2() })
     }
 
-    /// Offers a segment for one clock; whether it was taken.
+    /// Offers a segment for one clock. Returns whether the axis accepted it.
     pub fn offer(&mut self, segment: &Segment) -> bool {
         let axis = &mut self.axis;
         axis.clock.next = false.into();
@@ -130,7 +132,8 @@ impl AxisSim {
         taken
     }
 
-    /// One tick: its strobe, in which a waiting segment may start if `go` is set, then its bisection.
+    /// Runs one tick: its strobe, at which a waiting segment may start if `go` is set, then its
+    /// bisection.
     pub fn tick(&mut self, go: bool) -> AxisTick {
         self.axis.strobe.next = true;
         self.axis.go.next = go;
@@ -151,12 +154,12 @@ impl AxisSim {
         }
     }
 
-    /// Whether a segment waits.
+    /// Returns whether a segment waits.
     pub fn waiting(&self) -> bool {
         self.axis.waiting.val()
     }
 
-    /// The latched faults: overspeed, underrun.
+    /// The latched faults overspeed and underrun, in this order.
     pub fn faults(&self) -> (bool, bool) {
         (self.axis.overspeed.val(), self.axis.underrun.val())
     }

@@ -1,4 +1,4 @@
-//! The core: six of each, one tick for all, and the door for segments and starts.
+//! The core of six parallel axes: it accepts segments and starts, and freezes all axes at a fault.
 //!
 //! ```text
 //!                 .------.  strobe, phase
@@ -10,8 +10,14 @@
 //!  clear   ---->  frozen <-- overspeed, underrun, overrun, protocol
 //! ```
 //!
-//! A start names axes; they all start on one strobe, the first at which each of them can. Any latched fault
-//! freezes every axis in the next cycle, until `clear`.
+//! A start names axes by a mask. All of them start at the same strobe, which is the first at which
+//! each of them can start. Any latched fault freezes every axis from the next clock on, until
+//! `clear`.
+//!
+//! Interface: segments and starts are accepted where valid and ready are both 1. The outputs are
+//! the pins and the state of each axis.
+//!
+//! Cost: six axes and six shapers, which share one tick counter.
 
 use crate::HdlError;
 use crate::parallel::axis::Axis;
@@ -23,56 +29,57 @@ use crate::primitives::word::Word;
 use carrystep_core::{AXES, Build};
 use rust_hdl::prelude::*;
 
-/// The six-axis core; ports as in [`carrystep_core::ports::SIX_AXIS_PORTS`].
+/// The six-axis core. Its ports are listed in [`carrystep_core::ports::SIX_AXIS_PORTS`].
 #[derive(LogicBlock, Default)]
 pub struct SixAxis {
     /// The clock.
     pub clock: Input<Clock>,
-    /// A segment is offered.
+    /// The host offers a segment.
     pub seg_valid: Input<Bit>,
-    /// For this axis.
+    /// The number of the axis that the segment is for, 0 to 5.
     pub seg_axis: Input<Word<3>>,
-    /// Offered segment: ticks.
+    /// Offered segment: its duration in ticks.
     pub seg_ticks: Input<Word<32>>,
-    /// Offered segment: speed.
+    /// Offered segment: the initial speed V.
     pub seg_v: Input<Word<64>>,
-    /// Offered segment: acceleration.
+    /// Offered segment: the initial acceleration A.
     pub seg_a: Input<Word<64>>,
-    /// Offered segment: jerk.
+    /// Offered segment: the jerk J.
     pub seg_j: Input<Word<64>>,
-    /// Offered segment: the axis rests after it.
+    /// Offered segment: it is the last of its move, and the axis rests after it.
     pub seg_last: Input<Bit>,
-    /// The offered segment is taken in this cycle.
+    /// The core accepts an offered segment in this clock.
     pub seg_ready: Signal<Out, Bit>,
-    /// A start is offered.
+    /// The host offers a start.
     pub start_valid: Input<Bit>,
-    /// Of these axes.
+    /// The axes to start; bit i is axis i.
     pub start_mask: Input<Word<6>>,
-    /// The offered start is taken in this cycle.
+    /// The core accepts an offered start in this clock.
     pub start_ready: Signal<Out, Bit>,
-    /// Resume after a fault.
+    /// Clears a fault. The host holds it until `fault` falls.
     pub clear: Input<Bit>,
     /// The STEP pins.
     pub step: [Signal<Out, Bit>; AXES],
-    /// The DIR pins, 1 is backward.
+    /// The DIR pins; 1 is backward.
     pub dir: [Signal<Out, Bit>; AXES],
-    /// Steps forward less steps backward.
+    /// The steps forward less the steps backward of each axis, 32 bits two's complement.
     pub position: [Signal<Out, Word<32>>; AXES],
-    /// Steps that a freeze discarded.
+    /// The number of steps of each axis that were requested but not made, modulo 2^32.
     pub discarded: [Signal<Out, Word<32>>; AXES],
-    /// All axes are done and no start is armed.
+    /// All axes are at rest, no segment waits and no start is armed.
     pub idle: Signal<Out, Bit>,
-    /// Frozen.
+    /// A fault is latched, and all axes are frozen.
     pub fault: Signal<Out, Bit>,
-    /// Fault: a second step was owed.
+    /// Latched fault: a second step arrived while one was held back.
     pub overrun: [Signal<Out, Bit>; AXES],
-    /// Fault: V would have left (-2^63, 2^63).
+    /// Latched fault: the next V would have been outside -2^63 < V < 2^63.
     pub overspeed: [Signal<Out, Bit>; AXES],
-    /// Fault: the queue ran dry.
+    /// Latched fault: a segment that was not the last of its move ended, and no segment was
+    /// waiting.
     pub underrun: [Signal<Out, Bit>; AXES],
-    /// Fault: the host broke the segment protocol.
+    /// Latched fault: the host broke the segment protocol.
     pub protocol: Signal<Out, Bit>,
-    /// Axes start at the end of this cycle.
+    /// Axes start at the end of this clock.
     pub started: Signal<Out, Bit>,
     tick: Tick,
     pub(crate) axis: [Axis; AXES],
@@ -99,10 +106,10 @@ pub struct SixAxis {
 }
 
 impl SixAxis {
-    /// The core of this build.
+    /// Makes the core of this build.
     ///
     /// # Errors
-    /// [`HdlError::PinTiming`] where an axis' timing is out of range.
+    /// Returns [`HdlError::PinTiming`] if the pin timing of an axis is out of range.
     pub fn new(build: &Build) -> Result<Self, HdlError> {
         let mut shaper: [Shaper; AXES] = Default::default();
         for (shaper, pins) in shaper.iter_mut().zip(&build.pins) {
@@ -124,7 +131,7 @@ impl Logic for SixAxis {
         dff_setup!(self, clock, armed, mask, broken);
         clock!(self, clock, tick);
 
-        // Any fault freezes all.
+        // Any latched fault freezes all axes.
         self.frozen.next = self.broken.q.val();
         self.in_flight.next = false;
         self.at_rest.next = !self.armed.q.val();
@@ -140,7 +147,7 @@ impl Logic for SixAxis {
         }
         self.clear_now.next = self.clear.val() & self.frozen.val() & !self.in_flight.val();
 
-        // Segments.
+        // The port for segments.
         self.selected.next = self.first.val() << self.seg_axis.val();
         self.nobody.next = self.seg_axis.val() >= self.six.val();
         self.waiting.next = false;
@@ -151,7 +158,8 @@ impl Logic for SixAxis {
         self.taken.next = self.seg_valid.val() & self.seg_ready.val();
         self.push.next = self.taken.val() & !self.nobody.val() & (self.seg_ticks.val() != self.no_ticks.val());
 
-        // Starts: armed until every axis of the mask can start, then all go on one strobe.
+        // The port for starts. A start stays armed until every axis of its mask can start; then all
+        // start at one strobe.
         self.start_ready.next = !(self.frozen.val() | self.armed.q.val());
         self.start.next = self.start_valid.val() & self.start_ready.val();
         self.unfed.next = false;
@@ -170,7 +178,7 @@ impl Logic for SixAxis {
             self.mask.d.next = self.start_mask.val();
         }
 
-        // A host that breaks the protocol stops everything.
+        // A breach of the segment protocol latches the fault `protocol`.
         if (self.taken.val() & !self.push.val()) | (self.start.val() & self.unfed.val()) {
             self.broken.d.next = true;
         }

@@ -1,7 +1,8 @@
-//! When inside its tick a step is due: the phase by bisection, and the request to the shaper.
+//! Finds the phase of a step within its tick by bisection, and requests the step from the shaper.
 //!
-//! A tick that steps carries somewhere between P and P + V. Where, in Q-ths of a tick, is found by adding
-//! only: half of V, a quarter, an eighth ...; each part that does not yet carry is kept and sets its bit.
+//! A tick that steps carries somewhere between P and P + V. The module finds the position of the
+//! carry in Q-ths of the tick with additions only. It adds half of V, then a quarter, then an
+//! eighth and so on. A part that does not carry yet is kept, and its bit of the phase is set.
 //!
 //! ```text
 //! strobe        /^\______________________ ... /^\________________________ ... /^\___
@@ -10,62 +11,72 @@
 //! request       ___________________________..._____________/^\________________...
 //! ```
 //!
-//! So tick n is added at one strobe, bisected during the next tick and emitted during the one after.
+//! A tick is accumulated at one strobe, bisected during the next tick and emitted during the tick
+//! after that.
+//!
+//! Interface: the axis provides P and V of each tick at its strobe; the shaper receives `request`
+//! for one clock at the phase of the step.
+//!
+//! Cost: one adder of 32 bits, two registers of 32 bits, and the emission registers. Only the upper
+//! 32 bits of P and V take part; the phase is that of these truncated values.
 
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use rust_hdl::prelude::*;
 
-/// Bisection and emission of one axis.
+/// The bisection and the emission of one axis.
 #[derive(LogicBlock, Default)]
 pub struct Edge {
     /// The clock.
     pub clock: Input<Clock>,
-    /// Last cycle of a tick, frozen or not.
+    /// Asserted in the last clock of a tick, even while the core is frozen.
     pub strobe: Input<Bit>,
-    /// First cycle of a phase.
+    /// Asserted in the first clock of a phase.
     pub phase_start: Input<Bit>,
-    /// The phase.
+    /// The number of the present phase, 0 to Q - 1.
     pub phase: Input<Word<4>>,
-    /// A fault is latched: no tick is added, what is on its way goes on.
+    /// Asserted while a fault is latched. No new tick enters; steps that have already been found
+    /// continue.
     pub frozen: Input<Bit>,
-    /// Forget the sign of V.
+    /// Clears the stored signs of V.
     pub clear: Input<Bit>,
-    /// This tick steps.
+    /// The tick that ends at this strobe contains a step.
     pub crosses: Input<Bit>,
-    /// V > 0 in this tick.
+    /// V > 0 in the tick that ends at this strobe.
     pub forward: Input<Bit>,
-    /// V < 0 in this tick.
+    /// V < 0 in the tick that ends at this strobe.
     pub backward: Input<Bit>,
-    /// Top of the old P.
+    /// The upper 32 bits of P before the addition.
     pub p: Input<Word<32>>,
-    /// Top of the old V.
+    /// The upper 32 bits of V before the addition.
     pub v: Input<Word<32>>,
-    /// A step is due, one cycle.
+    /// Asserted for one clock when a step is due.
     pub request: Signal<Out, Bit>,
-    /// It goes backward.
+    /// The requested step is backward.
     pub request_back: Signal<Out, Bit>,
-    /// The emitted tick's V > 0.
+    /// V > 0 in the tick that is being emitted.
     pub want_fwd: Signal<Out, Bit>,
-    /// The emitted tick's V < 0.
+    /// V < 0 in the tick that is being emitted.
     pub want_back: Signal<Out, Bit>,
-    /// A step is on its way.
+    /// A step has been found and may not have been requested yet.
     pub in_flight: Signal<Out, Bit>,
-    /// The last tick stepped.
+    /// The tick accumulated last contained a step.
     pub crossed: Signal<Out, Bit>,
-    /// It had V < 0.
+    /// V < 0 in the tick accumulated last.
     pub back: Signal<Out, Bit>,
-    /// Its phase, when the bisection is over.
+    /// The phase of that step, valid when the bisection has finished.
     pub q: Signal<Out, Word<4>>,
     tick_crossed: Register<Bit>, // `crossed` of docs/clock-by-clock.md
     tick_back: Register<Bit>,    // `back`
     sign_fwd: Register<Bit>,
     sign_back: Register<Bit>,
     bisect_p: Register<Word<32>>, // `bp`
-    bisect_v: Register<Word<32>>, // `bv`, halved from step to step: one shift instead of a shifter
-    bisect_q: Register<Word<4>>,  // `bq`
-    weight: Register<Word<4>>,    // of the phase bit in question; 0: nothing to do
+    // `bv`, shifted right by one bit per clock, so that no barrel shifter is needed.
+    bisect_v: Register<Word<32>>,
+    bisect_q: Register<Word<4>>, // `bq`
+    // The weight of the phase bit to decide next; 0 when the bisection has finished.
+    weight: Register<Word<4>>,
     emit: Register<Bit>,
     emit_back: Register<Bit>,
     emit_q: Register<Word<4>>,
@@ -82,7 +93,7 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// For ticks of Q phases: 1, 4 or 16.
+    /// Makes the module for ticks of Q phases. Q is 1, 4 or 16.
     pub(crate) fn new(phases: u32) -> Self {
         Self { first_weight: Parameter::new(u64::from(phases / 2)), ..Self::default() }
     }
@@ -94,7 +105,7 @@ impl Logic for Edge {
         dff_setup!(self, clock, tick_crossed, tick_back, sign_fwd, sign_back, bisect_p, bisect_v, bisect_q, weight);
         dff_setup!(self, clock, emit, emit_back, emit_q, dir_fwd, dir_back);
 
-        // Bisection: one phase bit a cycle, the highest first.
+        // The bisection decides one bit of the phase per clock, the highest bit first.
         self.half.next = (self.bisect_v.q.val() >> self.by_one.val()) | (self.bisect_v.q.val() & self.sign.val());
         self.trial.next = bit_cast::<33, 32>(self.bisect_p.q.val()) + bit_cast::<33, 32>(self.half.val());
         self.trial_crosses.next = self.trial.val().get_bit(32) ^ self.bisect_v.q.val().get_bit(31);
@@ -107,7 +118,7 @@ impl Logic for Edge {
             }
         }
 
-        // At a strobe all moves one place on.
+        // At the strobe, each tick moves to its next stage.
         if self.strobe.val() {
             self.emit.d.next = self.tick_crossed.q.val();
             self.emit_back.d.next = self.tick_back.q.val();
@@ -156,7 +167,8 @@ mod tests {
         settle(edge);
     }
 
-    /// An edge of Q phases after the strobe of a tick that crosses, and its bisection.
+    /// Makes an edge of Q phases, accumulates one tick that contains a step, and finishes its
+    /// bisection.
     fn bisected(phases: u32, p: u64, v: u64) -> Edge {
         let mut edge = Edge::new(phases);
         edge.connect_all();
@@ -175,8 +187,9 @@ mod tests {
     }
 
     #[test]
-    fn the_phase_is_where_the_carry_falls() {
-        // From 3/4 of a step at half a step per tick: half a tick. Then a late and an early carry.
+    fn bisection_finds_the_phase_of_a_forward_carry() {
+        // From 3/4 step at half a step per tick, the carry comes after half a tick. The next two
+        // cases carry late and early in the tick.
         assert_eq!(bisected(16, 0xc000_0000, 0x7fff_ffff).q.val().value(), 8);
         assert_eq!(bisected(16, 0x8000_0001, 0x7fff_ffff).q.val().value(), 15);
         assert_eq!(bisected(16, 0xffff_ffff, 0x7fff_ffff).q.val().value(), 0);
@@ -185,14 +198,14 @@ mod tests {
     }
 
     #[test]
-    fn backward_it_is_where_the_carry_is_missing() {
+    fn bisection_finds_the_phase_of_a_missing_carry_when_backward() {
         let edge = bisected(16, 0x4000_0000, 0x8000_0000);
         assert_eq!(edge.q.val().value(), 8);
         assert!(edge.back.val());
     }
 
     #[test]
-    fn the_request_comes_once_at_its_phase_in_the_next_tick() {
+    fn edge_requests_a_step_once_at_its_phase_in_the_next_tick() {
         let mut edge = bisected(16, 0xc000_0000, 0x7fff_ffff);
         edge.strobe.next = true;
         clock(&mut edge);

@@ -1,4 +1,4 @@
-//! From requests to pins: the shaper keeps what the driver asks for.
+//! Turns requested steps into STEP and DIR pulses that keep the timing of the motor driver.
 //!
 //! ```text
 //! DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
@@ -7,9 +7,18 @@
 //!                    :<-W ->:<- S -->:
 //! ```
 //!
-//! A step that may not rise yet is owed, one at most; a second is the fault `overrun`. DIR follows the sign
-//! of V, so that set-up has normally run out long before the step. Three timers count down: `busy` the
-//! pulse and its gap, `hold` and `setup` of DIR.
+//! W is the pulse width, S the gap between pulses, D the set-up of DIR before STEP and H the hold
+//! of DIR after STEP rises, each in clocks.
+//!
+//! Interface: the edge requests a step for one clock. If the pin timing delays the step, the shaper
+//! holds it back (`owed` in the code), at most one per axis. If a second step arrives while one is
+//! held back, the shaper reports the fault `overrun`. DIR follows the sign of V as soon as it is
+//! known, so that the set-up time has normally elapsed before the step is due. In the code, `turn`
+//! means that DIR changes.
+//!
+//! Cost: three timers that count down: `busy` for the pulse and its gap, `hold` and `setup` for
+//! DIR; and two counters of 32 bits for the position and the discarded steps. The engine's
+//! [`crate::engine::pulser`] does the same with shorter counters.
 
 use crate::HdlError;
 use crate::primitives::constant::{Literal, Parameter, used_bits};
@@ -19,34 +28,35 @@ use carrystep_core::PinTiming;
 use carrystep_core::build::MAX_CLOCKS;
 use rust_hdl::prelude::*;
 
-/// STEP, DIR and the position of one axis.
+/// The STEP and DIR pins and the position counter of one axis.
 #[derive(LogicBlock, Default)]
 pub struct Shaper {
     /// The clock.
     pub clock: Input<Clock>,
-    /// A fault is latched: nothing new rises, DIR stays.
+    /// Asserted while a fault is latched. No new pulse starts and DIR does not change.
     pub frozen: Input<Bit>,
-    /// Forget the fault.
+    /// Clears the fault.
     pub clear: Input<Bit>,
-    /// A step is due.
+    /// A step is due in this clock.
     pub request: Input<Bit>,
-    /// It goes backward.
+    /// The requested step is backward.
     pub request_back: Input<Bit>,
-    /// DIR is to go forward.
+    /// V > 0: DIR should be forward.
     pub want_fwd: Input<Bit>,
-    /// DIR is to go backward.
+    /// V < 0: DIR should be backward.
     pub want_back: Input<Bit>,
     /// The STEP pin.
     pub step: Signal<Out, Bit>,
-    /// The DIR pin, 1 is backward.
+    /// The DIR pin; 1 is backward.
     pub dir: Signal<Out, Bit>,
-    /// A step is owed.
+    /// A step is held back.
     pub owed: Signal<Out, Bit>,
-    /// Steps forward less steps backward.
+    /// The steps forward less the steps backward, 32 bits two's complement.
     pub position: Signal<Out, Word<32>>,
-    /// Steps that a freeze discarded.
+    /// The number of steps that were requested but not made, modulo 2^32: the step of an overrun
+    /// and those discarded while frozen.
     pub discarded: Signal<Out, Word<32>>,
-    /// Fault: a second step was owed.
+    /// Latched fault: a second step arrived while one was held back.
     pub overrun: Signal<Out, Bit>,
     step_pin: Register<Bit>,
     dir_pin: Register<Bit>,
@@ -80,10 +90,10 @@ pub struct Shaper {
 }
 
 impl Shaper {
-    /// The shaper of an axis with this timing.
+    /// Makes the shaper of an axis with this timing.
     ///
     /// # Errors
-    /// [`HdlError::PinTiming`] where a figure is not from 1 to [`MAX_CLOCKS`].
+    /// Returns [`HdlError::PinTiming`] if a time is not from 1 to [`MAX_CLOCKS`] clocks.
     pub fn new(pins: &PinTiming) -> Result<Self, HdlError> {
         let &PinTiming { width, gap, setup, hold } = pins;
         for (name, clocks) in [("width", width), ("gap", gap), ("setup", setup), ("hold", hold)] {
@@ -112,7 +122,7 @@ impl Logic for Shaper {
     fn update(&mut self) {
         dff_setup!(self, clock, step_pin, dir_pin, want, due, due_back, busy, hold, setup, steps, lost, late);
 
-        // Which way DIR should point, and which step is due.
+        // The direction that DIR should have, and the direction of the step that is due.
         self.want_now.next = self.want_back.val() | (self.want.q.val() & !self.want_fwd.val());
         self.want.d.next = self.want_now.val();
         self.pending.next = self.due.q.val() | self.request.val();
@@ -121,7 +131,7 @@ impl Logic for Shaper {
             self.first_back.next = self.due_back.q.val();
         }
 
-        // May it rise; may DIR turn.
+        // Decides whether STEP rises and whether DIR changes in this clock.
         self.rise.next = self.pending.val()
             & !self.frozen.val()
             & !self.busy.q.val().any()
@@ -154,7 +164,7 @@ impl Logic for Shaper {
             self.setup.d.next = (self.setup.q.val() - self.timer_one.val()) & self.setup_bits.val();
         }
 
-        // Where the axis is.
+        // The position counter.
         if self.rise.val() {
             if self.dir_pin.q.val() {
                 self.steps.d.next = self.steps.q.val() - self.one.val();
@@ -163,7 +173,8 @@ impl Logic for Shaper {
             }
         }
 
-        // What is owed, and what is lost: in silence nothing is.
+        // The step that is held back, and the count of discarded steps. Every requested step is
+        // made, held back or counted as discarded.
         self.second.next = self.due.q.val() & self.request.val();
         self.due.d.next = self.pending.val() & !self.rise.val();
         if self.rise.val() {

@@ -1,4 +1,4 @@
-//! The beat of the core: a tick of C clocks in Q phases, for all axes.
+//! The tick counter: divides time into ticks of C clocks, and each tick into Q phases.
 //!
 //! ```text
 //! phase        |  0        |  1        | ... |  Q-1      |  0
@@ -6,6 +6,12 @@
 //! phase_start  /^^^\_______/^^^\_______       /^^^\_______/^^^
 //! strobe       ________________________       ________/^^^\___
 //! ```
+//!
+//! Interface: `strobe` ends each tick and `phase_start` begins each phase. One counter serves all
+//! axes, so that they share the same time base.
+//!
+//! Cost: a counter of clocks within the phase, as wide as C/Q requires, and a counter of phases of
+//! 4 bits.
 
 use crate::primitives::constant::{Literal, Parameter, used_bits};
 use crate::primitives::register::{Input, Register};
@@ -13,16 +19,16 @@ use crate::primitives::word::Word;
 use carrystep_core::Timebase;
 use rust_hdl::prelude::*;
 
-/// Counts clocks into phases, and phases into ticks.
+/// Counts clocks within a phase, and phases within a tick.
 #[derive(LogicBlock, Default)]
 pub struct Tick {
     /// The clock.
     pub clock: Input<Clock>,
-    /// Last cycle of each tick.
+    /// Asserted in the last clock of each tick.
     pub strobe: Signal<Out, Bit>,
-    /// First cycle of each phase.
+    /// Asserted in the first clock of each phase.
     pub phase_start: Signal<Out, Bit>,
-    /// The phase, 0 to Q - 1.
+    /// The number of the present phase, 0 to Q - 1.
     pub phase: Signal<Out, Word<4>>,
     sub: Register<Word<16>>,
     phases: Register<Word<4>>,
@@ -38,7 +44,7 @@ pub struct Tick {
 }
 
 impl Tick {
-    /// The tick of this timebase, which has checked its numbers.
+    /// Makes the counter of a timebase. [`Timebase`] has checked that Q divides C.
     pub fn new(timebase: &Timebase) -> Self {
         let last_sub = u64::from(timebase.clocks_per_phase() - 1);
         Self {
@@ -51,7 +57,8 @@ impl Tick {
 }
 
 impl Tick {
-    /// The same tick, but in cycle 0 already where [`Tick::new`] is in cycle 1; for phases of two clocks or more.
+    /// Makes a counter that runs one clock ahead of [`Tick::new`]: its state in cycle 0 is that of
+    /// the other in cycle 1. The phases must have at least two clocks.
     pub fn ahead(timebase: &Timebase) -> Self {
         Self { sub: Register::new(Word::from(1_u64)), ..Self::new(timebase) }
     }
@@ -84,7 +91,7 @@ mod tests {
     use crate::sim::{rising_edge, settle};
 
     #[test]
-    fn strobe_ends_the_tick_and_phases_split_it() {
+    fn tick_asserts_strobe_in_its_last_clock_and_phase_start_in_each_phase() {
         let timebase = Timebase::new(48_000_000, 1000, 16).unwrap();
         let mut tick = Tick::new(&timebase);
         tick.connect_all();

@@ -1,7 +1,8 @@
-//! Constants that a kernel may name; in Verilog they are local parameters.
+//! Constants that a kernel can name. In the Verilog they are local parameters.
 //!
-//! Rust-HDL's own `Constant` has no default, which would make every module spell out every field.
-//! [`Literal`] is known when the module is written, [`Parameter`] when it is built.
+//! Rust-HDL's own `Constant` has no default, so that a module that contains one would have to name
+//! every field in its constructor. The types here have a default: the value of a [`Literal`] is
+//! part of its type, and the value of a [`Parameter`] is set when the module is built.
 
 use crate::primitives::word::Word;
 use rust_hdl::core::signal::get_signal_id;
@@ -9,7 +10,7 @@ use rust_hdl::prelude::{
     Atom, AtomKind, Block, Logic, PinConstraint, Probe, Synth, TypeDescriptor, VCDValue, VerilogLiteral,
 };
 
-/// The number VALUE in N bits.
+/// The constant VALUE, N bits wide.
 #[derive(Debug)]
 pub struct Literal<const N: usize, const VALUE: u64> {
     id: usize,
@@ -22,14 +23,14 @@ impl<const N: usize, const VALUE: u64> Default for Literal<N, VALUE> {
 }
 
 impl<const N: usize, const VALUE: u64> Literal<N, VALUE> {
-    /// The number.
+    /// The value of the constant.
     #[inline]
     pub const fn val(&self) -> Word<N> {
         Word::new(VALUE as u128)
     }
 }
 
-/// A number that a build chooses.
+/// A constant of N bits whose value is chosen when the module is built.
 #[derive(Debug)]
 pub struct Parameter<const N: usize> {
     value: Word<N>,
@@ -43,20 +44,20 @@ impl<const N: usize> Default for Parameter<N> {
 }
 
 impl<const N: usize> Parameter<N> {
-    /// The parameter with this value, which must fit.
+    /// Makes a parameter. The caller ensures that `value` fits in N bits; higher bits are dropped.
     pub fn new(value: u64) -> Self {
         Self { value: Word::from(value), id: get_signal_id() }
     }
 
-    /// The number.
+    /// The value of the constant.
     #[inline]
     pub const fn val(&self) -> Word<N> {
         self.value
     }
 }
 
-/// All bits of a counter that goes up to `greatest`. Kernels mask their timers with it: what can never be
-/// set is then plainly zero, and synthesis drops those flip-flops.
+/// The mask of all bits that a counter from 0 to `greatest` can set. Kernels mask their timers with
+/// it, so that the unused upper bits are constantly zero and synthesis removes their flip-flops.
 pub(crate) const fn used_bits(greatest: u64) -> u64 {
     match greatest.checked_ilog2() {
         Some(top) => (2 << top) - 1,
@@ -64,7 +65,7 @@ pub(crate) const fn used_bits(greatest: u64) -> u64 {
     }
 }
 
-/// What Rust-HDL wants to know of any constant.
+/// Implements the traits that Rust-HDL requires of a constant.
 macro_rules! constant_atom {
     ([$($generics:tt)*] $type:ty) => {
         impl<$($generics)*> Logic for $type {

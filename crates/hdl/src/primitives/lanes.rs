@@ -1,16 +1,18 @@
-//! `Lanes<T, N>`: one of something for each of N axes; to kernels and Verilog an array.
+//! `Lanes<T, N>`: an array with one element for each of N axes. Kernels and Verilog see an array.
 //!
-//! Only arrays of a fixed length have a `Default`, and every block needs one ([`crate::primitives::constant`]).
+//! Rust-HDL requires a `Default` of every block, and the standard library implements `Default` only
+//! for arrays of a fixed length ([`crate::primitives::constant`]). This type implements it for any
+//! N.
 
 use rust_hdl::prelude::{Block, Logic, Probe};
 use std::ops::{Deref, DerefMut};
 
-/// N of a kind.
+/// An array of N elements of one type; element i belongs to axis i.
 #[derive(Debug)]
 pub struct Lanes<T, const N: usize>([T; N]);
 
 impl<T, const N: usize> Lanes<T, N> {
-    /// Each made for its axis.
+    /// Makes each element by calling `make` with the number of its axis, 0 to N - 1.
     pub fn from_fn(make: impl FnMut(usize) -> T) -> Self {
         Self(std::array::from_fn(make))
     }

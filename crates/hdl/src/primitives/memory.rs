@@ -1,37 +1,39 @@
-//! Block RAM: one read port, one write port, both registered.
+//! Block RAM with one read port and one write port, both of which are registered.
 //!
 //! ```text
 //! clock         __/^^\__/^^\__/^^\__
 //! read_address  ==< a >=============
-//! read_data     ========<  a's  >===      the cycle after
+//! read_data     ========<  a's  >===      valid in the cycle after the address
 //! ```
 //!
-//! Before the first clock nothing has been read, and a word that is read in the cycle in which it is written has no
-//! defined value: real block RAMs differ there, and a design that needs neither costs no bypass. In simulation
-//! they are zero and the old value.
+//! Two values are undefined in the hardware: `read_data` before the first clock edge, and a word
+//! that is read in the cycle in which it is written. Real block RAMs differ there. A design that
+//! needs neither value costs no bypass logic. The simulation returns zero and the old word.
 
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
-/// Of the Verilog of each memory: it lies in block RAM.
+/// The Verilog attribute that places a memory in block RAM. The Verilog of every memory contains
+/// it.
 pub const IN_BLOCK_RAM: &str = "ram_style = \"block\"";
-/// Of the Verilog of those alone that are written bit by bit.
+/// The Verilog statement that writes one bit of a word. Only the Verilog of memories with a write
+/// enable for each bit contains it.
 pub const BIT_BY_BIT: &str = "words[write_address][i] <= write_data[i];";
 
-/// 2^A words of W bits.
+/// A memory of 2^A words of W bits.
 pub struct Memory<const A: usize, const W: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The word to be read.
+    /// The address of the word to read.
     pub read_address: Input<Word<A>>,
-    /// What was read.
+    /// The word at the address of the cycle before.
     pub read_data: Signal<Out, Word<W>>,
-    /// The word to be written.
+    /// The address of the word to write.
     pub write_address: Input<Word<A>>,
-    /// The bits of it that are written.
+    /// The write enable of each bit.
     pub write_bits: Input<Word<W>>,
-    /// Their new values.
+    /// The new values of the bits that are written.
     pub write_data: Input<Word<W>>,
     words: Vec<Word<W>>,
     rose: bool,
@@ -40,7 +42,11 @@ pub struct Memory<const A: usize, const W: usize> {
 }
 
 impl<const A: usize, const W: usize> Memory<A, W> {
-    /// A memory whose words are written whole, or not at all: `write_bits` is all ones or zero.
+    /// Makes a memory whose words are always written whole. The parent drives `write_bits` with all
+    /// ones or with zero. `initial` is a list of addresses and words; the other words are zero.
+    ///
+    /// # Panics
+    /// Panics if an address of `initial` is 2^A or more.
     pub fn of_words(initial: &[(usize, Word<W>)]) -> Self {
         let mut memory = Self::of_bits();
         memory.whole_words = true;
@@ -51,7 +57,7 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         memory
     }
 
-    /// A memory of zeros whose bits are written one by one.
+    /// Makes a memory with a write enable for each bit. All its words are initially zero.
     pub fn of_bits() -> Self {
         let words = vec![Word::default(); 1 << A];
         Self {
@@ -68,7 +74,10 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         }
     }
 
-    /// The word at an address, in simulation.
+    /// The word at an address. Only the simulation can read it without the port.
+    ///
+    /// # Panics
+    /// Panics if the address is 2^A or more.
     pub fn word(&self, address: usize) -> Word<W> {
         self.words[address]
     }
@@ -143,7 +152,7 @@ impl<const A: usize, const W: usize> Block for Memory<A, W> {
         self.write_data.update_all();
         self.read_data.update_all();
     }
-    /// What is written changes nothing that a kernel reads.
+    /// The write port is ignored, because no kernel reads it.
     #[inline]
     fn has_changed(&self) -> bool {
         self.read_data.changed() || self.read_address.changed()
@@ -175,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_is_read_the_cycle_after() {
+    fn memory_returns_a_word_in_the_cycle_after_its_address() {
         let mut memory = Memory::<4, 8>::of_words(&[(3, Word::from(7_u64))]);
         memory.connect_all();
         memory.read_address.next = Word::from(3_u64);
@@ -188,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_are_written_one_by_one() {
+    fn memory_writes_only_the_enabled_bits() {
         let mut memory = Memory::<4, 8>::of_bits();
         memory.connect_all();
         memory.write_data.next = Word::from(0xff_u64);

@@ -1,17 +1,17 @@
-//! Inputs and registers that settle in few passes.
+//! Inputs and registers that need few simulation passes.
 //!
-//! Rust-HDL simulates by passes over the tree of blocks until nothing changes. Its own inputs show a new
-//! value one pass late, so that a clock edge takes a pass for each level of hierarchy and one for the
-//! flip-flop. Here an [`Input`] shows what it was given at once, and a [`Register`] takes its value in the
-//! pass in which its clock rises:
+//! Rust-HDL simulates by passes over the tree of blocks until nothing changes. Its own inputs show
+//! a new value one pass late, so that a clock edge takes one pass for each level of the hierarchy
+//! and one for the flip-flop. An [`Input`] of this module shows the driven value at once, and a
+//! [`Register`] loads its value in the pass in which its clock rises:
 //!
 //! ```text
 //! one pass:  parent's kernel -> inputs -> child's kernel -> d, clock -> q
 //!            (reads old q)                (reads old q)              (new)
 //! ```
 //!
-//! All kernels above and beside a register have run, or will run, on the values of before the edge:
-//! outputs travel upwards only in the next pass. So a clock edge is one pass at any depth.
+//! All kernels of the tree run on the values from before the edge, because outputs travel upwards
+//! only in the next pass. A clock edge therefore takes one pass at any depth of the hierarchy.
 
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::signal::get_signal_id;
@@ -20,10 +20,10 @@ use rust_hdl::prelude::{
     VCDValue, Verilog,
 };
 
-/// An input port; in kernels and Verilog it is `Signal<In, T>`.
+/// An input port. Kernels and the Verilog treat it as `Signal<In, T>`.
 #[derive(Debug)]
 pub struct Input<T: Synth> {
-    /// What the parent drives.
+    /// The value that the parent drives.
     pub next: T,
     seen: T,
     changed: bool,
@@ -32,7 +32,7 @@ pub struct Input<T: Synth> {
 }
 
 impl<T: Synth> Input<T> {
-    /// What the parent drives, in the same pass.
+    /// The value that the parent drives, visible in the same pass.
     #[inline]
     pub fn val(&self) -> T {
         self.next
@@ -98,12 +98,12 @@ impl<T: Synth> Atom for Input<T> {
     }
 }
 
-/// A D flip-flop with an initial value.
+/// A D flip-flop for each bit, with an initial value.
 #[derive(Debug)]
 pub struct Register<T: Synth> {
-    /// The value after the next rising edge.
+    /// The value that the register loads at the next rising edge.
     pub d: Input<T>,
-    /// The value.
+    /// The present value.
     pub q: Signal<Out, T>,
     /// The clock.
     pub clock: Input<Clock>,
@@ -111,7 +111,7 @@ pub struct Register<T: Synth> {
 }
 
 impl<T: Synth> Register<T> {
-    /// A register that configures to `initial`.
+    /// Makes a register that holds `initial` after configuration of the FPGA.
     pub fn new(initial: T) -> Self {
         let d = Input { next: initial, ..Input::default() };
         Self { d, q: Signal::new_with_default(initial), clock: Input::default(), initial }
@@ -158,7 +158,7 @@ impl<T: Synth> Block for Register<T> {
         self.d.update_all();
         self.q.update_all();
     }
-    /// The clock alone changes nothing that a kernel reads.
+    /// The clock is ignored, because no kernel reads it.
     #[inline]
     fn has_changed(&self) -> bool {
         self.d.changed || self.q.changed
@@ -178,7 +178,7 @@ mod tests {
     use crate::primitives::word::Word;
 
     #[test]
-    fn q_follows_d_at_the_rising_edge_only() {
+    fn register_loads_d_only_at_the_rising_edge() {
         let mut register = Register::new(Word::<4>::from(5_u64));
         register.connect_all();
         register.d.next = Word::from(9_u64);

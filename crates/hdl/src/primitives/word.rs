@@ -1,17 +1,19 @@
-//! `Word<N>`: N bits on a machine integer.
+//! `Word<N>`: N bits, simulated as one machine integer.
 //!
-//! Rust-HDL's own `Bits<N>` is an array of bools above 32 bits, and P, V, A and J have 64. A `Word` is
-//! the same thing to a kernel and to the Verilog, and simulates an order of magnitude faster. Every
-//! operator wraps at N bits; a carry is had by widening first (`bit_cast`), as everywhere in Rust-HDL.
+//! Rust-HDL's own `Bits<N>` is an array of `bool` above 32 bits, but P, V, A and J have 64 bits. A
+//! `Word` is equivalent for kernels and in the Verilog, and simulates about ten times faster. Every
+//! operator wraps at N bits. To obtain a carry, widen the operands first with [`bit_cast`], as is
+//! usual in Rust-HDL.
 
 use rust_hdl::prelude::{Bits, Synth, TypeDescriptor, TypeKind, VCDValue, VerilogLiteral};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Not, Shl, Shr, Sub};
 
-/// N bits, at most 127.
+/// An unsigned word of N bits, where N is at most 127.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
 pub struct Word<const N: usize>(u128);
 
-/// The same number in M bits: zeros come in at the top, or bits fall off there.
+/// Converts a word to M bits. A wider word has zeros in its upper bits; a narrower one loses its
+/// upper bits.
 pub fn bit_cast<const M: usize, const N: usize>(x: Word<N>) -> Word<M> {
     Word::new(x.0)
 }
@@ -19,31 +21,31 @@ pub fn bit_cast<const M: usize, const N: usize>(x: Word<N>) -> Word<M> {
 impl<const N: usize> Word<N> {
     const MASK: u128 = (1 << N) - 1;
 
-    /// The lowest N bits of `value`.
+    /// Makes a word of the lowest N bits of `value`.
     #[inline]
     pub const fn new(value: u128) -> Self {
         Self(value & Self::MASK)
     }
 
-    /// As an unsigned number.
+    /// The word as an unsigned number.
     #[inline]
     pub const fn value(self) -> u128 {
         self.0
     }
 
-    /// Whether any bit is set.
+    /// Returns whether any bit is set.
     #[inline]
     pub const fn any(self) -> bool {
         self.0 != 0
     }
 
-    /// One bit; bit 0 is the lowest.
+    /// Returns one bit. Bit 0 is the lowest.
     #[inline]
     pub const fn get_bit(self, index: usize) -> bool {
         self.0 >> index & 1 == 1
     }
 
-    /// M bits, from bit `index` up.
+    /// Returns M bits, of which the lowest is bit `index` of this word.
     #[inline]
     pub const fn get_bits<const M: usize>(self, index: usize) -> Word<M> {
         Word::new(self.0 >> index)
@@ -57,7 +59,7 @@ impl<const N: usize> From<u64> for Word<N> {
 }
 
 impl<const N: usize> From<i64> for Word<N> {
-    /// Two's complement.
+    /// Converts a signed number to its two's complement.
     fn from(value: i64) -> Self {
         Self::new(i128::from(value) as u128)
     }
@@ -133,7 +135,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn addition_wraps_and_a_widened_addition_carries() {
+    fn word_addition_wraps_and_a_widened_addition_carries() {
         let (a, b) = (Word::<8>::from(200_u64), Word::<8>::from(100_u64));
         assert_eq!((a + b).value(), 44);
         let wide = bit_cast::<9, 8>(a) + bit_cast::<9, 8>(b);
@@ -142,13 +144,13 @@ mod tests {
     }
 
     #[test]
-    fn negative_numbers_are_twos_complement() {
+    fn word_of_a_negative_number_is_its_twos_complement() {
         assert_eq!(Word::<64>::from(-1_i64).value(), u128::from(u64::MAX));
         assert_eq!((Word::<4>::from(0_u64) - Word::from(1_u64)).value(), 15);
     }
 
     #[test]
-    fn verilog_has_all_bits() {
+    fn word_verilog_literal_has_all_bits() {
         assert_eq!(Word::<64>::from(1_u64 << 63).verilog().to_string(), "64'h8000000000000000");
     }
 }

@@ -1,4 +1,5 @@
-//! The shaper's promises on small examples; the proofs and the lock-step are elsewhere.
+//! Checks the shaper's timing on small examples. The proofs of the shaper and the comparison with
+//! the model in every clock are in the workspace's `tests` folder.
 
 use super::*;
 use crate::sim::{assert_synthesizes, rising_edge, settle};
@@ -9,7 +10,8 @@ fn shaper(width: u32, gap: u32, setup: u32, hold: u32) -> Shaper {
     shaper
 }
 
-/// One clock, with a step requested forward (`>`), backward (`<`) or not (`.`); the pins in it.
+/// Runs one clock with a step requested forward (`>`), backward (`<`) or not at all (`.`). Returns
+/// STEP and DIR in that clock.
 fn clock(shaper: &mut Shaper, what: char) -> (bool, bool) {
     shaper.request.next = what != '.';
     shaper.request_back.next = what == '<';
@@ -24,34 +26,34 @@ fn clock(shaper: &mut Shaper, what: char) -> (bool, bool) {
     pins
 }
 
-/// STEP and DIR over these requests, drawn.
+/// Runs one clock for each character of `requests`. Returns drawings of STEP and DIR.
 fn draw(shaper: &mut Shaper, requests: &str) -> (String, String) {
     let level = |high| if high { '^' } else { '_' };
     requests.chars().map(|what| clock(shaper, what)).map(|(step, dir)| (level(step), level(dir))).unzip()
 }
 
 #[test]
-fn width_and_gap() {
+fn shaper_keeps_the_pulse_width_and_the_gap() {
     let (step, dir) = draw(&mut shaper(3, 2, 1, 1), "...>.>.........");
     assert_eq!(step, "____^^^__^^^___");
     assert_eq!(dir, "_______________");
 }
 
 #[test]
-fn set_up_holds_from_the_first_cycle() {
+fn shaper_keeps_the_set_up_time_from_the_first_cycle() {
     let (step, _) = draw(&mut shaper(1, 1, 4, 1), ">........");
     assert_eq!(step, "____^____");
 }
 
 #[test]
-fn a_reversal_keeps_hold_and_set_up() {
+fn reversal_keeps_hold_and_set_up_times() {
     let (step, dir) = draw(&mut shaper(2, 1, 3, 6), "...>.<..............");
     assert_eq!(step, "____^^_______^^_____");
     assert_eq!(dir, "__________^^^^^^^^^^");
 }
 
 #[test]
-fn a_second_owed_step_is_an_overrun_and_is_counted() {
+fn second_step_held_back_is_an_overrun_and_counts_as_discarded() {
     let mut late = shaper(5, 5, 1, 1);
     draw(&mut late, ">.>");
     assert!(late.owed.val() && !late.overrun.val());
@@ -61,7 +63,7 @@ fn a_second_owed_step_is_an_overrun_and_is_counted() {
 }
 
 #[test]
-fn a_freeze_lets_the_pulse_end_and_counts_what_is_lost() {
+fn freeze_lets_the_pulse_end_and_counts_discarded_steps() {
     let mut shaper = shaper(4, 2, 1, 1);
     draw(&mut shaper, ">.>");
     shaper.frozen.next = true;
@@ -72,14 +74,14 @@ fn a_freeze_lets_the_pulse_end_and_counts_what_is_lost() {
 }
 
 #[test]
-fn the_position_counts_both_ways() {
+fn position_counts_steps_in_both_directions() {
     let mut shaper = shaper(1, 1, 1, 1);
     draw(&mut shaper, ">..>..<...<...<...");
     assert_eq!(shaper.position.val(), Word::from(-1_i64));
 }
 
 #[test]
-fn timings_are_checked() {
+fn shaper_rejects_pin_timings_out_of_range() {
     let pins = PinTiming { gap: 0, ..PinTiming::SHORTEST };
     assert_eq!(Shaper::new(&pins).err(), Some(HdlError::PinTiming { name: "gap", clocks: 0 }));
     let pins = PinTiming { hold: MAX_CLOCKS + 1, ..PinTiming::SHORTEST };
