@@ -67,6 +67,8 @@ pub(crate) fn demand<F: Real>(
         Some(time) => given(time, &timebase, file.machine.phase, index)?,
         None => whole(least, &timebase, index)?,
     };
+    let rests = axes.iter().all(|(steps, _)| steps.is_zero());
+    let clock = if rests && clock.ticks < LEAST_TICKS { whole(F::zero(), &timebase, index)? } else { clock };
 
     // Where several axes are refused, the slowest one is named: its time is what all can do.
     let mut worst: Option<(usize, Refusal)> = None;
@@ -120,7 +122,11 @@ fn seconds(ticks: u64, timebase: &Timebase) -> f64 {
     (u128::from(ticks) * u128::from(timebase.tick_ns())) as f64 / 1e9
 }
 
-/// `least` seconds, rounded up to a whole tick, one at least.
+/// Fewest ticks of a move: the engine takes a start at one strobe and follows it at a later one, so starts are two ticks
+/// apart. A move with a step takes longer.
+const LEAST_TICKS: u64 = 2;
+
+/// `least` seconds, rounded up to a whole tick, [`LEAST_TICKS`] at least.
 fn whole<F: Real>(least: F, timebase: &Timebase, index: usize) -> Result<Clock<F>, PlanError> {
     let tick = F::from(timebase.tick_seconds()).unwrap_or_else(F::nan);
     let exact = least / tick;
@@ -128,7 +134,7 @@ fn whole<F: Real>(least: F, timebase: &Timebase, index: usize) -> Result<Clock<F
     // A time that is whole ticks but for its rounding does not cost another tick.
     let noise = F::epsilon() * float(8) * exact;
     let rounded = if (exact - nearest).abs() <= noise { nearest } else { exact.ceil() };
-    let ticks = rounded.to_u64().unwrap_or(u64::MAX).max(1);
+    let ticks = rounded.to_u64().unwrap_or(u64::MAX).max(LEAST_TICKS);
     if ticks > MOST_TICKS {
         let seconds = least.to_f64().unwrap_or(f64::NAN);
         return Err(PlanError::TooLong { index, seconds, tick_ns: timebase.tick_ns() });
