@@ -10,6 +10,7 @@ use std::time::Duration;
 
 /// Three axes; x and y home together behind z, which homes toward its high end.
 const MACHINE: &str = r#"[machine]
+clock_hz = 48_000_000
 tick_ns = 2000
 
 [machine.guard]
