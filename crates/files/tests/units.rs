@@ -134,15 +134,24 @@ fn tick_is_chosen_only_without_tick_ns_at_other_clocks() {
         let machine = at(&format!("clock_hz = {mhz}_000_000"), 6).unwrap();
         assert_eq!(machine.timebase.tick_ns(), tick_ns, "{mhz} MHz");
         machine.engine().check().unwrap();
-        assert_eq!(machine.chosen_tick.map(|chosen| chosen.tick_ns), Some(tick_ns));
+        // At the default clock the tick is not chosen.
+        assert_eq!(machine.chosen_tick.map(|chosen| chosen.tick_ns), (mhz != 80).then_some(tick_ns));
         // With the same tick given explicitly the machine is equal, and no tick was chosen.
         let given = at(&format!("clock_hz = {mhz}_000_000\ntick_ns = {tick_ns}"), 6).unwrap();
         assert_eq!((given.timebase, given.chosen_tick), (machine.timebase, None));
     }
-    for head in ["", "clock_hz = 48_000_000", "phases = 4"] {
+    for head in ["", "clock_hz = 80_000_000", "phases = 4"] {
         let machine = at(head, 6).unwrap();
         assert_eq!((machine.timebase.tick_ns(), machine.chosen_tick), (1000, None), "{head}");
     }
+    // Seven turns do not fit into its tick.
+    for (axes, tick_ns) in [(7, 1200), (8, 1400)] {
+        let machine = at("", axes).unwrap();
+        assert_eq!(machine.chosen_tick.map(|chosen| chosen.tick_ns), Some(tick_ns));
+        machine.engine().check().unwrap();
+    }
+    let machine = at("clock_hz = 48_000_000", 6).unwrap();
+    assert_eq!(machine.chosen_tick.map(|chosen| chosen.tick_ns), Some(2000));
     let error = at("clock_hz = 25_000_000\ntick_ns = 1000", 6).unwrap_err();
     assert_eq!(
         error.help.unwrap(),

@@ -9,6 +9,7 @@ use std::time::Duration;
 /// A machine with two axes. Its watchdog is long, because the computer that runs these tests may be
 /// busy.
 pub const MACHINE: &str = r#"[machine]
+clock_hz = 48_000_000
 tick_ns = 2000
 
 [machine.guard]
@@ -259,11 +260,14 @@ fn impossible_virtual_boards_are_refused() {
         folder.write("bad.toml", machine);
         folder.run(&format!("virtual-board --machine bad.toml{options}"))
     };
-    let at_48 = MACHINE.replace("tick_ns = 2000", "clock_hz = 48_000_000\ntick_ns = 2000");
-    let (odd, place) = edit(&at_48, "baud = 3_000_000", "baud = ^3_100_000");
+    let (odd, place) = edit(MACHINE, "baud = 3_000_000", "baud = ^3_100_000");
     board(&odd, "").refuses_at("bad.toml", place, "the next ones that it makes are 3000000 and 3200000");
-    board(&MACHINE.replace("tick_ns = 2000", "tick_ns = 1000\nclock_hz = 16_000_000\n[machine.other]"), "")
-        .refuses("unknown field `other`");
+    board(
+        &MACHINE
+            .replace("clock_hz = 48_000_000\ntick_ns = 2000", "tick_ns = 1000\nclock_hz = 16_000_000\n[machine.other]"),
+        "",
+    )
+    .refuses("unknown field `other`");
     board(MACHINE, " --min x").refuses("--min x: expected AXIS=STEPS");
     board(MACHINE, " --max z=1").refuses("of an axis of x, y");
     board(MACHINE, " --vcd machine.toml/a.vcd").refuses("machine.toml/a.vcd");

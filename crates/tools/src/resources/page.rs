@@ -17,8 +17,8 @@ pub fn page(rows: &[Measured], links: &[Size], families: &[Mapped]) -> String {
         "# What the engine costs\n\n\
          Written by `cargo xtask resources` with yosys 0.23 and nextpnr 0.4; `tests/system/engine_fits_its_budget.rs` fails where a change goes \
          over budget.\n\
-         The engine is that of `sim/six-axis.toml`: third order, 64-bit registers, queues of seven segments, 16 phases, guard, position \
-         registers, real drivers' timings.\n\
+         The engine is that of `sim/six-axis.toml`, at the clock and tick of the row: third order, 64-bit \
+         registers, queues of seven segments, 16 phases, guard, position registers, real drivers' timings.\n\
          Logic cells are those of the core alone; Fmax is that between registers of core and harness, the best of seeds {SEEDS:?}.\n\n\
          ## iCE40\n\n\
          {ICE40}\n\
