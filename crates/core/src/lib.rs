@@ -15,6 +15,7 @@ pub mod fault;
 pub mod fixed;
 pub mod link;
 pub mod ports;
+mod schedule;
 pub mod segment;
 pub mod tick;
 

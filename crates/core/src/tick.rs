@@ -5,7 +5,7 @@
 //! smallest tick, the grain, of `lcm(phases, clock_hz / gcd(clock_hz, 10^9))` clocks.
 
 use crate::build::{MAX_CLOCK_HZ, MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
-use crate::engine;
+use crate::schedule::least_clocks;
 use alloc::borrow::ToOwned;
 use alloc::format;
 use alloc::string::String;
@@ -78,7 +78,7 @@ impl Ticks {
 
     /// The shortest tick, ns, that an engine of this number of axes supports.
     pub fn for_engine(clock_hz: u64, phases: u32, axes: usize) -> Option<u64> {
-        Self::of(clock_hz, phases)?.shortest(engine::least_clocks(axes, phases))
+        Self::of(clock_hz, phases)?.shortest(least_clocks(axes, phases))
     }
 }
 
@@ -149,7 +149,7 @@ pub fn nearest_ticks(clock_hz: u64, tick_ns: u64, phases: u32, axes: usize) -> S
         (Some(one), None) | (None, Some(one)) => format!("{one} ns is the nearest tick"),
         (None, None) => "there is no tick".to_owned(),
     };
-    let engine = ticks.shortest(engine::least_clocks(axes, phases));
+    let engine = ticks.shortest(least_clocks(axes, phases));
     let engine =
         engine.map_or_else(String::new, |ns| format!("; an engine of {} takes {ns} ns or more", counted(axes)));
     let finer =
@@ -204,7 +204,7 @@ mod tests {
                 for axes in 1..=8 {
                     let fits = |ns: &u64| {
                         Timebase::new(clock_hz, *ns, phases)
-                            .is_ok_and(|time| engine::check_schedule(axes, &time).is_ok())
+                            .is_ok_and(|time| crate::engine::check_schedule(axes, &time).is_ok())
                     };
                     let searched = (1..=200_000_u64).find(fits);
                     assert_eq!(Ticks::for_engine(clock_hz, phases, axes), searched, "{clock_hz} Hz, {phases}, {axes}");
