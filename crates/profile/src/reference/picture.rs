@@ -5,7 +5,7 @@
 
 use crate::reference::curve::Reference;
 use crate::reference::kind::Kind;
-use crate::reference::quantity::Length;
+use crate::reference::length::Length;
 use panel::Panel;
 use plotters::coord::Shift;
 use plotters::prelude::*;
