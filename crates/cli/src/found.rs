@@ -1,7 +1,7 @@
 //! The state of a board and the positions of its axes, as `status` and `stop` print them. It comes
 //! from the board itself or from the command that drives the board.
 
-use crate::control::Holder;
+use crate::holder::Holder;
 use carrystep_core::engine::{CAUSES, Cause};
 use carrystep_link::{Answer, Facts, Status};
 use schemars::JsonSchema;

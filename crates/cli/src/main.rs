@@ -8,13 +8,16 @@ mod connection;
 mod control;
 #[cfg(unix)]
 mod desk;
+mod document;
 mod documents;
 mod drive;
+mod ending;
 mod excerpt;
 mod failure;
 mod figures;
 mod found;
 mod gateware;
+mod holder;
 mod homing;
 mod interrupt;
 mod job;
@@ -35,7 +38,7 @@ fn main() -> ExitCode {
     output::json_is_wanted(std::env::args_os());
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => return failure::usage(&error),
+        Err(error) => return ending::usage(&error),
     };
     let result = match &arguments.command {
         Subcommand::Demo(demo) => commands::demo::run(demo),
@@ -58,10 +61,10 @@ fn main() -> ExitCode {
         Subcommand::Boards(boards) => commands::boards::run(boards),
         Subcommand::Doctor(doctor) => commands::doctor::run(doctor),
         Subcommand::Completions(completions) => commands::completions::run(completions),
-        Subcommand::Schemas(schemas) => commands::schemas::run(schemas),
+        Subcommand::Schemas(schemas) => commands::schemas::run(schemas, &documents::schemas()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.tell(),
+        Err(failure) => ending::tell(failure),
     }
 }

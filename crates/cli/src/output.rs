@@ -2,7 +2,7 @@
 //! when it is complete.
 
 use crate::colour;
-use crate::documents::{Document, Named};
+use crate::document::{Document, Named};
 use crate::failure::Failure;
 use crate::interrupt;
 use carrystep_files::{Claim, NewFile, OutputFailure};

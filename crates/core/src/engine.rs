@@ -23,11 +23,10 @@ pub use cause::{CAUSES, Cause};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
 
+pub use crate::schedule::{MIN_CLOCKS_PER_PHASE, TURN, clocks_of_turns, least_clocks};
+
 /// Greatest number of axes of an engine.
 pub const MAX_AXES: usize = 8;
-
-/// Clocks in a turn, the time slot of one axis in each tick.
-pub const TURN: u32 = 13;
 
 /// The clock within a turn, from 0, in which the axis samples the `put` port.
 pub const PUT_BEAT: u32 = 7;
@@ -49,21 +48,6 @@ pub const MAX_ROUNDS: u32 = (1 << 12) - 1;
 
 /// Greatest number of consecutive samples (looks) that the debounce of a limit can require.
 pub const MAX_LOOKS: u32 = 127;
-
-/// Clocks of the turns of this number of axes, plus the clock that closes the tick.
-pub const fn clocks_of_turns(axes: usize) -> u32 {
-    axes as u32 * TURN + 1
-}
-
-/// Fewest clocks of a tick: enough for the turns of all axes and for the events of all phases.
-pub const fn least_clocks(axes: usize, phases: u32) -> u32 {
-    let (turns, events) = (clocks_of_turns(axes), phases * MIN_CLOCKS_PER_PHASE);
-    if turns > events { turns } else { events }
-}
-
-/// Fewest clocks of a phase. In one clock its events are read; in the others new events are
-/// written.
-pub const MIN_CLOCKS_PER_PHASE: u32 = 2;
 
 /// Checks that the turns of all axes fit into a tick, and that each phase has room for its events.
 ///

@@ -16,6 +16,7 @@ pub mod fixed;
 pub mod link;
 pub mod ports;
 mod profile_kind;
+mod schedule;
 pub mod segment;
 pub mod tick;
 

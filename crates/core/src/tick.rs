@@ -5,7 +5,7 @@
 //! smallest tick, the grain, of `lcm(phases, clock_hz / gcd(clock_hz, 10^9))` clocks.
 
 use crate::build::{MAX_CLOCK_HZ, MAX_CLOCKS, MIN_CLOCKS_PER_TICK};
-use crate::engine;
+use crate::schedule::least_clocks;
 use alloc::borrow::ToOwned;
 use alloc::format;
 use alloc::string::String;
@@ -85,7 +85,7 @@ impl Ticks {
         let common = gcd(tick_ns, NS);
         let (whole, per_phase) = (tick_ns / common, u64::from(phases).max(1));
         let grain = (whole / gcd(whole, per_phase)).checked_mul(per_phase)?;
-        let needed = engine::least_clocks(axes, phases).max(MIN_CLOCKS_PER_TICK);
+        let needed = least_clocks(axes, phases).max(MIN_CLOCKS_PER_TICK);
         let clocks = u64::from(needed).div_ceil(grain) * grain;
         if clocks > u64::from(MAX_CLOCKS) {
             return None;
@@ -96,7 +96,7 @@ impl Ticks {
 
     /// The shortest tick that an engine of so many axes takes, ns.
     pub fn for_engine(clock_hz: u64, phases: u32, axes: usize) -> Option<u64> {
-        Self::of(clock_hz, phases)?.shortest(engine::least_clocks(axes, phases))
+        Self::of(clock_hz, phases)?.shortest(least_clocks(axes, phases))
     }
 }
 
@@ -168,7 +168,7 @@ pub fn nearest_ticks(clock_hz: u64, tick_ns: u64, phases: u32, axes: usize) -> S
         (Some(one), None) | (None, Some(one)) => format!("{one} ns is the nearest tick"),
         (None, None) => "there is no tick".to_owned(),
     };
-    let engine = ticks.shortest(engine::least_clocks(axes, phases));
+    let engine = ticks.shortest(least_clocks(axes, phases));
     let engine =
         engine.map_or_else(String::new, |ns| format!("; an engine of {} takes {ns} ns or more", counted(axes)));
     let finer =
@@ -223,7 +223,7 @@ mod tests {
                 for axes in 1..=8 {
                     let fits = |ns: &u64| {
                         Timebase::new(clock_hz, *ns, phases)
-                            .is_ok_and(|time| engine::check_schedule(axes, &time).is_ok())
+                            .is_ok_and(|time| crate::engine::check_schedule(axes, &time).is_ok())
                     };
                     let searched = (1..=200_000_u64).find(fits);
                     assert_eq!(Ticks::for_engine(clock_hz, phases, axes), searched, "{clock_hz} Hz, {phases}, {axes}");
@@ -239,7 +239,7 @@ mod tests {
                 for axes in 1..=8 {
                     let fits = |hz: &u64| {
                         Timebase::new(*hz, tick_ns, phases)
-                            .is_ok_and(|time| engine::check_schedule(axes, &time).is_ok())
+                            .is_ok_and(|time| crate::engine::check_schedule(axes, &time).is_ok())
                     };
                     let found = Ticks::clock_for_engine(tick_ns, phases, axes);
                     assert!(found.is_none_or(|hz| fits(&hz)), "{tick_ns} ns, {phases}, {axes}: {found:?}");

@@ -1,7 +1,6 @@
 //! The commands of a program for the gateware: segments and starts. A program is checked as a whole
 //! before anything is sent.
 
-use crate::feeder::Source;
 use crate::registers::MOST_AXES;
 use thiserror::Error;
 
@@ -78,6 +77,14 @@ pub enum ProgramError {
     /// none.
     #[error("the drivers have no power: write CONTROL = 1 and wait for `ready` before the first START")]
     NoPower,
+}
+
+/// A source of segments: memory, a file, or a planner that runs at the same time.
+pub trait Source {
+    /// The next segment of an axis; `None` when there are no more.
+    fn segment(&mut self, axis: u8) -> Option<Segment>;
+    /// Mask of the next start; `None` when there are no more.
+    fn start(&mut self) -> Option<u8>;
 }
 
 /// Segments and starts in order, as a [`Source`] that gives each axis its own segments.

@@ -1,17 +1,10 @@
 //! The feeder: sends the segments of a program in the order in which the queues need them, and each
 //! start as early as possible.
 
+pub use crate::command::Source;
 use crate::command::{ProgramError, Segment};
 use crate::frame::Body;
 use crate::registers::{MOST_AXES, START};
-
-/// A source of segments: memory, a file, or a planner that runs at the same time.
-pub trait Source {
-    /// The next segment of an axis; `None` when there are no more.
-    fn segment(&mut self, axis: u8) -> Option<Segment>;
-    /// Mask of the next start; `None` when there are no more.
-    fn start(&mut self) -> Option<u8>;
-}
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Axis {

@@ -7,8 +7,8 @@ mod motion;
 mod state;
 mod time;
 
-pub use error::HostError;
-pub use homing::{AxisHoming, Homed, Homing, HomingFault, Stage, Wiring};
+pub use error::{HomingFault, HostError};
+pub use homing::{AxisHoming, Homed, Homing, Stage, Wiring};
 pub use motion::{Ended, Progress, Wish};
 #[cfg(feature = "std")]
 pub use time::SystemClock;

@@ -19,17 +19,14 @@
 //! undone and passed again up to the fault.
 
 mod crossings;
-mod cubic;
 mod edges;
 mod engine;
 mod lane;
 mod passage;
 mod pins;
 
-pub(crate) use cubic::Cubic;
 pub use edges::{Change, Edge, Edges};
 pub use engine::FastEngine;
-pub(crate) use lane::Moving;
 
 use crate::SixAxis;
 use carrystep_core::Build;

@@ -8,6 +8,9 @@ use carrystep_core::Timebase;
 use carrystep_files::Axis;
 use carrystep_profile::{Limits, Real};
 
+/// The greatest number of segments of one axis in one move. A move that needs more is refused.
+pub(crate) const MOST_SEGMENTS: usize = 1 << 17;
+
 /// Limits in 2^-64 step per tick, per tick^2 and per tick^3, rounded down from the file's decimals.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ExactLimits {

@@ -10,7 +10,7 @@ use crate::demand::Clock;
 use crate::error::Broken;
 use crate::fit::Fitted;
 use crate::landing;
-use crate::limits::ExactLimits;
+use crate::limits::{ExactLimits, MOST_SEGMENTS};
 use crate::share::{self, Piece};
 use crate::units;
 use carrystep_core::{Segment, StartPhase};
@@ -20,9 +20,6 @@ use carrystep_profile::{Profile, Real};
 /// for the 32-bit bisection and for the floats of the profile, which are accurate to 0.3 ns after
 /// 10^6 s.
 const EDGE_SHIFT: f64 = 0.5e-9;
-
-/// The greatest number of segments of one axis in one move. A move that needs more is refused.
-pub(crate) const MOST_SEGMENTS: usize = 1 << 17;
 
 /// Writes the segments of one axis in one move.
 pub(crate) struct Writer<'a, F> {

@@ -10,7 +10,7 @@
 
 use crate::demand::{Clock, float};
 use crate::error::Broken;
-use crate::run::MOST_SEGMENTS;
+use crate::limits::MOST_SEGMENTS;
 use carrystep_core::fixed::ONE_STEP;
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_profile::{Profile, Real};

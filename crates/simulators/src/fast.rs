@@ -1,31 +1,11 @@
 //! Runs the fast model under the host, which can wait for many cycles at once.
 
 use crate::host::Host;
+pub use crate::listener::{EdgesOnly, Listener};
 use crate::replay::Replay;
 use crate::{Job, LevelError, Observer, Outcome, halted, how_far};
 use carrystep_core::ports::Outputs;
 use carrystep_model::Fast;
-use carrystep_model::fast::{Edge, Edges};
-
-/// Receives edges, and the outputs of every cycle in which anything other than the pins may have
-/// changed.
-pub trait Listener<O>: Edges {
-    /// The outputs in this cycle. All edges up to this cycle have been reported.
-    fn outputs(&mut self, cycle: u64, outputs: &O);
-}
-
-/// A listener for edges alone, which ignores the outputs.
-pub struct EdgesOnly<E>(pub E);
-
-impl<E: Edges> Edges for EdgesOnly<E> {
-    fn edge(&mut self, edge: Edge) {
-        self.0.edge(edge);
-    }
-}
-
-impl<E: Edges, O> Listener<O> for EdgesOnly<E> {
-    fn outputs(&mut self, _: u64, _: &O) {}
-}
 
 /// Runs a job on the fast model, and reports every cycle in which any output changed, as the other
 /// levels do.

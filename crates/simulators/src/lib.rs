@@ -13,6 +13,7 @@ pub mod fast;
 pub mod host;
 mod how_far;
 mod icarus;
+mod listener;
 pub mod pins;
 pub mod replay;
 mod tool;

@@ -1,6 +1,6 @@
 //! Reconstructs from edges the outputs of every cycle in which any of them changed.
 
-use crate::fast::Listener;
+use crate::listener::Listener;
 use carrystep_core::PinTiming;
 use carrystep_core::engine::{EngineOutputs, MAX_AXES};
 use carrystep_core::ports::Outputs;

@@ -21,6 +21,13 @@ impl Line {
     }
 }
 
+impl Uart {
+    /// The id of a build with this UART.
+    pub fn build_id(self, build: &EngineBuild) -> BuildId {
+        Line::from(self).build_id(build)
+    }
+}
+
 impl From<Uart> for Line {
     fn from(uart: Uart) -> Self {
         Self::Uart(uart)

@@ -1,7 +1,5 @@
 //! The UART of a build: its baud rate, and the whole number of clocks per bit.
 
-use super::{BuildId, Line};
-use crate::EngineBuild;
 use core::fmt;
 use thiserror::Error;
 
@@ -76,11 +74,6 @@ impl Uart {
     /// Number of clocks of a bit, from [`MIN_BIT_CLOCKS`] to [`MAX_BIT_CLOCKS`].
     pub const fn bit_clocks(self) -> u32 {
         self.bit_clocks
-    }
-
-    /// The id of a build with this UART.
-    pub fn build_id(self, build: &EngineBuild) -> BuildId {
-        Line::from(self).build_id(build)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Errors between a host and a gateware, one variant for each cause.
 
-use super::homing::HomingFault;
 use crate::command::ProgramError;
 use crate::facts::Refusal;
 use crate::registers::CAUSES;
+use crate::travel::TooLong;
 use crate::window::{Foreign, OutOfStep};
 use core::fmt;
 use thiserror::Error;
@@ -88,6 +88,26 @@ pub enum HostError<E> {
         /// The error.
         why: HomingFault,
     },
+}
+
+/// Why homing failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum HomingFault {
+    /// The axis met no limit within its greatest distance of search.
+    #[error("no limit was met within max_travel")]
+    NotFound,
+    /// A limit closed while the axis moved away from its switch.
+    #[error("a limit closed while the axis moved away from its switch")]
+    Closed,
+    /// The switch did not open when the axis moved away from it by `move_off`.
+    #[error("the limit is still closed after moving off")]
+    StillClosed,
+    /// The slow approach did not meet the limit that the search had met.
+    #[error("the slow approach did not find the limit again")]
+    NotAgain,
+    /// A move needs too many ticks.
+    #[error(transparent)]
+    TooLong(TooLong),
 }
 
 /// Displays a number of bytes in words.

@@ -11,7 +11,7 @@
 //! ```
 
 use super::motion::{Ended, Progress, Wish};
-use super::{Clock, Host, HostError};
+use super::{Clock, HomingFault, Host, HostError};
 use crate::command::{ProgramError, Segment};
 use crate::feeder::Source;
 use crate::frame::of_axis;
@@ -22,7 +22,7 @@ use crate::travel::Travel;
 mod request;
 
 use request::{AXES, each};
-pub use request::{AxisHoming, Homed, Homing, HomingFault, Stage, Wiring};
+pub use request::{AxisHoming, Homed, Homing, Stage, Wiring};
 
 /// Result of one move of homing.
 struct Leg {

@@ -1,10 +1,9 @@
 //! One axis of the engine: the calculation of one tick, and the debounced limit inputs. It must
 //! stay equal to "A tick of an axis" and "The guard's inputs" in docs/clock-by-clock.md.
 
-use crate::parallel::axis::Step;
-use crate::parallel::six_axis::Stage;
 use crate::parts::phase::{bisect, crosses};
 use crate::parts::shaper;
+use crate::parts::stage::{Stage, Step};
 use carrystep_core::engine::{Cause, Guard, Limits, QUEUE, SEGMENT_WORDS};
 use std::collections::VecDeque;
 

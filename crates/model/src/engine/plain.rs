@@ -8,7 +8,8 @@
 use super::lane::{Lane, Limit};
 use super::{Engine, LOOK_BEAT, bits};
 use crate::engine::guard::Stop;
-use crate::fast::{Cubic, Moving};
+use crate::parts::cubic::Cubic;
+use crate::parts::moving::Moving;
 use carrystep_core::engine::{EngineInputs, Limits, PUT_BEAT, QUEUE, TURN};
 
 impl Engine {

@@ -2,7 +2,7 @@
 //! tick. Guesses in floating point may be wrong; every result is verified in integers before it is
 //! used.
 
-use super::cubic::{Cubic, first};
+use crate::parts::cubic::{Cubic, first};
 use crate::parts::phase::bisect_all;
 
 /// If a step is expected in this many ticks or fewer, the stretch is added tick by tick: there an

@@ -8,7 +8,7 @@
 use super::edges::{self, Edges};
 use super::passage::{From, Passages};
 use crate::Engine;
-use crate::fast::Moving;
+use crate::parts::moving::Moving;
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{EngineInputs, EngineOutputs, MAX_AXES};
 

@@ -2,24 +2,13 @@
 //! request by request.
 
 use super::crossings::{BATCH, Stretch};
-use super::cubic::Cubic;
 use super::edges::Record;
 use super::pins::{Overrun, Pins};
-use crate::parallel::axis::Step;
-use crate::parallel::six_axis::Stage;
+use crate::parts::cubic::Cubic;
+use crate::parts::moving::Moving;
 use crate::parts::phase::{bisect, crosses};
-use crate::parts::shaper;
+use crate::parts::stage::{Stage, Step};
 use carrystep_core::{PinTiming, Timebase};
-
-/// The part of an axis that changes while strobes only add.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Moving {
-    pub p: u64,
-    pub cubic: Cubic,
-    pub computed: Stage,
-    pub emitted: Stage,
-    pub shaper: shaper::State,
-}
 
 /// A run of clocks that is passed at once; every strobe in it only adds.
 #[derive(Debug, Clone, Copy)]

@@ -1,9 +1,10 @@
 //! Passes all axes through a window of clocks, one after the other, and reports their edges in
 //! order of time. It chooses the length of windows.
 
-use super::cubic::MOST_TICKS;
 use super::edges::{Edges, Window as EdgeWindow};
-use super::lane::{self, FaultIn, Moving, Window};
+use super::lane::{self, FaultIn, Window};
+use crate::parts::cubic::MOST_TICKS;
+use crate::parts::moving::Moving;
 use carrystep_core::engine::MAX_AXES;
 use carrystep_core::{PinTiming, Timebase};
 

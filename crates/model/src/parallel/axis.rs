@@ -12,6 +12,7 @@
 //! replaces V, A and J when it starts; only additions of V ever change P.
 
 use crate::parts::phase::{bisect, crosses};
+pub use crate::parts::stage::Step;
 use carrystep_core::Segment;
 
 /// The registers of one axis.
@@ -33,15 +34,6 @@ pub struct State {
     pub last: bool,
     /// The next segment, held until the running one ends or a start releases it.
     pub waiting: Option<Segment>,
-}
-
-/// A step: its direction, and the phase of the tick in which it falls.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Step {
-    /// True if the step is in the negative direction.
-    pub backward: bool,
-    /// Phase of the tick, 0 to Q - 1.
-    pub phase: u32,
 }
 
 /// The output of one tick.

@@ -10,25 +10,13 @@
 //! emission    |                   |                   | request at phase q, pin one clock later
 //! ```
 
-use crate::fast::{Cubic, Moving};
-use crate::parallel::axis::{self, Step};
+use crate::parallel::axis;
+use crate::parts::cubic::Cubic;
+use crate::parts::moving::Moving;
 use crate::parts::shaper;
+use crate::parts::stage::Stage;
 use carrystep_core::ports::{Inputs, Outputs};
 use carrystep_core::{AXES, Build, Faults};
-
-/// A step between the accumulator and the pins. It advances by one stage per tick.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Stage {
-    pub step: Option<Step>,
-    pub sign: i8,
-}
-
-impl Stage {
-    /// True if the stage holds neither a step nor a direction.
-    pub(crate) const fn is_empty(&self) -> bool {
-        self.step.is_none() && self.sign == 0
-    }
-}
 
 /// One axis: its accumulator, the two stages behind it, its latched faults and its step shaper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 //! The names of the fields are part of `--json` and may not change.
 
 use crate::reference::error::ReferenceError;
-use crate::reference::quantity::Length;
+use crate::reference::length::Length;
 use schemars::JsonSchema;
 use serde::Serialize;
 

@@ -4,7 +4,7 @@
 //! `picture/sampled.rs` computes the points. The look may change freely.
 
 use crate::reference::curve::Reference;
-use crate::reference::quantity::Length;
+use crate::reference::length::Length;
 use carrystep_core::ProfileKind;
 use panel::Panel;
 use plotters::coord::Shift;

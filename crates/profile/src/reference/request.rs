@@ -5,7 +5,8 @@
 use crate::reference::curve::Reference;
 use crate::reference::drive::Drive;
 use crate::reference::error::{ReferenceError, in_words, rounded, up};
-use crate::reference::quantity::{Length, Quantity};
+use crate::reference::length::Length;
+use crate::reference::quantity::Quantity;
 use crate::{Curve, Limit, Limits, Refusal, kinds, rule};
 use carrystep_core::ProfileKind;
 use std::f64::consts::PI;

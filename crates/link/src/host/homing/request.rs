@@ -1,9 +1,9 @@
 //! The parameters of homing, and its possible results.
 
+use crate::host::HomingFault;
 use crate::registers::MOST_AXES;
 use crate::travel::{Gait, TooLong, Travel};
 use core::fmt;
-use thiserror::Error;
 
 /// Number of axes of the largest build.
 pub(super) const AXES: usize = MOST_AXES as usize;
@@ -87,26 +87,6 @@ impl fmt::Display for Stage {
             Self::PullOff => "pulls off",
         })
     }
-}
-
-/// Why homing failed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum HomingFault {
-    /// The axis met no limit within its greatest distance of search.
-    #[error("no limit was met within max_travel")]
-    NotFound,
-    /// A limit closed while the axis moved away from its switch.
-    #[error("a limit closed while the axis moved away from its switch")]
-    Closed,
-    /// The switch did not open when the axis moved away from it by `move_off`.
-    #[error("the limit is still closed after moving off")]
-    StillClosed,
-    /// The slow approach did not meet the limit that the search had met.
-    #[error("the slow approach did not find the limit again")]
-    NotAgain,
-    /// A move needs too many ticks.
-    #[error(transparent)]
-    TooLong(TooLong),
 }
 
 /// How homing ended.

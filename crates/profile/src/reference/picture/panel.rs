@@ -4,7 +4,7 @@
 
 use super::sampled::{Point, Sampled};
 use super::{Area, Clock, GREY, GRID, INK, PictureError, colour, failed, label, number, px, right_label, stroke};
-use crate::reference::quantity::Length;
+use crate::reference::length::Length;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;

@@ -6,7 +6,7 @@
 //! but they are multiplied by 0.
 
 /// The greatest number of ticks in a stretch whose acceleration or jerk is not 0.
-pub(super) const MOST_TICKS: u32 = 1 << 16;
+pub(crate) const MOST_TICKS: u32 = 1 << 16;
 
 /// V, A and J before the first tick of a stretch, in 2^-64 step per tick, tick^2 and tick^3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,7 +106,7 @@ impl Cubic {
 
 /// The least number from `low` to `high` for which `holds` is true. The condition must be
 /// monotonic; `high` is returned if it holds for no smaller number.
-pub(super) fn first(mut low: u32, mut high: u32, holds: impl Fn(u32) -> bool) -> u32 {
+pub(crate) fn first(mut low: u32, mut high: u32, holds: impl Fn(u32) -> bool) -> u32 {
     while low < high {
         let middle = low.midpoint(high);
         if holds(middle) {
