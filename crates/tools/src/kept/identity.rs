@@ -2,6 +2,7 @@
 
 use crate::programs::{ICEBOX_VLOG, ICETIME, PYTHON, Tool, YOSYS, YOSYS_ABC, YOSYS_SMTBMC, Z3};
 use std::collections::HashMap;
+use std::ffi::OsString;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
@@ -21,9 +22,12 @@ pub(super) fn name_of_pip(name: &str) -> String {
     format!("yowasp-{name}")
 }
 
+/// What is known of a tool, by its name and the path on which it is looked for.
+type Known = HashMap<(&'static str, Option<OsString>), String>;
+
 /// A tool and those that it starts: place, size, date and version of each. None where it is not found.
 pub(super) fn of(tool: &Tool) -> Option<String> {
-    static KNOWN: Mutex<Option<HashMap<(&str, Option<std::ffi::OsString>), String>>> = Mutex::new(None);
+    static KNOWN: Mutex<Option<Known>> = Mutex::new(None);
     // Tests change the path on which tools are looked for.
     let key = (tool.name, std::env::var_os("PATH"));
     let mut known = KNOWN.lock().ok()?;
