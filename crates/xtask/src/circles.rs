@@ -29,7 +29,7 @@ pub type Load<'a> = &'a dyn Fn(&Path) -> Option<String>;
 type Arrows = BTreeMap<String, BTreeMap<String, String>>;
 
 /// The modules to which a path leads.
-type Passed = BTreeSet<usize>;
+type Way = BTreeSet<usize>;
 
 /// A module: a file, or a `mod` with a body within one.
 #[derive(Default)]
@@ -102,22 +102,22 @@ impl Modules {
 
     /// The modules through which a path leads that module `at` names. The last of them is in
     /// `Some` if the path names a module and not something in it.
-    fn follow(&self, mut at: usize, path: &[String], depth: usize, passed: &mut Passed) -> Option<usize> {
+    fn follow(&self, mut at: usize, path: &[String], depth: usize, way: &mut Way) -> Option<usize> {
         for name in path {
             at = match name.as_str() {
                 "crate" => 0,
                 "self" => at,
                 "super" => self.0[at].parent?,
-                name => self.named_in(at, name, depth.checked_sub(1)?, passed)?,
+                name => self.named_in(at, name, depth.checked_sub(1)?, way)?,
             };
-            passed.insert(at);
+            way.insert(at);
         }
         Some(at)
     }
 
     /// The module of this name in module `at`. If the name stands for something else, only the
     /// modules on the way to it are noted.
-    fn named_in(&self, at: usize, name: &str, depth: usize, passed: &mut Passed) -> Option<usize> {
+    fn named_in(&self, at: usize, name: &str, depth: usize, way: &mut Way) -> Option<usize> {
         let module = &self.0[at];
         if let Some(&child) = module.children.get(name) {
             return Some(child);
@@ -125,13 +125,13 @@ impl Modules {
         let mut found = None;
         for (own, path) in &module.paths.imports {
             if own == name && path.first() != Some(own) {
-                found = self.follow(at, path, depth, passed).or(found);
+                found = self.follow(at, path, depth, way).or(found);
             }
         }
         module.paths.globs.iter().fold(found, |found, glob| {
             let through = || {
                 let target = self.follow(at, glob, depth, &mut BTreeSet::new())?;
-                self.named_in(target, name, depth.checked_sub(1)?, passed)
+                self.named_in(target, name, depth.checked_sub(1)?, way)
             };
             found.or_else(through)
         })
@@ -146,9 +146,9 @@ impl Modules {
             let mut named: Vec<&Vec<String>> = module.paths.named.iter().collect();
             named.sort_by_key(|path| std::cmp::Reverse(path.len()));
             for path in named {
-                let mut passed = BTreeSet::new();
-                self.follow(at, path, DEEPEST, &mut passed);
-                for other in passed {
+                let mut way = BTreeSet::new();
+                self.follow(at, path, DEEPEST, &mut way);
+                for other in way {
                     let (from, to) = (&module.place, &self.0[other].place);
                     let shared = from.iter().zip(to).take_while(|(from, to)| from == to).count();
                     if let (Some(one), Some(other)) = (from.get(shared), to.get(shared)) {
@@ -168,7 +168,8 @@ impl Modules {
     pub fn circles(&self) -> Vec<String> {
         let mut texts = Vec::new();
         for (folder, arrows) in self.arrows() {
-            let mut circles: Vec<_> = arrows.keys().filter_map(|name| circle(&arrows, name)).collect();
+            let circles = arrows.keys().filter_map(|name| circle(&arrows, name));
+            let mut circles: Vec<Vec<&str>> = circles.collect();
             circles.sort_by_key(Vec::len);
             let mut told = BTreeSet::new();
             for circle in circles {
@@ -268,7 +269,7 @@ mod tests {
             ("src/fast.rs", "mod leap;"),
             ("src/fast/leap.rs", "use crate::Care; pub struct Leap(Care);"),
             ("src/slow.rs", "mod care; pub use care::Care;"),
-            ("src/slow/care.rs", "pub struct Care; fn is() -> bool { matches!(1, crate::fast::ONE) }"),
+            ("src/slow/care.rs", "pub struct Care; fn f() { assert!(crate::fast::ONE) }"),
         ]);
         assert_eq!(found.len(), 1, "{found:?}");
         let begin = "src: fast -> slow -> fast: src/fast/leap.rs names crate::Care; src/slow/care.rs";
