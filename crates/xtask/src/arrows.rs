@@ -1,14 +1,16 @@
 //! The arrows between the crates, read from their `Cargo.toml` files by cargo.
 //!
 //! Cargo itself refuses a circle. What it cannot know is checked here: `core` depends on no other
-//! crate, `model` and `hdl` never reach each other, and `docs/architecture.md` shows the crates as
-//! they are.
+//! crate, `model` and `hdl` never reach each other, the files of a folder depend one way, and
+//! `docs/architecture.md` shows the crates as they are.
 
+use crate::circles::Modules;
 use crate::shell::{self, Done};
-use cargo_metadata::{DependencyKind, MetadataCommand, Package};
+use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::fs;
+use std::path::Path;
 
 const PAGE: &str = "docs/architecture.md";
 const BEGIN: &str = "<!-- `cargo xtask arrows --write` writes from here ... -->\n";
@@ -30,11 +32,15 @@ struct Crate {
     uses: BTreeSet<String>,
 }
 
+/// The workspace, as cargo reads it.
+fn workspace() -> Result<Metadata, String> {
+    let manifest = shell::root().join("Cargo.toml");
+    MetadataCommand::new().manifest_path(manifest).no_deps().exec().map_err(|error| error.to_string())
+}
+
 /// All crates by folder.
 fn crates() -> Result<BTreeMap<String, Crate>, String> {
-    let manifest = shell::root().join("Cargo.toml");
-    let metadata =
-        MetadataCommand::new().manifest_path(manifest).no_deps().exec().map_err(|error| error.to_string())?;
+    let metadata = workspace()?;
     let crates = metadata.workspace_packages().into_iter().filter_map(|package| {
         let folder = package.manifest_path.parent()?;
         (folder.parent()?.file_name()? == "crates").then(|| of(folder.file_name().unwrap_or_default(), package))
@@ -114,7 +120,21 @@ pub fn write() -> Done {
     fs::write(shell::root().join(PAGE), after).map_err(|error| format!("{PAGE}: {error}"))
 }
 
-/// Fails on an arrow that may not be, and where the page shows others.
+/// The circles between files of the same folder, in all targets of all crates.
+fn circles() -> Result<BTreeSet<String>, String> {
+    let load = |file: &Path| fs::read_to_string(shell::root().join(file)).ok();
+    let metadata = workspace()?;
+    let mut circles = BTreeSet::new();
+    for target in metadata.workspace_packages().into_iter().flat_map(|package| &package.targets) {
+        let root = target.src_path.as_std_path();
+        let root = root.strip_prefix(shell::root()).unwrap_or(root);
+        let modules = Modules::read(root, &load)?;
+        circles.extend(modules.circles());
+    }
+    Ok(circles)
+}
+
+/// Fails on an arrow that may not be, on a circle of files, and where the page shows others.
 pub fn check() -> Done {
     let crates = crates()?;
     for (one, other) in STRANGERS {
@@ -126,6 +146,11 @@ pub fn check() -> Done {
     }
     if let Some(used) = reached(&crates, LOWEST).first() {
         return Err(format!("crates/{LOWEST} depends on crates/{used}: it may depend on none"));
+    }
+    let circles = circles()?;
+    if !circles.is_empty() {
+        let circles = circles.into_iter().collect::<Vec<String>>().join("\n");
+        return Err(format!("files of the same folder need each other in a circle:\n{circles}"));
     }
     let (before, after) = page()?;
     if before != after {

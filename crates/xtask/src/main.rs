@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod arrows;
+mod circles;
 mod decisions;
 mod ladder;
 mod long;
@@ -45,7 +46,7 @@ enum Chore {
         #[arg(long)]
         write: bool,
     },
-    /// Check the arrows between the crates, and their drawing in `docs/architecture.md`.
+    /// Check the arrows between the crates and between the files of a folder, and their drawing in `docs/architecture.md`.
     Arrows {
         /// Write the drawing anew.
         #[arg(long)]

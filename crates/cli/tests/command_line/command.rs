@@ -1,6 +1,6 @@
 //! Runs the command in a temporary folder of its own.
 
-use crate::documents;
+use crate::schemas;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
 use tempfile::TempDir;
@@ -111,7 +111,7 @@ impl Folder {
         };
         assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
         if command.get_args().any(|argument| argument == "--json") {
-            documents::check(&ran.stdout);
+            schemas::check(&ran.stdout);
         }
         assert!(!ran.stderr.contains('\u{1b}'), "colours where no terminal is: {}", ran.stderr);
         ran
@@ -124,7 +124,7 @@ impl Ran {
     #[track_caller]
     pub fn refuses(&self, says: &str) {
         assert_eq!(self.status, 2, "{}{}", self.stdout, self.stderr);
-        assert!(self.stdout.is_empty() || documents::check(&self.stdout)["passed"] == false, "{}", self.stdout);
+        assert!(self.stdout.is_empty() || schemas::check(&self.stdout)["passed"] == false, "{}", self.stdout);
         assert!(self.stderr.contains(says), "wanted: {says}\nfound:\n{}", self.stderr);
     }
 

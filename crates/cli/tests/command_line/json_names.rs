@@ -2,7 +2,7 @@
 
 use crate::boards::{Peer, Port, folder};
 use crate::command::{Folder, GOOD};
-use crate::documents;
+use crate::schemas;
 use serde_json::Value;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
@@ -104,7 +104,7 @@ fn document(folder: &Folder, arguments: &str, status: i32, expected: &[&str]) ->
 
 #[track_caller]
 fn is_document(text: &str, arguments: &str, status: i32, expected: &[&str]) -> Value {
-    let document = documents::check(text);
+    let document = schemas::check(text);
     assert_eq!(document["passed"], status == 0, "{arguments}");
     let mut found = Vec::new();
     names(&document, "", &mut found);

@@ -34,6 +34,7 @@ mod machine_new;
 mod outputs;
 mod plots;
 mod profile;
+mod schemas;
 #[cfg(unix)]
 mod stop_on_the_wire;
 #[cfg(unix)]
