@@ -3,7 +3,7 @@
 // carrystep_link: the host link of an engine. Generated: change the generator, not this file.
 //
 // Made from    machine.toml for Digilent Cmod S7
-// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 // Clock        80000000 Hz
 // Line         uart, 27 clocks a bit
 // Build id     5e21d66f82ac1c23

@@ -3,7 +3,7 @@
 // carrystep_link: the host link of an engine. Generated: change the generator, not this file.
 //
 // Made from    machine.toml for Lattice iCE40-HX8K-B-EVN
-// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 // Clock        75000000 Hz
 // Line         uart, 25 clocks a bit
 // Build id     af6c64cb6e82ac99

@@ -3,7 +3,7 @@
 // carrystep_link: the host link of an engine. Generated: change the generator, not this file.
 //
 // Made from    machine.toml for 1BitSquared iCEBreaker V1.0
-// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 // Clock        37500000 Hz
 // Line         uart, 19 clocks a bit
 // Build id     1086d52cd6b55a1b

@@ -3,7 +3,7 @@
 // carrystep_engine: step and direction for six axes. Generated: change the generator, not this file.
 //
 // Made from    machine.toml for Muselab iCESugar v1.5
-// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 // Clock        30000000 Hz
 // Tick         3200 ns, 96 clocks in 16 phases
 // Latency      193 clocks from the load of a move to the edge of its tick 1, phase 0

@@ -3,7 +3,7 @@
 // carrystep_link: the host link of an engine. Generated: change the generator, not this file.
 //
 // Made from    machine.toml for Embedded Micro (Alchitry) Mojo v3
-// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 // Clock        80000000 Hz
 // Line         uart, 160 clocks a bit
 // Build id     57336b646218b9ad

@@ -3,7 +3,7 @@
 // carrystep_link: the host link of an engine. Generated: change the generator, not this file.
 //
 // Made from    machine.toml for Digilent Spartan-3 Starter Kit (S3BOARD)
-// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 // Clock        40000000 Hz
 // Line         uart, 347 clocks a bit
 // Build id     9882a366781dc977

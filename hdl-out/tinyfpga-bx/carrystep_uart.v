@@ -3,7 +3,7 @@
 // carrystep_uart: the line to the host. Generated: change the generator, not this file.
 //
 // Made from    machine.toml for TinyFPGA BX
-// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 // Line         uart, 20 clocks a bit
 
 `default_nettype none

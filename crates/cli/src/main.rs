@@ -26,6 +26,7 @@ mod memory;
 mod output;
 mod progress;
 #[cfg(unix)]
+mod shipped;
 mod switches;
 mod table;
 mod wanted;

@@ -5,21 +5,14 @@ use crate::commands::verilog;
 use crate::failure::{Failure, refused};
 use crate::job::{self, Done};
 use crate::output::{self, write_file};
+use crate::shipped::{MACHINE, MACHINE_FILE};
 use crate::wanted::Wanted;
-use carrystep_files::{Machine, MoveFile};
+use carrystep_files::MoveFile;
 use carrystep_plan::plan;
 use std::path::Path;
 
-/// The file name of the shipped machine.
-pub const MACHINE_FILE: &str = "six-axis.toml";
-const MACHINE: &str = include_str!("../../../../sim/six-axis.toml");
+/// The move file of the demo.
 const MOVES: &str = include_str!("../../../../sim/demo.toml");
-
-/// The shipped machine.
-pub fn machine() -> Result<Machine, Failure> {
-    let source = carrystep_files::Source { path: MACHINE_FILE.into(), text: MACHINE.into() };
-    Ok(Machine::from_source(&source)?)
-}
 
 /// Plans, exports, simulates and checks the demo, writes its files and prints the report.
 pub fn run(arguments: &Demo) -> Result<(), Failure> {

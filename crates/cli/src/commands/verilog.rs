@@ -2,10 +2,10 @@
 //! its toolchain needs.
 
 use crate::arguments::{Core, Verilog};
-use crate::commands::{boards, demo};
+use crate::commands::boards;
 use crate::failure::Failure;
 use crate::gateware;
-use crate::output;
+use crate::{output, shipped};
 use carrystep_core::engine::GuardFigures;
 use carrystep_core::link::Uart;
 use carrystep_files::Machine;
@@ -39,7 +39,7 @@ pub fn run(arguments: &Verilog) -> Result<(), Failure> {
     }
     let (machine, name) = match &arguments.machine {
         Some(path) => (Machine::load(path)?, path.display().to_string()),
-        None => (demo::machine()?, SHIPPED.to_owned()),
+        None => (shipped::machine()?, SHIPPED.to_owned()),
     };
     let out = arguments.out.as_deref().unwrap_or(Path::new("hdl-out/core"));
     let written = write(arguments.core, out, &machine, &name)?;
