@@ -67,12 +67,12 @@ proptest! {
     }
 
     #[test]
-    fn mixed_moves_land_within_their_limits_and_the_edge_bound(case in random_moves(Pace::Any, &ProfileKind::ALL)) {
+    fn mixed_moves_land_within_their_limits_and_the_edge_bound(case in random_moves(Pace::Any, ProfileKind::ALL)) {
         verified(&case);
     }
 
     #[test]
-    fn plans_in_f32_land_exactly(case in random_moves(Pace::Any, &ProfileKind::ALL)) {
+    fn plans_in_f32_land_exactly(case in random_moves(Pace::Any, ProfileKind::ALL)) {
         for file in case.files() {
             match plan::<f32>(&file) {
                 Ok(plan) => verify(&file, &plan, None),

@@ -39,7 +39,7 @@ impl Gateware<'_> {
         match self {
             Self::Parallel(job) => {
                 let outcome = carrystep_simulators::run(level, job, &mut |cycle, outputs| {
-                    watch(cycle, outputs.step, outputs.dir)
+                    watch(cycle, outputs.step, outputs.dir);
                 })?;
                 let (positions, faults) = (outcome.last.position.to_vec(), outcome.last.faults);
                 Ok(Ended { clocks: outcome.clocks, positions, fault: faults.any().then(|| faults.to_string()) })
