@@ -41,7 +41,7 @@ fn any_request() -> impl Strategy<Value = Request> {
 }
 
 fn any_kind() -> impl Strategy<Value = ProfileKind> {
-    prop::sample::select(&ProfileKind::ALL[..])
+    prop::sample::select(ProfileKind::ALL)
 }
 
 /// Checks that no limit is exceeded. The speed limit of a ramp is its own top speed, and the jerk
