@@ -116,8 +116,8 @@ pub const ANSWER: [Field; 13] = [
 /// The names of the causes, in documentation and messages, by number.
 ///
 /// ```
-/// use crate::engine::Cause;
-/// use crate::link::CAUSE_NAMES;
+/// use carrystep_core::engine::Cause;
+/// use carrystep_core::link::CAUSE_NAMES;
 /// assert_eq!(CAUSE_NAMES[Cause::Limit as usize], "limit");
 /// ```
 pub const CAUSE_NAMES: [&str; CAUSES.len()] =

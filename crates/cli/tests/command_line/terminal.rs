@@ -14,6 +14,9 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// A pseudo-terminal on which a command runs with all three of its streams.
 pub struct Screen {
     ours: TTYPort,
+    /// Held open: after the last close of this end, what a quick command has written and nobody has
+    /// read yet would be lost.
+    _theirs: TTYPort,
     child: Child,
     seen: String,
     looked_at: usize,
@@ -27,8 +30,7 @@ impl Screen {
         ours.set_timeout(Duration::from_millis(20)).unwrap();
         let open = || File::options().read(true).write(true).open(&name).unwrap();
         let child = command.stdin(open()).stdout(open()).stderr(open()).env("TERM", "xterm").spawn().unwrap();
-        drop(theirs);
-        Self { ours, child, seen: String::new(), looked_at: 0 }
+        Self { ours, _theirs: theirs, child, seen: String::new(), looked_at: 0 }
     }
 
     /// Reads the available output; returns false if there is none.

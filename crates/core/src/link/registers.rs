@@ -87,7 +87,7 @@ super::constants! {
 /// The address of a register of an axis.
 ///
 /// ```
-/// use crate::link::registers::{POSITION, of_axis};
+/// use carrystep_core::link::registers::{POSITION, of_axis};
 /// assert_eq!(of_axis(POSITION, 3), 0x5a);
 /// ```
 pub const fn of_axis(register: u8, axis: u8) -> u8 {

@@ -44,7 +44,7 @@ impl Uart {
     /// The UART of this baud rate (bits per second) at a clock (Hz).
     ///
     /// ```
-    /// use crate::link::Uart;
+    /// use carrystep_core::link::Uart;
     /// assert_eq!(Uart::new(48_000_000, 921_600).unwrap().bit_clocks(), 52);
     /// assert!(Uart::new(48_000_000, 5_600_000).is_err());
     /// ```
