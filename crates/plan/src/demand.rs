@@ -5,6 +5,7 @@ use crate::limits::float_limits;
 use crate::line;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, rule};
+use carrystep_spec::engine::SEGMENT_WORDS;
 use carrystep_spec::{MoveFile, PathKind, ProfileKind, StartPhase, Timebase};
 use std::sync::Arc;
 
@@ -68,7 +69,12 @@ pub(crate) fn demand<F: Real>(
         None => whole(least, &timebase, index)?,
     };
     let rests = axes.iter().all(|(steps, _)| steps.is_zero());
-    let clock = if rests && clock.ticks < LEAST_TICKS { whole(F::zero(), &timebase, index)? } else { clock };
+    let clock = if rests && clock.ticks < LEAST_TICKS {
+        let shortest = F::from(seconds(LEAST_TICKS, &timebase)).unwrap_or_else(F::nan);
+        whole(shortest, &timebase, index)?
+    } else {
+        clock
+    };
 
     // Where several axes are refused, the slowest one is named: its time is what all can do.
     let mut worst: Option<(usize, Refusal)> = None;
@@ -122,11 +128,11 @@ fn seconds(ticks: u64, timebase: &Timebase) -> f64 {
     (u128::from(ticks) * u128::from(timebase.tick_ns())) as f64 / 1e9
 }
 
-/// Fewest ticks of a move: the engine takes a start at one strobe and follows it at a later one, so starts are two ticks
-/// apart. A move with a step takes longer.
-const LEAST_TICKS: u64 = 2;
+/// Fewest ticks of a move without distance, so that there may be any number of them in a row: the engine is handed a segment
+/// of each axis in eight ticks, and it takes a start at one strobe and follows it at a later one.
+const LEAST_TICKS: u64 = SEGMENT_WORDS as u64 + 1 + 2;
 
-/// `least` seconds, rounded up to a whole tick, [`LEAST_TICKS`] at least.
+/// `least` seconds, rounded up to a whole tick, one at least.
 fn whole<F: Real>(least: F, timebase: &Timebase, index: usize) -> Result<Clock<F>, PlanError> {
     let tick = F::from(timebase.tick_seconds()).unwrap_or_else(F::nan);
     let exact = least / tick;
@@ -134,7 +140,7 @@ fn whole<F: Real>(least: F, timebase: &Timebase, index: usize) -> Result<Clock<F
     // A time that is whole ticks but for its rounding does not cost another tick.
     let noise = F::epsilon() * float(8) * exact;
     let rounded = if (exact - nearest).abs() <= noise { nearest } else { exact.ceil() };
-    let ticks = rounded.to_u64().unwrap_or(u64::MAX).max(LEAST_TICKS);
+    let ticks = rounded.to_u64().unwrap_or(u64::MAX).max(1);
     if ticks > MOST_TICKS {
         let seconds = least.to_f64().unwrap_or(f64::NAN);
         return Err(PlanError::TooLong { index, seconds, tick_ns: timebase.tick_ns() });
