@@ -6,6 +6,7 @@ use crate::error::PlanError;
 use crate::limits::float_limits;
 use crate::line;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
+use carrystep_core::engine::SEGMENT_WORDS;
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_files::{MoveFile, PathKind};
 use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, kinds};
@@ -77,7 +78,12 @@ pub(crate) fn demand<F: Real>(
         None => whole(least, &timebase, index)?,
     };
     let rests = axes.iter().all(|(steps, _)| steps.is_zero());
-    let clock = if rests && clock.ticks < LEAST_TICKS { whole(F::zero(), &timebase, index)? } else { clock };
+    let clock = if rests && clock.ticks < LEAST_TICKS {
+        let shortest = F::from(seconds(LEAST_TICKS, &timebase)).unwrap_or_else(F::nan);
+        whole(shortest, &timebase, index)?
+    } else {
+        clock
+    };
 
     // Where several axes refuse the time, the error names the slowest one: its least time works for
     // all axes.
@@ -110,11 +116,12 @@ fn seconds(ticks: u64, timebase: &Timebase) -> f64 {
     (u128::from(ticks) * u128::from(timebase.tick_ns())) as f64 / 1e9
 }
 
-/// Fewest ticks of a move. The engine takes a start at one strobe and follows it at a later one, so
-/// starts are two ticks apart. A move with a step takes longer.
-const LEAST_TICKS: u64 = 2;
+/// Fewest ticks of a move without distance, so that any number of them can follow each other. The host
+/// sends the engine a segment of each axis in eight ticks, and the engine takes a start at one strobe
+/// and follows it at a later one.
+const LEAST_TICKS: u64 = SEGMENT_WORDS as u64 + 1 + 2;
 
-/// Rounds `least` seconds up to whole ticks, at least [`LEAST_TICKS`].
+/// Rounds `least` seconds up to whole ticks, at least one.
 fn whole<F: Real>(least: F, timebase: &Timebase, index: usize) -> Result<Clock<F>, PlanError> {
     let tick = F::from(timebase.tick_seconds()).unwrap_or_else(F::nan);
     let exact = least / tick;
@@ -122,7 +129,7 @@ fn whole<F: Real>(least: F, timebase: &Timebase, index: usize) -> Result<Clock<F
     // A time that differs from whole ticks only by float rounding does not cost another tick.
     let noise = F::epsilon() * float(8) * exact;
     let rounded = if (exact - nearest).abs() <= noise { nearest } else { exact.ceil() };
-    let ticks = rounded.to_u64().unwrap_or(u64::MAX).max(LEAST_TICKS);
+    let ticks = rounded.to_u64().unwrap_or(u64::MAX).max(1);
     if ticks > MOST_TICKS {
         let seconds = least.to_f64().unwrap_or(f64::NAN);
         return Err(PlanError::TooLong { index, seconds, tick_ns: timebase.tick_ns() });
