@@ -201,7 +201,7 @@ fn a_tick_of_the_engine_has_the_clocks_that_the_page_says() {
     // The least whole number of MHz that gives this number of clocks in a tick of 1 us, and of 2
     // us.
     let mhz = |us: u32| six.div_ceil(us);
-    assert!(text.contains("a 1 us tick wants 80 MHz, a 2 us tick 40 MHz"), "{} {}", mhz(1), mhz(2));
+    assert!(text.contains("a 1 us tick needs 80 MHz, a 2 us tick 40 MHz"), "{} {}", mhz(1), mhz(2));
     assert!([mhz(1), mhz(2)].iter().zip([80, 40]).all(|(&needed, said)| needed <= said && said - needed < 2));
 }
 
