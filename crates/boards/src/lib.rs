@@ -1,5 +1,5 @@
 //! Boards as data: the parts on a board, the function of each pin, and the clocks that it can make.
-//! Each board is one file of `data/boards/`; a new board also needs its entry in `DATA`.
+//! Each board is one file of `data/boards/`, which the build script lists.
 
 use crate::clock::ClockManager;
 use carrystep_core::engine::Limits;
@@ -29,23 +29,8 @@ pub use port::{OSCILLATOR, PORTS, Port, Way};
 /// and the usual ones.
 pub const BAUDS: [u32; 7] = [3_000_000, 2_000_000, 1_500_000, 1_000_000, 500_000, 230_400, 115_200];
 
-/// The boards' files, in the order in which boards are listed.
-const DATA: [&str; 14] = [
-    include_str!("../data/boards/icestick.toml"),
-    include_str!("../data/boards/icebreaker.toml"),
-    include_str!("../data/boards/tinyfpga-bx.toml"),
-    include_str!("../data/boards/alchitry-cu.toml"),
-    include_str!("../data/boards/hx8k-evn.toml"),
-    include_str!("../data/boards/upduino3.toml"),
-    include_str!("../data/boards/icesugar.toml"),
-    include_str!("../data/boards/s3board.toml"),
-    include_str!("../data/boards/nexys2.toml"),
-    include_str!("../data/boards/papilio-one.toml"),
-    include_str!("../data/boards/papilio-pro.toml"),
-    include_str!("../data/boards/mojo-v3.toml"),
-    include_str!("../data/boards/arty-s7.toml"),
-    include_str!("../data/boards/cmod-s7.toml"),
-];
+/// The boards' files in the order of their names: path in this crate, and text.
+const DATA: &[(&str, &str)] = &include!(concat!(env!("OUT_DIR"), "/boards.rs"));
 
 /// A board. All entries of its file have been checked against each other.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
@@ -183,14 +168,16 @@ pub struct Tie {
     pub why: String,
 }
 
-/// All boards that carrystep ships.
+/// All boards that carrystep ships, by family and name.
 pub fn boards() -> &'static [Board] {
     static BOARDS: LazyLock<Vec<Board>> = LazyLock::new(|| {
-        let read = |text: &&str| {
-            let source = Source { path: "data/boards".into(), text: (*text).into() };
+        let read = |&(path, text): &(&str, &str)| {
+            let source = Source { path: path.into(), text: text.into() };
             Board::from_source(&source).unwrap_or_else(|error| unreachable!("{error}"))
         };
-        DATA.iter().map(read).collect()
+        let mut boards: Vec<Board> = DATA.iter().map(read).collect();
+        boards.sort_by(|a, b| (a.family, &a.name).cmp(&(b.family, &b.name)));
+        boards
     });
     &BOARDS
 }
