@@ -1,5 +1,10 @@
 //! Boards as data: the parts on a board, the function of each pin, and the clocks that it can make.
 //! Each board is one file of `data/boards/`, which the build script lists.
+//!
+//! A new board of a known family is its file; `cargo xtask long boards` measures it, and `cargo xtask
+//! generate` writes its pages and its directory. A new family is a variant of [`Family`], a file of
+//! `family/` and its templates. If no known clock manager and no known program fits it, it needs these
+//! too: `clock.rs` with a file of `clock/`, and `crates/tools/src/programs.rs`.
 
 use crate::clock::ClockManager;
 use carrystep_core::engine::Limits;
@@ -18,12 +23,14 @@ mod measured;
 mod port;
 mod raw;
 mod reach;
+mod toolchain;
 
 pub use configuration::{Gate, Mode, Shared};
 pub use error::BoardError;
-pub use family::{Family, IoStandard, PllInput, Toolchain};
+pub use family::{Family, FpgaFamily, IoStandard, PllInput};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
 pub use port::{OSCILLATOR, PORTS, Port, Way};
+pub use toolchain::{ISE, Toolchain};
 
 /// The baud rates that are proposed, the fastest first: rates that USB serial chips make exactly,
 /// and the usual ones.
@@ -94,6 +101,8 @@ pub struct Board {
 /// An FPGA.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Part {
+    #[serde(skip)]
+    family: Family,
     /// Name of the part, such as `hx1k` or `xc3s400`.
     pub name: String,
     /// Package, such as `tq144` or `ft256`.
@@ -231,7 +240,7 @@ impl Board {
     /// # Errors
     /// [`BoardError::Clock`] if it cannot be made; it names the nearest possible clock.
     pub fn clock(&self, clock_hz: u64) -> Result<ClockManager, BoardError> {
-        self.family.clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
+        self.family.facts().clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
             board: self.name.clone(),
             source,
             proposed: self.proposed(None),
@@ -303,11 +312,11 @@ impl Part {
     /// The part's order name as ISE and Vivado use it: `xc3s400-ft256-4`, `xc7s25csga324-1`. For an
     /// iCE40, its name and package.
     pub fn ordered(&self) -> String {
-        let Self { name, package, speed, .. } = self;
-        match speed {
-            None => format!("iCE40{}-{}", name.to_uppercase(), package.to_uppercase()),
-            Some(speed) if name.starts_with("xc7") => format!("{name}{package}-{speed}"),
-            Some(speed) => format!("{name}-{package}-{speed}"),
-        }
+        self.family.facts().ordered(self)
+    }
+
+    /// The speed grade with a hyphen before it, as the last part of an order name.
+    fn speed_suffix(&self) -> String {
+        self.speed.map_or_else(String::new, |speed| format!("-{speed}"))
     }
 }
