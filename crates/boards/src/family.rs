@@ -7,6 +7,7 @@ use crate::toolchain::Toolchain;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use strum::IntoStaticStr;
 
 mod ice40;
 mod spartan3;
@@ -109,31 +110,24 @@ impl fmt::Display for Family {
 }
 
 /// Electrical standard of a pin, which is determined by the voltage of its bank.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, IntoStaticStr, JsonSchema, Serialize, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+#[strum(serialize_all = "UPPERCASE")]
 pub enum IoStandard {
     /// 3.3 V.
-    #[serde(rename = "LVCMOS33")]
     Lvcmos33,
     /// 3.3 V.
-    #[serde(rename = "LVTTL")]
     Lvttl,
     /// 2.5 V.
-    #[serde(rename = "LVCMOS25")]
     Lvcmos25,
     /// 1.8 V.
-    #[serde(rename = "LVCMOS18")]
     Lvcmos18,
 }
 
 impl IoStandard {
     /// The name of the standard in UCF and XDC files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Lvcmos33 => "LVCMOS33",
-            Self::Lvttl => "LVTTL",
-            Self::Lvcmos25 => "LVCMOS25",
-            Self::Lvcmos18 => "LVCMOS18",
-        }
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 
     /// Supply voltage of the pin's bank, mV.
