@@ -13,6 +13,7 @@
 use carrystep_core::tick::mhz;
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::fmt;
 use thiserror::Error;
 
 mod dcm;
@@ -35,6 +36,21 @@ pub enum ClockManager {
     Dcm(Dcm),
     /// The MMCM of a Spartan-7.
     Mmcm(Mmcm),
+}
+
+impl fmt::Display for ClockManager {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Oscillator => f.write_str("the oscillator"),
+            Self::Ice40Pll(Ice40Pll { divr, divf, divq, filter_range }) => {
+                write!(f, "PLL: DIVR {divr}, DIVF {divf}, DIVQ {divq}, FILTER_RANGE {filter_range}")
+            }
+            Self::Dcm(Dcm { multiply, divide }) => write!(f, "DCM: x {multiply} / {divide}"),
+            Self::Mmcm(Mmcm { multiply, divide, out_divide }) => {
+                write!(f, "MMCM: x {multiply} / {divide} / {out_divide}")
+            }
+        }
+    }
 }
 
 /// The clock manager of a family, with the ranges of its frequencies.

@@ -1,13 +1,22 @@
 //! FPGA families: their toolchains, their clock managers and the electrical standards of their
-//! pins.
+//! pins. A new family is a variant of [`Family`] and a file of the folder `family`.
 
+use crate::Part;
 use crate::clock::ClockManagers;
+use crate::toolchain::Toolchain;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use strum::IntoStaticStr;
 
-/// An FPGA family.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
+mod ice40;
+mod spartan3;
+mod spartan3e;
+mod spartan6;
+mod spartan7;
+
+/// An FPGA family. Boards are listed in the order of these variants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Family {
     /// Lattice iCE40 LP, HX and UltraPlus.
@@ -22,112 +31,103 @@ pub enum Family {
     Spartan7,
 }
 
-/// The tools that make a bitstream.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Toolchain {
-    /// yosys, nextpnr and icestorm.
-    Open,
-    /// ISE 14.7.
-    Ise,
-    /// Vivado.
-    Vivado,
-}
+/// What differs between FPGA families. Each family implements it in a file of its own; nothing else
+/// asks which family a board has. Names of templates are those of `crates/verilog/templates/board`.
+pub trait FpgaFamily: Sync {
+    /// Name of the family, as its maker writes it.
+    fn title(&self) -> &'static str;
 
-impl Family {
     /// The toolchain that makes the family's bitstreams.
-    pub const fn toolchain(self) -> Toolchain {
-        match self {
-            Self::Ice40 => Toolchain::Open,
-            Self::Spartan3 | Self::Spartan3e | Self::Spartan6 => Toolchain::Ise,
-            Self::Spartan7 => Toolchain::Vivado,
-        }
-    }
+    fn toolchain(&self) -> &'static Toolchain;
 
     /// The name of the family in yosys' `synth_xilinx`; `None` for an iCE40, which has a command of
     /// its own.
-    pub const fn yosys(self) -> Option<&'static str> {
-        match self {
-            Self::Ice40 => None,
-            Self::Spartan3 => Some("xc3s"),
-            Self::Spartan3e => Some("xc3se"),
-            Self::Spartan6 => Some("xc6s"),
-            Self::Spartan7 => Some("xc7"),
-        }
+    fn yosys(&self) -> Option<&'static str> {
+        None
     }
 
     /// Whether the family's block RAMs can write a part of a word. A Spartan-3 or 3E has only one
     /// write enable per port (Xilinx UG331, 2011, "Using Block RAM"). Memories that are written bit
     /// by bit are then made of LUTs.
-    pub const fn writes_parts_of_words(self) -> bool {
-        !matches!(self, Self::Spartan3 | Self::Spartan3e)
+    fn writes_parts_of_words(&self) -> bool {
+        true
     }
 
     /// The family's clock manager. The DCM's ranges are intended to be those of the slowest speed
     /// grade in the low-frequency mode, but they were written from memory. Look them up in the data
     /// sheets (DS099, DS312, DS162) before you rely on a clock near their ends.
-    pub const fn clock_managers(self) -> ClockManagers {
-        const fn dcm(least_in: u64, least_out: u64, most_out: u64) -> ClockManagers {
-            ClockManagers::Dcm { least_in, least_out, most_out }
-        }
+    fn clock_managers(&self) -> ClockManagers;
+
+    /// The cell of the clock manager, for a board with this input of its PLL.
+    fn clock_cell(&self, pll: Option<PllInput>) -> &'static str;
+
+    /// Template of the clock module.
+    fn clock_template(&self) -> &'static str;
+
+    /// Extension of the bitstream.
+    fn bitstream(&self) -> &'static str {
+        "bit"
+    }
+
+    /// Whether its parts are sold in speed grades.
+    fn has_speed_grades(&self) -> bool {
+        true
+    }
+
+    /// Whether a board's file says how the oscillator reaches the PLL.
+    fn has_pll_input(&self) -> bool {
+        false
+    }
+
+    /// The supplies VCCAUX, V, of which a board's file names one; none if it names none.
+    fn vccaux(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// The order name of a part, as the toolchain uses it.
+    fn ordered(&self, part: &Part) -> String {
+        format!("{}-{}{}", part.name, part.package, part.speed_suffix())
+    }
+}
+
+impl Family {
+    /// What differs between this family and others.
+    pub fn facts(self) -> &'static dyn FpgaFamily {
         match self {
-            Self::Ice40 => ClockManagers::Ice40,
-            Self::Spartan3 => dcm(1_000_000, 18_000_000, 210_000_000),
-            Self::Spartan3e => dcm(1_000_000, 5_000_000, 311_000_000),
-            Self::Spartan6 => dcm(1_000_000, 5_000_000, 311_000_000),
-            Self::Spartan7 => ClockManagers::Mmcm,
+            Self::Ice40 => &ice40::Ice40,
+            Self::Spartan3 => &spartan3::Spartan3,
+            Self::Spartan3e => &spartan3e::Spartan3e,
+            Self::Spartan6 => &spartan6::Spartan6,
+            Self::Spartan7 => &spartan7::Spartan7,
         }
     }
 }
 
 impl fmt::Display for Family {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Ice40 => "iCE40",
-            Self::Spartan3 => "Spartan-3",
-            Self::Spartan3e => "Spartan-3E",
-            Self::Spartan6 => "Spartan-6",
-            Self::Spartan7 => "Spartan-7",
-        })
-    }
-}
-
-impl fmt::Display for Toolchain {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Open => "yosys, nextpnr-ice40, icestorm",
-            Self::Ise => "ISE 14.7",
-            Self::Vivado => "Vivado",
-        })
+        f.write_str(self.facts().title())
     }
 }
 
 /// Electrical standard of a pin, which is determined by the voltage of its bank.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, IntoStaticStr, JsonSchema, Serialize, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+#[strum(serialize_all = "UPPERCASE")]
 pub enum IoStandard {
     /// 3.3 V.
-    #[serde(rename = "LVCMOS33")]
     Lvcmos33,
     /// 3.3 V.
-    #[serde(rename = "LVTTL")]
     Lvttl,
     /// 2.5 V.
-    #[serde(rename = "LVCMOS25")]
     Lvcmos25,
     /// 1.8 V.
-    #[serde(rename = "LVCMOS18")]
     Lvcmos18,
 }
 
 impl IoStandard {
     /// The name of the standard in UCF and XDC files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Lvcmos33 => "LVCMOS33",
-            Self::Lvttl => "LVTTL",
-            Self::Lvcmos25 => "LVCMOS25",
-            Self::Lvcmos18 => "LVCMOS18",
-        }
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 
     /// Supply voltage of the pin's bank, mV.

@@ -1,5 +1,10 @@
 //! Boards as data: the parts on a board, the function of each pin, and the clocks that it can make.
-//! Each board is one file of `data/boards/`; a new board also needs its entry in `DATA`.
+//! Each board is one file of `data/boards/`, which the build script lists.
+//!
+//! A new board of a known family is its file; `cargo xtask long boards` measures it, and `cargo xtask
+//! generate` writes its pages and its directory. A new family is a variant of [`Family`], a file of
+//! `family/` and its templates. If no known clock manager and no known program fits it, it needs these
+//! too: `clock.rs` with a file of `clock/`, and `crates/tools/src/programs.rs`.
 
 use crate::clock::ClockManager;
 use carrystep_core::engine::Limits;
@@ -18,34 +23,21 @@ mod measured;
 mod port;
 mod raw;
 mod reach;
+mod toolchain;
 
 pub use configuration::{Gate, Mode, Shared};
 pub use error::BoardError;
-pub use family::{Family, IoStandard, PllInput, Toolchain};
+pub use family::{Family, FpgaFamily, IoStandard, PllInput};
 pub use measured::{AllMeasured, MEASURED_AT, Mapped, Measured, Placed};
 pub use port::{OSCILLATOR, PORTS, Port, Way};
+pub use toolchain::{ISE, Toolchain};
 
 /// The baud rates that are proposed, the fastest first: rates that USB serial chips make exactly,
 /// and the usual ones.
 pub const BAUDS: [u32; 7] = [3_000_000, 2_000_000, 1_500_000, 1_000_000, 500_000, 230_400, 115_200];
 
-/// The boards' files, in the order in which boards are listed.
-const DATA: [&str; 14] = [
-    include_str!("../data/boards/icestick.toml"),
-    include_str!("../data/boards/icebreaker.toml"),
-    include_str!("../data/boards/tinyfpga-bx.toml"),
-    include_str!("../data/boards/alchitry-cu.toml"),
-    include_str!("../data/boards/hx8k-evn.toml"),
-    include_str!("../data/boards/upduino3.toml"),
-    include_str!("../data/boards/icesugar.toml"),
-    include_str!("../data/boards/s3board.toml"),
-    include_str!("../data/boards/nexys2.toml"),
-    include_str!("../data/boards/papilio-one.toml"),
-    include_str!("../data/boards/papilio-pro.toml"),
-    include_str!("../data/boards/mojo-v3.toml"),
-    include_str!("../data/boards/arty-s7.toml"),
-    include_str!("../data/boards/cmod-s7.toml"),
-];
+/// The boards' files in the order of their names: path in this crate, and text.
+const DATA: &[(&str, &str)] = &include!(concat!(env!("OUT_DIR"), "/boards.rs"));
 
 /// A board. All entries of its file have been checked against each other.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
@@ -109,6 +101,8 @@ pub struct Board {
 /// An FPGA.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Part {
+    #[serde(skip)]
+    family: Family,
     /// Name of the part, such as `hx1k` or `xc3s400`.
     pub name: String,
     /// Package, such as `tq144` or `ft256`.
@@ -183,14 +177,16 @@ pub struct Tie {
     pub why: String,
 }
 
-/// All boards that carrystep ships.
+/// All boards that carrystep ships, by family and name.
 pub fn boards() -> &'static [Board] {
     static BOARDS: LazyLock<Vec<Board>> = LazyLock::new(|| {
-        let read = |text: &&str| {
-            let source = Source { path: "data/boards".into(), text: (*text).into() };
+        let read = |&(path, text): &(&str, &str)| {
+            let source = Source { path: path.into(), text: text.into() };
             Board::from_source(&source).unwrap_or_else(|error| unreachable!("{error}"))
         };
-        DATA.iter().map(read).collect()
+        let mut boards: Vec<Board> = DATA.iter().map(read).collect();
+        boards.sort_by(|a, b| (a.family, &a.name).cmp(&(b.family, &b.name)));
+        boards
     });
     &BOARDS
 }
@@ -244,7 +240,7 @@ impl Board {
     /// # Errors
     /// [`BoardError::Clock`] if it cannot be made; it names the nearest possible clock.
     pub fn clock(&self, clock_hz: u64) -> Result<ClockManager, BoardError> {
-        self.family.clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
+        self.family.facts().clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
             board: self.name.clone(),
             source,
             proposed: self.proposed(None),
@@ -316,11 +312,11 @@ impl Part {
     /// The part's order name as ISE and Vivado use it: `xc3s400-ft256-4`, `xc7s25csga324-1`. For an
     /// iCE40, its name and package.
     pub fn ordered(&self) -> String {
-        let Self { name, package, speed, .. } = self;
-        match speed {
-            None => format!("iCE40{}-{}", name.to_uppercase(), package.to_uppercase()),
-            Some(speed) if name.starts_with("xc7") => format!("{name}{package}-{speed}"),
-            Some(speed) => format!("{name}-{package}-{speed}"),
-        }
+        self.family.facts().ordered(self)
+    }
+
+    /// The speed grade with a hyphen before it, as the last part of an order name.
+    fn speed_suffix(&self) -> String {
+        self.speed.map_or_else(String::new, |speed| format!("-{speed}"))
     }
 }

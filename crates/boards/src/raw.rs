@@ -168,7 +168,7 @@ impl Reader<'_> {
             led_low: raw.led_low,
             max_baud: raw.max_baud,
             flash: raw.flash.into_inner(),
-            bitstream: raw.bitstream.unwrap_or_else(|| if family == Family::Ice40 { "bin" } else { "bit" }.to_owned()),
+            bitstream: raw.bitstream.unwrap_or_else(|| family.facts().bitstream().to_owned()),
             bitgen: raw.bitgen,
             usb: raw.usb.map(Spanned::into_inner),
             notes: raw.notes,
@@ -203,21 +203,21 @@ impl Reader<'_> {
                 return self.refuse(usb.span(), "vendor and product are expected, as in 0403:6010");
             }
         }
-        match (&raw.pll, family == Family::Ice40) {
+        match (&raw.pll, family.facts().has_pll_input()) {
             (None, true) => {
                 return self.refuse(raw.family.span(), "an iCE40 needs `pll`: \"pad\" or \"core\"");
             }
             (Some(pll), false) => return self.refuse(pll.span(), format!("`pll` is an iCE40's, not a {family}'s")),
             _ => {}
         }
-        match (&raw.vccaux, family == Family::Spartan6) {
-            (None, true) => {
+        match (&raw.vccaux, family.facts().vccaux()) {
+            (None, [_, ..]) => {
                 return self.refuse(raw.family.span(), "a Spartan-6 needs `vccaux`: \"2.5\" or \"3.3\"");
             }
-            (Some(volts), false) => {
+            (Some(volts), []) => {
                 return self.refuse(volts.span(), format!("`vccaux` is a Spartan-6's, not a {family}'s"));
             }
-            (Some(volts), true) if !["2.5", "3.3"].contains(&volts.as_ref().as_str()) => {
+            (Some(volts), supplies) if !supplies.contains(&volts.as_ref().as_str()) => {
                 return self.refuse(volts.span(), "VCCAUX is \"2.5\" or \"3.3\"");
             }
             _ => {}
@@ -234,14 +234,15 @@ impl Reader<'_> {
         let mut parts: Vec<Part> = Vec::new();
         for spanned in &raw.part {
             let RawPart { name, package, speed, logic_cells, block_rams } = spanned.as_ref();
-            if speed.is_none() != (family == Family::Ice40) {
+            if speed.is_some() != family.facts().has_speed_grades() {
                 return self.refuse(spanned.span(), "a Spartan needs a `speed` grade, an iCE40 has none");
             }
             if parts.iter().any(|part| part.name == *name) {
                 return self.refuse(spanned.span(), format!("two parts are called '{name}'"));
             }
             let (name, package) = (name.clone(), package.clone());
-            parts.push(Part { name, package, speed: *speed, logic_cells: *logic_cells, block_rams: *block_rams });
+            let (speed, logic_cells, block_rams) = (*speed, *logic_cells, *block_rams);
+            parts.push(Part { family, name, package, speed, logic_cells, block_rams });
         }
         if parts.is_empty() { self.refuse(raw.family.span(), "a board without a [[part]]") } else { Ok(parts) }
     }
@@ -346,7 +347,7 @@ impl Reader<'_> {
         let span = timebase.span();
         let RawTimebase { clock_hz, tick_ns, phases, why } = timebase.into_inner();
         let at_clock = |error: &dyn fmt::Display| InputError::at(self.source, clock_hz.span(), error.to_string());
-        let made_by = board.family.clock_managers().solve(board.oscillator.hz, *clock_hz.as_ref());
+        let made_by = board.family.facts().clock_managers().solve(board.oscillator.hz, *clock_hz.as_ref());
         let made_by = made_by.map_err(|error| at_clock(&error))?;
         let checked = Timebase::new(*clock_hz.as_ref(), tick_ns, phases);
         let checked = checked.map_err(|error| InputError::at(self.source, span.clone(), error.to_string()))?;

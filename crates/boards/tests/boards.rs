@@ -3,9 +3,10 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_boards::{Board, Family, Mode, OSCILLATOR, PORTS, board, boards};
+use carrystep_boards::{Board, Mode, OSCILLATOR, PORTS, board, boards};
 use carrystep_core::engine::Limits;
 use carrystep_files::{InputError, Source};
+use std::path::Path;
 
 const ICESTICK: &str = include_str!("../data/boards/icestick.toml");
 const MOJO: &str = include_str!("../data/boards/mojo-v3.toml");
@@ -15,14 +16,19 @@ fn read(text: &str) -> Result<Board, InputError> {
     Board::from_source(&Source { path: "board.toml".into(), text: text.into() })
 }
 
+/// Every file of the folder is a board, and has the name of its board.
 #[test]
-fn every_board_is_listed_once() {
+fn every_file_is_listed_once_by_family_and_name() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/boards");
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<String> = files.map(|file| file.file_stem().unwrap().to_str().unwrap().to_owned()).collect();
     let mut names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
-    assert_eq!(names.len(), 14);
     assert!(names.iter().all(|name| board(name).unwrap().name == *name));
-    names.dedup();
-    assert_eq!(names.len(), 14);
-    assert_eq!(boards().iter().filter(|board| board.family == Family::Ice40).count(), 7);
+    assert!(boards().is_sorted_by_key(|board| (board.family, &board.name)));
+    files.sort();
+    names.sort();
+    assert_eq!(names, files);
+    assert!(names.len() >= 14, "a board is gone: {names:?}");
 }
 
 #[test]
@@ -182,12 +188,11 @@ fn request_that_a_board_cannot_satisfy_is_refused_with_alternatives() {
     let icestick = board("icestick").unwrap();
     let said = |error: &dyn std::error::Error| error.to_string();
     let unknown = said(&board("icestik").unwrap_err());
-    assert!(
-        unknown
-            .starts_with("no board is called 'icestik' (did you mean 'icestick'?); there are icestick, icebreaker, "),
-        "{unknown}"
+    let names: Vec<&str> = boards().iter().map(|board| board.name.as_str()).collect();
+    assert_eq!(
+        unknown,
+        format!("no board is called 'icestik' (did you mean 'icestick'?); there are {}", names.join(", "))
     );
-    assert!(unknown.ends_with(", cmod-s7"), "{unknown}");
     let s3board = board("s3board").unwrap();
     assert_eq!(s3board.part(None).unwrap().ordered(), "xc3s400-ft256-4");
     assert_eq!(

@@ -8,6 +8,7 @@ mod table;
 
 use carrystep_simulators::Level;
 use carrystep_sweep::Shard;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser};
 pub use machine::{Machine, MachineCommand, MachineNew};
 #[cfg(unix)]
@@ -15,6 +16,8 @@ pub use port::{BoardLevel, VirtualBoard};
 pub use port::{Home, Jog, Peer, Port, Run, Status, Stop};
 pub use profile::Profile;
 use std::path::PathBuf;
+use std::str::FromStr;
+use strum::{EnumString, IntoStaticStr, VariantArray};
 pub use table::{Table, TableKind};
 
 /// Every carry is a step: plan stepper moves for an FPGA that only adds, simulate its gateware
@@ -86,7 +89,8 @@ pub enum Subcommand {
 }
 
 /// The core that the gateware is built from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, EnumString, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "lowercase")]
 pub enum Core {
     /// One adder for all axes, with queues and a guard: the product, on boards and everywhere else.
     Engine,
@@ -95,15 +99,9 @@ pub enum Core {
 }
 
 impl Core {
-    /// Both cores.
-    const ALL: [Self; 2] = [Self::Engine, Self::Parallel];
-
     /// The name of the core on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Engine => "engine",
-            Self::Parallel => "parallel",
-        }
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 }
 
@@ -327,13 +325,19 @@ pub struct Schemas {
     pub out: PathBuf,
 }
 
-fn core() -> impl clap::builder::TypedValueParser<Value = Core> {
-    use clap::builder::{PossibleValuesParser, TypedValueParser};
-    let named = |name: &str| Core::ALL.into_iter().find(|core| core.name() == name).ok_or("no such core");
-    PossibleValuesParser::new(Core::ALL.map(Core::name)).try_map(move |name| named(&name))
+fn core() -> impl TypedValueParser<Value = Core> {
+    named()
 }
 
-fn level() -> impl clap::builder::TypedValueParser<Value = Level> {
-    use clap::builder::{PossibleValuesParser, TypedValueParser};
-    PossibleValuesParser::new(Level::ALL.map(Level::name)).try_map(|name| name.parse::<Level>())
+fn level() -> impl TypedValueParser<Value = Level> {
+    named()
+}
+
+/// Accepts the names of an enumeration's variants. `ValueEnum` would add the variants' own texts to
+/// the help.
+fn named<T>() -> impl TypedValueParser<Value = T>
+where
+    T: VariantArray + Copy + Into<&'static str> + FromStr<Err = strum::ParseError> + Send + Sync,
+{
+    PossibleValuesParser::new(T::VARIANTS.iter().map(|&variant| variant.into())).try_map(|name| name.parse::<T>())
 }

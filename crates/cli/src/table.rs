@@ -5,6 +5,8 @@ use carrystep_core::Segment;
 use carrystep_files::unit::digits;
 use carrystep_files::{Axis, MoveFile, Unit, decimal};
 use carrystep_plan::Plan;
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, Table};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
@@ -157,16 +159,11 @@ pub fn columns<const N: usize>(
     rows: impl Iterator<Item = [String; N]>,
     left: fn(usize) -> bool,
 ) -> fmt::Result {
-    let rows: Vec<[String; N]> = std::iter::once(head.map(str::to_owned)).chain(rows).collect();
-    let widths: [usize; N] =
-        std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
-    for row in &rows {
-        let cell = |(column, cell): (usize, &String)| {
-            let width = widths[column];
-            if left(column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
-        };
-        let line = row.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ");
-        writeln!(out, "{}", line.trim_end())?;
+    let mut table = Table::new();
+    table.load_style(NOTHING).set_header(head).add_rows(rows);
+    for (index, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((0, 2));
+        column.set_cell_alignment(if left(index) { CellAlignment::Left } else { CellAlignment::Right });
     }
-    Ok(())
+    writeln!(out, "{}", table.trim_fmt())
 }

@@ -18,7 +18,7 @@ const AXES: u8 = 6;
 /// Runs a program whose segments are so long that the queues do not run empty while the line
 /// repeats frames.
 fn run(client: &mut dyn Client, segments: usize, seed: u64, faults: Faults) -> Outcome {
-    let commands = program(&mut Random(seed), AXES, segments, 20 * TICKS);
+    let commands = program(&mut Random::new(seed), AXES, segments, 20 * TICKS);
     let outcome = soak(client, &commands, Soak { faults, seed, axes: AXES, bugs: Bugs::default() });
     outcome.unwrap_or_else(|words| panic!("seed {seed}: {words}"))
 }
@@ -60,7 +60,7 @@ proptest! {
     /// bytes.
     #[test]
     fn any_line_executes_a_prefix_of_the_program_once_and_in_order(faults in faults(), seed: u64, axes in 1..=8_u8, segments in 1..120_usize) {
-        let commands = program(&mut Random(seed), axes, segments, 20 * TICKS);
+        let commands = program(&mut Random::new(seed), axes, segments, 20 * TICKS);
         let how = Soak { faults, seed, axes, bugs: Bugs::default() };
         let rust = soak(&mut RustClient::default(), &commands, how).map_err(TestCaseError::fail)?;
         prop_assert!(matches!(rust.fault, None | Some(6)), "{rust:?}");

@@ -63,7 +63,7 @@ fn gateware_that_stops_answering_is_reported_as_lost() {
     let mut host = connect(&end, Some(BUILD)).unwrap();
     host.enable().unwrap();
     end.0.borrow_mut().peer = Peer::Nobody;
-    let commands = program(&mut Random(11), 6, 100, 20 * TICKS);
+    let commands = program(&mut Random::new(11), 6, 100, 20 * TICKS);
     let error = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap_err();
     assert!(matches!(error, HostError::Lost { bytes: 0, .. }), "{error}");
     // An idle hour between two calls does not count as silence.
@@ -99,7 +99,7 @@ fn stop_is_executed_within_three_exchanges() {
     let end = End::new();
     let mut host = connect(&end, Some(BUILD)).unwrap();
     host.enable().unwrap();
-    let commands = program(&mut Random(5), 6, 400, 20 * TICKS);
+    let commands = program(&mut Random::new(5), 6, 400, 20 * TICKS);
     for wished in [1, 2, 3, 5, 8, 13, 21, 34, 55] {
         let (mut exchanges, mut asked) = (0, 0);
         let program = Program::new(&commands, 6).unwrap();

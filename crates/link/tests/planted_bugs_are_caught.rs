@@ -68,7 +68,7 @@ fn verdict(client: &mut dyn Client) -> Result<(), String> {
 }
 
 fn run(client: &mut dyn Client, bugs: Bugs) -> Result<(), String> {
-    let commands = program(&mut Random(7), 6, 800, 20 * TICKS);
+    let commands = program(&mut Random::new(7), 6, 800, 20 * TICKS);
     let outcome = soak(client, &commands, Soak { faults: Faults::BAD, seed: 7, axes: 6, bugs })?;
     outcome.fault.map_or(Ok(()), |cause| Err(format!("the machine stopped: {cause}")))
 }

@@ -116,11 +116,11 @@ fn library_has_no_undefined_behaviour_on_noise() {
     for (name, text) in scripts() {
         converse(&mut client, &text).unwrap_or_else(|words| panic!("{name}: {words}"));
     }
-    let commands = program(&mut Random(21), 8, 1000, 20 * TICKS);
+    let commands = program(&mut Random::new(21), 8, 1000, 20 * TICKS);
     let how = Soak { faults: Faults::BAD, seed: 21, axes: 8, bugs: Default::default() };
     assert_eq!(soak(&mut client, &commands, how).unwrap().fault, None);
     // A long run of noise.
-    let mut random = Random(22);
+    let mut random = Random::new(22);
     for _ in 0..300 {
         let noise: Vec<u8> =
             (0..200).map(|_| [random.next() as u8, 0xc0, 0xdb][(random.next() % 3) as usize]).collect();

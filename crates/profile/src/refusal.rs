@@ -4,6 +4,7 @@
 
 use crate::profile::{Real, real};
 use std::fmt;
+use strum::Display;
 use thiserror::Error;
 
 /// The limits of one axis.
@@ -30,15 +31,19 @@ impl<F: Real> Limits<F> {
 }
 
 /// A limit of an axis, named by its key in the machine file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Display)]
 pub enum Limit {
     /// `start_speed`, steps/s.
+    #[strum(to_string = "start_speed")]
     StartSpeed,
     /// `speed_limit`, steps/s.
+    #[strum(to_string = "speed_limit")]
     Speed,
     /// `accel_limit`, steps/s^2.
+    #[strum(to_string = "accel_limit")]
     Acceleration,
     /// `jerk_limit`, steps/s^3.
+    #[strum(to_string = "jerk_limit")]
     Jerk,
 }
 
@@ -60,17 +65,6 @@ impl Limit {
             Self::Acceleration => "steps/s^2",
             Self::Jerk => "steps/s^3",
         }
-    }
-}
-
-impl fmt::Display for Limit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::StartSpeed => "start_speed",
-            Self::Speed => "speed_limit",
-            Self::Acceleration => "accel_limit",
-            Self::Jerk => "jerk_limit",
-        })
     }
 }
 

@@ -23,16 +23,16 @@ mod verilator;
 use carrystep_core::ports::Outputs;
 use carrystep_core::{Build, Program};
 use carrystep_tools::programs::Tool;
-use std::fmt;
 use std::path::PathBuf;
-use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
+use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 use thiserror::Error;
 
 pub use how_far::{HowFar, Stage};
 
-/// A level: the implementation on which a program is run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+/// A level: the implementation on which a program is run. The fastest is the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Display, EnumString, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Level {
     /// The fast model of `crates/model`, which computes from edge to edge.
     Fast,
@@ -47,32 +47,9 @@ pub enum Level {
 }
 
 impl Level {
-    /// All levels, the fastest first.
-    pub const ALL: [Self; 5] = [Self::Fast, Self::Model, Self::RustHdl, Self::Icarus, Self::Verilator];
-
     /// Name of the level on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Fast => "fast",
-            Self::Model => "model",
-            Self::RustHdl => "rust-hdl",
-            Self::Icarus => "icarus",
-            Self::Verilator => "verilator",
-        }
-    }
-}
-
-impl fmt::Display for Level {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Level {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        Self::ALL.into_iter().find(|level| level.name() == name).ok_or_else(|| format!("no level is called '{name}'"))
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 }
 

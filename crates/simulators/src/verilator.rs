@@ -4,7 +4,7 @@
 
 use crate::tool::{self, VERILATOR};
 use crate::{Job, LevelError, Observer, Outcome, cache, external};
-use std::hash::{DefaultHasher, Hash, Hasher};
+use sha2::{Digest, Sha256};
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::Mutex;
@@ -49,9 +49,15 @@ impl Simulation<'_> {
         let Self { name, top, bench, options } = *self;
         tool::find(&VERILATOR)?;
         let cache = cache::folder()?;
-        let mut hash = DefaultHasher::new();
-        (verilog, bench, top, options, OPTIONS, env!("CARGO_PKG_VERSION")).hash(&mut hash);
-        let binary = cache.join(format!("{name}_{:016x}", hash.finish()));
+        let mut hash = Sha256::new();
+        let of = [verilog, bench, top, env!("CARGO_PKG_VERSION")].into_iter();
+        for text in of.chain(options.iter().copied()).chain(OPTIONS.iter().copied()) {
+            // The length keeps texts apart that follow each other.
+            hash.update((text.len() as u64).to_le_bytes());
+            hash.update(text);
+        }
+        let hash: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        let binary = cache.join(format!("{name}_{hash}"));
         let _one_at_a_time = COMPILER.lock();
         if !cache::holds(&binary)? {
             let folder = tempfile::tempdir_in(&cache).map_err(tool::io("cannot make a temporary folder"))?;

@@ -5,6 +5,7 @@ use crate::SynthesisError;
 use crate::tool::YOSYS;
 use regex::Regex;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// The models of a vendor's cells.
 pub(crate) struct Library {
@@ -48,9 +49,8 @@ pub(crate) fn models(library: &Library, verilog: &str) -> Result<String, Synthes
 }
 
 fn text(library: &Library) -> Result<String, SynthesisError> {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let folder = std::env::split_paths(&path).find(|folder| folder.join(YOSYS.name).is_file());
-    let file = folder.unwrap_or_default().join(library.file);
+    let yosys = which::which_global(YOSYS.name).ok();
+    let file = yosys.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).join(library.file);
     let context = || format!("cannot read yosys' models, {}", file.display());
     std::fs::read_to_string(&file).map_err(|source| SynthesisError::Io { context: context(), source })
 }

@@ -69,6 +69,9 @@ pub const XST: Tool =
 /// Synthesises, places and routes for Spartan-7.
 pub const VIVADO: Tool = tool("vivado", None, "Vivado", &["Vivado from AMD, then source its settings64.sh"]);
 
+/// Programs that make bitstreams. The boards' toolchains name them.
+pub const FLOWS: [Tool; 6] = [YOSYS, NEXTPNR, ICEPACK, ICETIME, XST, VIVADO];
+
 /// Programs that load a bitstream into a board.
 pub const PROGRAMMERS: [Tool; 6] = [
     tool("iceprog", None, "loading", &["sudo apt-get install fpga-icestorm"]),

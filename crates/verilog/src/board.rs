@@ -13,11 +13,12 @@ pub(crate) use page::pages;
 
 use crate::ExportError;
 use crate::write::TextFile;
-use carrystep_boards::{Board, BoardError, OSCILLATOR, PORTS, Part, Place, Port, Tie, Toolchain, Way, Wire};
+use carrystep_boards::{Board, BoardError, OSCILLATOR, PORTS, Part, Place, Port, Tie, Way, Wire};
 use carrystep_core::link::Uart;
 use carrystep_core::tick::mhz;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, UndefinedBehavior, Value, context};
+use std::sync::LazyLock;
 
 /// A top level for a board.
 #[derive(Debug, Clone)]
@@ -43,22 +44,6 @@ pub struct Design<'a> {
 /// Name of the clock module, which the top level instantiates. It has the ports `oscillator` (in)
 /// and `clock` (out).
 pub const CLOCK_NAME: &str = "carrystep_clock";
-
-/// Constraint files: template and extension.
-const PCF: (&str, &str) = (include_str!("../templates/board/top.pcf"), "pcf");
-const UCF: (&str, &str) = (include_str!("../templates/board/top.ucf"), "ucf");
-const XDC: (&str, &str) = (include_str!("../templates/board/top.xdc"), "xdc");
-
-const README: &str = include_str!("../templates/board/readme.md");
-
-/// Script files: name and template. `TOP` in a name becomes the name of the top module.
-const OPEN: &[(&str, &str)] = &[("build.sh", include_str!("../templates/board/open.sh"))];
-const ISE: &[(&str, &str)] = &[
-    ("build.sh", include_str!("../templates/board/ise.sh")),
-    ("TOP.xst", include_str!("../templates/board/top.xst")),
-    ("TOP.prj", include_str!("../templates/board/top.prj")),
-];
-const VIVADO: &[(&str, &str)] = &[("build.tcl", include_str!("../templates/board/vivado.tcl"))];
 
 impl Design<'_> {
     /// All files except the gateware, in this order: the clock's Verilog, constraints, scripts,
@@ -87,11 +72,8 @@ impl Design<'_> {
     /// # Errors
     /// [`ExportError::Board`] if a port has no pin.
     pub fn constraints(&self) -> Result<TextFile, ExportError> {
-        let (template, extension) = match self.board.family.toolchain() {
-            Toolchain::Open => PCF,
-            Toolchain::Ise => UCF,
-            Toolchain::Vivado => XDC,
-        };
+        let template = self.board.family.facts().toolchain().constraints;
+        let extension = template.rsplit('.').next().unwrap_or_default();
         Ok(TextFile::new(format!("{}.{extension}", self.top), self.render(template)?))
     }
 
@@ -100,17 +82,12 @@ impl Design<'_> {
     /// # Errors
     /// [`ExportError::Board`] if a port has no pin.
     pub fn scripts(&self) -> Result<Vec<TextFile>, ExportError> {
-        let scripts = match self.board.family.toolchain() {
-            Toolchain::Open => OPEN,
-            Toolchain::Ise => ISE,
-            Toolchain::Vivado => VIVADO,
-        };
         let file = |&(name, template): &(&str, &str)| {
             let name = name.replace("TOP", &self.top);
             let executable = name.ends_with(".sh");
             Ok(TextFile { name, text: self.render(template)?, executable })
         };
-        scripts.iter().map(file).collect()
+        self.board.family.facts().toolchain().scripts.iter().map(file).collect()
     }
 
     /// The readme: the wiring, and how to build and load the bitstream.
@@ -118,13 +95,14 @@ impl Design<'_> {
     /// # Errors
     /// [`ExportError::Board`] if a port has no pin.
     pub fn readme(&self) -> Result<TextFile, ExportError> {
-        Ok(TextFile::new("README.md".to_owned(), self.render(README)?))
+        Ok(TextFile::new("README.md".to_owned(), self.render("readme.md")?))
     }
 
     fn render(&self, template: &str) -> Result<String, ExportError> {
         let Self { board, part, clock_hz, ref top, sources, .. } = *self;
         let pins = self.ports.iter().map(|port| self.pin(port)).collect::<Result<Vec<_>, _>>()?;
         let bitstream = format!("{top}.{}", board.bitstream);
+        let family = board.family.facts();
         let values = context! {
             board => context! { name => &board.name, title => &board.title },
             part => context! { name => &part.name, package => &part.package, ordered => part.ordered() },
@@ -134,11 +112,7 @@ impl Design<'_> {
             ties => ties(board),
             gate => gate(board, clock_hz),
             notes => &board.notes,
-            toolchain => match board.family.toolchain() {
-                Toolchain::Open => "open",
-                Toolchain::Ise => "ise",
-                Toolchain::Vivado => "vivado",
-            },
+            commands => family.toolchain().commands.to_vec(),
             io => board.io.name(),
             vccaux => &board.vccaux,
             oscillator => context! {
@@ -150,7 +124,7 @@ impl Design<'_> {
             },
             mhz => mhz(clock_hz),
             baud => self.uart.map(Uart::baud),
-            yosys => board.family.yosys(),
+            yosys => family.yosys(),
             bitgen => &board.bitgen,
             flash => board.flash.replace("FILE", &bitstream),
             bitstream,
@@ -176,13 +150,18 @@ impl Design<'_> {
     }
 }
 
-/// Renders a template. Lines of block tags leave no empty lines; a name that has no value is an
-/// error.
+/// Renders a template of `templates/board`. Lines of block tags leave no empty lines; a name that has
+/// no value is an error.
 fn rendered(template: &str, values: Value) -> Result<String, ExportError> {
-    let mut environment = Environment::new();
-    environment.set_undefined_behavior(UndefinedBehavior::Strict);
-    environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).build().unwrap_or_default());
-    Ok(environment.render_str(template, values)?.trim_end().to_owned() + "\n")
+    #[allow(unused_qualifications, elided_lifetimes_in_paths, reason = "in the text of minijinja-embed")]
+    static ENVIRONMENT: LazyLock<Environment<'static>> = LazyLock::new(|| {
+        let mut environment = Environment::new();
+        environment.set_undefined_behavior(UndefinedBehavior::Strict);
+        environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).build().unwrap_or_default());
+        minijinja_embed::load_templates!(environment);
+        environment
+    });
+    Ok(ENVIRONMENT.get_template(template)?.render(values)?.trim_end().to_owned() + "\n")
 }
 
 /// Connector and label of a wire.

@@ -81,7 +81,7 @@ fn compare(went: &Went, clean: &[Edge]) {
 #[test]
 fn pulses_on_a_bad_line_equal_those_on_a_clean_line() {
     let frames = asked("CARRYSTEP_FRAMES", 3000);
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let (mut sent, mut moves, mut stops, mut edges, mut harmed) = (0, 0_u64, 0_u64, 0, 0);
     while sent < frames {
         let commands = waves(&mut random, SEGMENTS, TICKS);
@@ -110,7 +110,7 @@ fn pulses_on_a_bad_line_equal_those_on_a_clean_line() {
 /// line.
 #[test]
 fn pulses_of_the_verilog_on_a_bad_line_equal_those_of_models_on_a_clean_line() {
-    let commands = waves(&mut Random(12), 9, 3000);
+    let commands = waves(&mut Random::new(12), 9, 3000);
     let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
     let (went, harms) = on_a_line::<VerilatedBoard>(Faults::BAD, 5, &commands);
     compare(&went, &clean.edges);
@@ -135,7 +135,7 @@ fn hears_garbage<B: Kind>(milliseconds: u64) {
     // At the full rate of the line.
     let uart = Uart::new(CLOCK_HZ, 921_600).unwrap();
     let end = End::<B>::new(uart, Faults::default(), 3);
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     let mut bytes = 0_u64;
     for _ in 0..milliseconds {
         let mut world = end.0.borrow_mut();

@@ -20,7 +20,7 @@ fn moves<B: Kind>(sck_hz: u64, flip: u32) -> (Vec<Edge>, u64) {
     let mut host = bus.connect();
     assert_eq!((host.facts().axes, host.facts().tick_ns), (6, 2000));
     host.enable().unwrap();
-    let commands = waves(&mut Random(3), 9, 3000);
+    let commands = waves(&mut Random::new(3), 9, 3000);
     let ended = host.stream(Program::new(&commands, AXES as u8).unwrap(), |_| Wish::GoOn);
     assert_eq!(ended, Ok(Ended::Done));
     let wired = bus.0.borrow();

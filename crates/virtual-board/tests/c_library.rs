@@ -26,7 +26,7 @@ fn uart() -> Uart {
 
 /// A move with segments of this number of ticks.
 fn commands(ticks: u32) -> Vec<Command> {
-    waves(&mut Random(12), 9, ticks)
+    waves(&mut Random::new(12), 9, ticks)
 }
 
 fn connect<'a, B: Kind>(client: &'a mut dyn Client, end: &End<B>) -> WordHost<'a, End<B>, End<B>> {

@@ -30,7 +30,7 @@ fn hosts_die<B: Kind>(deaths: u64, within: u64, faults: Faults) {
     let watchdog = u64::from(guard.watchdog + 1) * u64::from(guard.round) * TICK;
     let ramp = (FASTEST as u64 / STOP + 4) * TICK;
     let uart = Uart::new(CLOCK_HZ, 921_600).unwrap();
-    let mut random = Random(21);
+    let mut random = Random::new(21);
     let end = End::<B>::new(uart, faults, 2);
     let (mut died, mut watchdogs, mut underruns, mut longest) = (0, 0, 0, 0);
     for seed in 0.. {

@@ -38,7 +38,7 @@ fn freeze_of_the_verilog_counts_every_discarded_step() {
 /// were the first stop cause of their move, and how many steps were discarded.
 fn freezes<B: Kind>(seeds: Range<u64>, within: u64, faults: Faults) -> (u32, u32) {
     let uart = Uart::new(CLOCK_HZ, 3_000_000).unwrap();
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let (mut freezes, mut discarded) = (0, 0);
     for seed in seeds {
         // A carry about every fourth tick, so that one may be between the engine and the pin when

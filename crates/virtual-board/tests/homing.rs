@@ -177,7 +177,7 @@ fn random_machine(random: &mut Random, limits: &str) -> Machine {
 fn random_machines(limits: &str, rest: u64) {
     let machines = std::env::var("CARRYSTEP_HOMING_MACHINES").map_or(300, |text| text.parse().unwrap());
     for seed in (rest..machines).step_by(3) {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let machine = random_machine(&mut random, limits);
         let starts: Vec<Start> = machine.axes.iter().map(|_| STARTS[random.below(3) as usize]).collect();
         twice::<Board>(&machine, &starts, seed);

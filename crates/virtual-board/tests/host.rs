@@ -59,7 +59,7 @@ fn go_on(_: &Progress<'_>) -> Wish {
 
 /// A program of a tenth of a second on all axes; the queues hold most of it.
 fn moves(seed: u64) -> Vec<Command> {
-    waves(&mut Random(seed), 9, 6000)
+    waves(&mut Random::new(seed), 9, 6000)
 }
 
 /// A program of three steps forward in 3 ms on this axis.

@@ -19,7 +19,7 @@ fn carries<B: Kind>(baud: u32, per_second: u32, milliseconds: u32) {
     let mut host = end.connect(uart);
     host.enable().unwrap();
     let ticks = (1_000_000_000 / TICK_NS) as u32 / per_second;
-    let commands = waves(&mut Random(7), per_second * milliseconds / 1000, ticks);
+    let commands = waves(&mut Random::new(7), per_second * milliseconds / 1000, ticks);
     let begun = end.0.borrow().board.cycle();
     let ended = host.stream(Program::new(&commands, 6).unwrap(), |progress| {
         end.0.borrow_mut().handed_over = progress.handed_over;
@@ -48,7 +48,7 @@ fn spi_at_10_mhz_carries_500_segments_per_second_for_six_axes() {
     let mut host = bus.connect();
     host.enable().unwrap();
     let per_second = 500;
-    let commands = waves(&mut Random(7), per_second * 3 / 2, (1_000_000_000 / TICK_NS) as u32 / per_second);
+    let commands = waves(&mut Random::new(7), per_second * 3 / 2, (1_000_000_000 / TICK_NS) as u32 / per_second);
     let begun = bus.0.borrow().board.cycle();
     let ended = host.stream(Program::new(&commands, 6).unwrap(), |progress| {
         bus.0.borrow_mut().handed_over = progress.handed_over;

@@ -26,7 +26,7 @@ fn uart() -> Uart {
 /// A program that fits into the queues completely: the Verilog cannot report how far its queues
 /// reach, and its host may be delayed.
 fn commands() -> Vec<Command> {
-    waves(&mut Random(8), 7, 2000)
+    waves(&mut Random::new(8), 7, 2000)
 }
 
 /// The edges from the first load on of a board whose host executes `host` with the name of its

@@ -8,7 +8,8 @@
 //! Date: 2026-11-14. Status: replaced by 56. Subject: stops.
 //! ```
 //!
-//! `index.md` lists all pages by subject, and `SUMMARY.md` lists them by number.
+//! `index.md` lists all pages by subject, and `SUMMARY.md` lists them by number. `SUMMARY.md` also
+//! lists the boards, in the order of the generated `docs/boards/index.md`.
 
 use crate::shell::{self, Done};
 use std::collections::BTreeMap;
@@ -17,6 +18,7 @@ use std::fs;
 
 const FOLDER: &str = "docs/decisions";
 const SUMMARY: &str = "docs/SUMMARY.md";
+const BOARDS: &str = "docs/boards/index.md";
 const HEAD: &str = "\
 # Decisions
 
@@ -100,20 +102,36 @@ fn index(pages: &[Decision]) -> String {
 
 /// `SUMMARY.md` with the list of these pages in place of the one that it has.
 fn summary(before: &str, pages: &[Decision]) -> String {
-    let list = pages
-        .iter()
-        .map(|Decision { number, title, file, .. }| format!("  - [{number}. {title}](decisions/{file})\n"))
-        .collect::<String>();
-    let is_listed = |line: &&str| line.starts_with("  - [") && line.contains("](decisions/");
+    let entry = |Decision { number, title, file, .. }: &Decision| (format!("{number}. {title}"), file.clone());
+    listed(before, "decisions", &pages.iter().map(entry).collect::<Vec<_>>())
+}
+
+/// `SUMMARY.md` with these pages of a folder below the folder's index. Each page is a title and the
+/// name of a file.
+fn listed(before: &str, folder: &str, pages: &[(String, String)]) -> String {
+    let list = pages.iter().map(|(title, file)| format!("  - [{title}]({folder}/{file})\n")).collect::<String>();
+    let (in_folder, its_index) = (format!("]({folder}/"), format!("]({folder}/index.md)"));
+    let is_listed = |line: &&str| line.starts_with("  - [") && line.contains(&in_folder);
     let rest = before.lines().filter(|line| !is_listed(line)).map(|line| format!("{line}\n"));
-    rest.map(|line| if line.contains("](decisions/index.md)") { line + &list } else { line }).collect()
+    rest.map(|line| if line.contains(&its_index) { line + &list } else { line }).collect()
+}
+
+/// The boards' pages, in the order of the table in their generated index: its rows begin with
+/// ``| [`name`](name.md) |``.
+fn boards(index: &str) -> Vec<(String, String)> {
+    let entry = |line: &str| {
+        let (name, rest) = line.strip_prefix("| [`")?.split_once("`](")?;
+        Some((name.to_owned(), rest.split_once(')')?.0.to_owned()))
+    };
+    index.lines().filter_map(entry).collect()
 }
 
 /// The files as they must be, by their path from the root.
 fn expected() -> Result<[(&'static str, String); 2], String> {
     let pages = decisions()?;
-    let before = fs::read_to_string(shell::root().join(SUMMARY)).map_err(|error| format!("{SUMMARY}: {error}"))?;
-    Ok([("docs/decisions/index.md", index(&pages)), (SUMMARY, summary(&before, &pages))])
+    let read = |file: &str| fs::read_to_string(shell::root().join(file)).map_err(|error| format!("{file}: {error}"));
+    let all = listed(&summary(&read(SUMMARY)?, &pages), "boards", &boards(&read(BOARDS)?));
+    Ok([("docs/decisions/index.md", index(&pages)), (SUMMARY, all)])
 }
 
 /// Writes the index and the summary.
@@ -129,7 +147,7 @@ pub fn check() -> Done {
     for (file, text) in expected()? {
         let found = fs::read_to_string(shell::root().join(file)).map_err(|error| format!("{file}: {error}"))?;
         if found != text {
-            return Err(format!("{file} is not that of the decisions: run `cargo xtask decisions`"));
+            return Err(format!("{file} is not that of the pages: run `cargo xtask decisions`"));
         }
     }
     shell::say("decisions: all are in the index");
@@ -162,6 +180,16 @@ mod tests {
             "- [Decisions](decisions/index.md)\n  - [7. Exact decimals](decisions/0007-exact.md)\n- [End](end.md)\n"
         );
         assert_eq!(summary(&after, &pages), after);
+    }
+
+    #[test]
+    fn a_summary_lists_the_boards_of_their_index() {
+        let index = "| board | |\n|---|---|\n| [`one`](one.md) | One |\n| [`two`](two.md) | Two |\n";
+        let before = "- [Boards](boards/index.md)\n  - [old](boards/old.md)\n- [End](end.md)\n";
+        assert_eq!(
+            listed(before, "boards", &boards(index)),
+            "- [Boards](boards/index.md)\n  - [one](boards/one.md)\n  - [two](boards/two.md)\n- [End](end.md)\n"
+        );
     }
 
     #[test]

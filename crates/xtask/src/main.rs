@@ -52,7 +52,7 @@ enum Chore {
         #[arg(long)]
         write: bool,
     },
-    /// Write the index of `docs/decisions/` and its part of `docs/SUMMARY.md`.
+    /// Write the index of `docs/decisions/`, and the lists of decisions and boards in `docs/SUMMARY.md`.
     Decisions,
     /// Formatting and lints, without a warning.
     Lint,

@@ -1,6 +1,7 @@
 //! The parts of the README and of `hdl-out/` that show the demo: generated on demand, compared in
 //! every test run.
 
+use crate::decisions;
 use crate::shell::{self, Done};
 use std::fs;
 use std::path::PathBuf;
@@ -15,12 +16,13 @@ const GRAB: &str =
     "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File docs/pictures/demo-waveform.png\nexit\n";
 
 /// Generates `hdl-out/` and the files that are made from tables: register map, pages of boards,
-/// JSON Schemas.
+/// JSON Schemas. The list of boards in `docs/SUMMARY.md` follows.
 pub fn generate() -> Done {
     let write = ["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core", "--core"];
     ["parallel", "engine"].iter().try_for_each(|core| shell::run("cargo", &[write.as_slice(), &[core]].concat()))?;
     shell::run("cargo", &["run", "--quiet", "--release", "--", "schemas", "--out", "docs/schemas"])?;
-    shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-verilog", "--example", "generated"])
+    shell::run("cargo", &["run", "--quiet", "--release", "-p", "carrystep-verilog", "--example", "generated"])?;
+    decisions::write()
 }
 
 /// Fails if the README or the committed plot differs from the current output of the demo.

@@ -1,4 +1,6 @@
-//! Runs other programs in the root of the workspace.
+//! Runs other programs in the root of the workspace. By hand, because few functions around
+//! [`Command`] do all of it; xshell and duct would bring a language of their own for pipes that no
+//! task has.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -86,6 +88,5 @@ pub fn carrystep(arguments: &[&str]) -> Result<String, String> {
 
 /// Whether a program can be started.
 pub fn is_there(program: &str) -> bool {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    std::env::split_paths(&path).any(|folder| folder.join(program).is_file())
+    which::which_global(program).is_ok()
 }

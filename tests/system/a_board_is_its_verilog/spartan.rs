@@ -2,7 +2,7 @@
 //! the shipped build script hands to ISE. The cells are simulated with yosys' models. At both
 //! stages DCM and MMCM are replaced by one model of the bench, and block RAMs by our own models.
 
-use carrystep_boards::{Toolchain, board};
+use carrystep_boards::{ISE, board};
 use carrystep_tests::board_session::Session;
 use carrystep_tests::{effort, jobs};
 use carrystep_tools::{kept, xilinx};
@@ -34,12 +34,12 @@ fn from_verilog_to_edif(name: &str) {
     let board = board(name).expect("a board");
     let session = Session::of(board);
     let compare = |verilog: &str| session.difference(&xilinx::simulated(verilog).expect("models of its cells"));
-    let (family, top) = (board.family.yosys().expect("a Spartan"), session.gateware.top());
+    let (family, top) = (board.family.facts().yosys().expect("a Spartan"), session.gateware.top());
     let edif = |verilog: &str| xilinx::to_edif(verilog, &top, family).expect("EDIF");
     let cells = |edif: &str| xilinx::from_edif(edif).expect("EDIF");
 
     let written = edif(&session.verilog);
-    if board.family.toolchain() == Toolchain::Ise {
+    if board.family.facts().toolchain() == &ISE {
         let script = xilinx::script_for_ise(family, &top);
         assert!(session.file("build.sh").contains(&script), "{name}: the build script does not say {script}");
         assert_eq!(unknown_pin(&session.file(".ucf"), &written), None, "{name}");

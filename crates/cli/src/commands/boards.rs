@@ -112,7 +112,7 @@ fn in_full(board: &Board) -> String {
         board.name,
         board.title,
         parts.join(" or "),
-        board.family.toolchain(),
+        board.family.facts().toolchain(),
         mhz(board.oscillator.hz),
         board.oscillator.pin,
         board.flash

@@ -5,7 +5,7 @@ use crate::commands::boards;
 use crate::failure::Failure;
 use crate::output;
 use crate::progress::Stages;
-use carrystep_boards::{Board, Toolchain};
+use carrystep_boards::Board;
 use carrystep_core::tick::mhz;
 use carrystep_files::{InputError, Machine};
 use carrystep_tools::board::{Built, Job, build};
@@ -58,10 +58,10 @@ pub fn run(arguments: &Build) -> Result<(), Failure> {
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
     let files = gateware.files()?;
     carrystep_verilog::write(&out, &files)?;
-    match board.family.toolchain() {
-        Toolchain::Open => bitstream(arguments, &board, &gateware, &files, &out),
-        Toolchain::Ise => Err(not_ours(&out, "ISE 14.7", "./build.sh, with ISE's settings64.sh read")),
-        Toolchain::Vivado => Err(not_ours(&out, "Vivado", "vivado -mode batch -source build.tcl")),
+    let toolchain = board.family.facts().toolchain();
+    match toolchain.by_hand {
+        None => bitstream(arguments, &board, &gateware, &files, &out),
+        Some(how) => Err(not_ours(&out, toolchain.title, how)),
     }
 }
 

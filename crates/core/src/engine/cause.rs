@@ -2,17 +2,20 @@
 //!
 //! An answer of the link has three bits for the number, so there is no room for a ninth cause.
 
-use core::fmt;
+use strum::Display;
 
 /// Cause of a stop. Its number is the value at the engine's `cause` port and in an answer of the
 /// link.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Display)]
+#[strum(serialize_all = "lowercase")]
 pub enum Cause {
     /// The e-stop input was asserted.
+    #[strum(to_string = "e-stop")]
     EStop = 0,
     /// A second step arrived on an axis that already held one back for its pin timing (promise 6).
     Overrun = 1,
     /// The host violated the segment protocol.
+    #[strum(to_string = "segment protocol broken")]
     Protocol = 2,
     /// No valid request arrived within the watchdog's time.
     Watchdog = 3,
@@ -24,21 +27,6 @@ pub enum Cause {
     Underrun = 6,
     /// The host requested the stop.
     Stop = 7,
-}
-
-impl fmt::Display for Cause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::EStop => "e-stop",
-            Self::Overrun => "overrun",
-            Self::Protocol => "segment protocol broken",
-            Self::Watchdog => "watchdog",
-            Self::Overspeed => "overspeed",
-            Self::Limit => "limit",
-            Self::Underrun => "underrun",
-            Self::Stop => "stop",
-        })
-    }
 }
 
 /// All causes, in the order of their numbers.

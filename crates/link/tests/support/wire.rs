@@ -35,7 +35,7 @@ pub struct Wire {
 
 impl Wire {
     pub fn new(faults: Faults, seed: u64) -> Self {
-        Self { faults, random: Random(seed), bytes: VecDeque::new(), due: 0, harmed: 0 }
+        Self { faults, random: Random::new(seed), bytes: VecDeque::new(), due: 0, harmed: 0 }
     }
 
     pub fn send(&mut self, now: u32, piece: &[u8]) {

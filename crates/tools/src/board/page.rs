@@ -53,9 +53,10 @@ pub fn placed(board: &Board, built: &Built) -> Placed {
 pub fn measure(say: &mut dyn FnMut(&str)) -> Result<AllMeasured, SynthesisError> {
     let mut all = AllMeasured::new();
     for board in boards() {
-        let measured = match board.family.yosys() {
-            None => Measured::Placed(placed(board, &built(board)?)),
-            Some(family) => Measured::Mapped(cells(board, family)?),
+        let family = board.family.facts();
+        let measured = match (family.toolchain().by_hand, family.yosys()) {
+            (Some(_), Some(family)) => Measured::Mapped(cells(board, family)?),
+            _ => Measured::Placed(placed(board, &built(board)?)),
         };
         say(row(board, &measured).trim());
         all.insert(board.name.clone(), measured);
@@ -92,6 +93,12 @@ pub fn page(all: &AllMeasured) -> String {
         let rows = if matches!(measured, Measured::Placed(_)) { &mut ours } else { &mut theirs };
         rows.push_str(&row(board, measured));
     }
+    let in_luts = boards().iter().filter(|board| !board.family.facts().writes_parts_of_words());
+    let in_luts: Vec<String> = in_luts.map(|board| format!("`{}`", board.name)).collect();
+    let in_luts = match in_luts.as_slice() {
+        [before @ .., last] if !before.is_empty() => format!("{} and {last}", before.join(", ")),
+        few => few.concat(),
+    };
     format!(
         "\
 # Boards
@@ -105,7 +112,7 @@ By yosys 0.23, nextpnr 0.4 and icetime, on the pins of the board; the first of f
 |---|---|---|---|---|---|---|---|---|---|---|
 {ours}
 What yosys makes of it for the Spartans. Their own tools place it, which nobody here has done: whether the clock is reached is not known. A Spartan-3 or 3E cannot write single bits of a block RAM,
-so on `s3board`, `nexys2` and `papilio-one` the engine's wheel of events, the one memory that is written bit by bit, lies in LUTs.
+so on {in_luts} the engine's wheel of events, the one memory that is written bit by bit, lies in LUTs.
 
 | board | part | LUTs | flip-flops | carry cells | block RAMs | clock, MHz | tick, ns | phases |
 |---|---|---|---|---|---|---|---|---|

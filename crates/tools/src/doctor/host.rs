@@ -37,7 +37,7 @@ impl Host {
 
     /// The file of a program, if the search path contains it.
     pub(crate) fn program(&self, name: &str) -> Option<PathBuf> {
-        std::env::split_paths(&self.path).map(|folder| folder.join(name)).find(|file| file.is_file())
+        which::which_in_global(name, Some(&self.path)).ok()?.next()
     }
 
     /// The entries of a directory, sorted by name; empty if there is no such directory.

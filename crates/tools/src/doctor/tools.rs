@@ -1,10 +1,8 @@
 //! Finds the tools: their paths, their versions, and the commands that install missing ones.
 
 use crate::doctor::Host;
-use crate::programs::{
-    ICARUS, ICEBOX_VLOG, ICEPACK, ICETIME, NEXTPNR, PROGRAMMERS, Tool, VERILATOR, VIVADO, XST, YOSYS, Z3,
-};
-use carrystep_boards::{Board, Toolchain};
+use crate::programs::{FLOWS, ICARUS, ICEBOX_VLOG, ICEPACK, ICETIME, NEXTPNR, PROGRAMMERS, Tool, VERILATOR, YOSYS, Z3};
+use carrystep_boards::Board;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -30,13 +28,10 @@ pub fn tools(host: &Host, board: Option<&Board>) -> Vec<Found> {
     let wanted: Vec<Tool> = match board {
         None => vec![ICARUS, VERILATOR, Z3, YOSYS, NEXTPNR, ICEPACK, ICETIME, ICEBOX_VLOG],
         Some(board) => {
-            let flow: &[Tool] = match board.family.toolchain() {
-                Toolchain::Open => &[YOSYS, NEXTPNR, ICEPACK, ICETIME],
-                Toolchain::Ise => &[XST],
-                Toolchain::Vivado => &[VIVADO],
-            };
+            let programs = board.family.facts().toolchain().programs;
+            let flow = programs.iter().filter_map(|name| FLOWS.into_iter().find(|tool| tool.name == *name));
             let loads = PROGRAMMERS.into_iter().filter(|tool| board.flash.split(' ').next() == Some(tool.name));
-            flow.iter().copied().chain(loads).collect()
+            flow.chain(loads).collect()
         }
     };
     wanted.into_iter().map(|program| tool(host, program)).collect()
@@ -61,6 +56,15 @@ fn version(path: &Path, option: &str) -> Option<String> {
 mod tests {
     use super::*;
     use carrystep_boards::boards;
+
+    #[test]
+    fn programs_of_every_family_are_known() {
+        for board in boards() {
+            for program in board.family.facts().toolchain().programs {
+                assert!(FLOWS.iter().any(|tool| tool.name == *program), "{}: {program}", board.name);
+            }
+        }
+    }
 
     #[test]
     fn programmer_of_every_board_is_known() {

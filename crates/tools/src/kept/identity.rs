@@ -4,7 +4,6 @@ use crate::programs::{ICEBOX_VLOG, ICETIME, PYTHON, Tool, YOSYS, YOSYS_ABC, YOSY
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs;
-use std::path::PathBuf;
 use std::process::Command;
 use std::sync::Mutex;
 
@@ -43,8 +42,8 @@ pub(super) fn of(tool: &Tool) -> Option<String> {
 }
 
 fn one(tool: &Tool) -> Option<String> {
-    let file = find(tool.name).or_else(|| find(&name_of_pip(tool.name)))?;
-    let file = fs::canonicalize(file).ok()?;
+    let found = which::which_global(tool.name).or_else(|_| which::which_global(name_of_pip(tool.name)));
+    let file = fs::canonicalize(found.ok()?).ok()?;
     let there = fs::metadata(&file).ok()?;
     let version = match tool.version {
         Some(option) => {
@@ -54,9 +53,4 @@ fn one(tool: &Tool) -> Option<String> {
         None => String::new(),
     };
     Some(format!("{} {} {:?} {version}\n", file.display(), there.len(), there.modified().ok()?))
-}
-
-fn find(name: &str) -> Option<PathBuf> {
-    let path = std::env::var_os("PATH")?;
-    std::env::split_paths(&path).map(|folder| folder.join(name)).find(|file| file.is_file())
 }

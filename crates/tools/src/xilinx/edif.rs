@@ -4,6 +4,8 @@
 //! EDIF counts the bits of a port from the left. Only the port's name says which bits these are:
 //! `step[5:0]`, as yosys writes it with `-pvector bra`. A port of several bits whose name does not
 //! contain the range is refused here; ISE would guess.
+//!
+//! By hand, because only the subset that yosys writes is read, and whatever else occurs is refused.
 
 use crate::SynthesisError;
 use std::collections::{BTreeMap, HashMap};

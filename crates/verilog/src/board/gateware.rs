@@ -13,8 +13,6 @@ use carrystep_files::{Machine, Source};
 use carrystep_hdl::primitives::memory::{BIT_BY_BIT, IN_BLOCK_RAM};
 use minijinja::{Value, context};
 
-const TOP: &str = include_str!("../../templates/board/top.v");
-
 /// The machine that boards are built for where no other is asked for; clock, tick and limits are put before its axes.
 const SHIPPED: &str = include_str!("../../../../sim/six-axis.toml");
 
@@ -111,7 +109,7 @@ impl<'a> Gateware<'a> {
 
     /// Adapts the memories to the block RAMs of the board's family.
     fn placed(&self, verilog: String) -> String {
-        if self.board.family.writes_parts_of_words() {
+        if self.board.family.facts().writes_parts_of_words() {
             return verilog;
         }
         let in_luts = |module: &str| module.replace(IN_BLOCK_RAM, "ram_style = \"distributed\"");
@@ -215,7 +213,7 @@ impl<'a> Gateware<'a> {
             ties => super::ties(self.board),
             gate => super::gate(self.board, self.build.timebase.clock_hz()),
         };
-        rendered(TOP, values)
+        rendered("top.v", values)
     }
 }
 

@@ -4,15 +4,10 @@
 use super::{kind, place, rendered};
 use crate::ExportError;
 use crate::write::TextFile;
-use carrystep_boards::clock::ClockManager;
 use carrystep_boards::{Board, Clocking, Gate, Mode, Shared, Wire, boards};
 use carrystep_core::tick::mhz;
 use carrystep_files::driver::{Driver, drivers};
 use minijinja::{Value, context};
-
-const PAGE: &str = include_str!("../../templates/board/page.md");
-const DRIVERS: &str = include_str!("../../templates/drivers.md");
-const INDEX: &str = include_str!("../../templates/board/index.md");
 
 /// The pages, with their paths in the workspace.
 ///
@@ -21,11 +16,11 @@ const INDEX: &str = include_str!("../../templates/board/index.md");
 pub(crate) fn pages() -> Result<Vec<TextFile>, ExportError> {
     let all: Vec<Value> = boards().iter().map(values).collect();
     let mut pages = vec![
-        TextFile::new("docs/boards/index.md", rendered(INDEX, context! { boards => all.clone() })?),
-        TextFile::new("docs/drivers.md", rendered(DRIVERS, context! { drivers => all_drivers() })?),
+        TextFile::new("docs/boards/index.md", rendered("index.md", context! { boards => all.clone() })?),
+        TextFile::new("docs/drivers.md", rendered("drivers.md", context! { drivers => all_drivers() })?),
     ];
     for (board, values) in boards().iter().zip(all) {
-        pages.push(TextFile::new(format!("docs/boards/{}.md", board.name), rendered(PAGE, values)?));
+        pages.push(TextFile::new(format!("docs/boards/{}.md", board.name), rendered("page.md", values)?));
     }
     Ok(pages)
 }
@@ -45,7 +40,7 @@ fn values(board: &Board) -> Value {
         name => &board.name,
         title => &board.title,
         family => board.family.to_string(),
-        toolchain => board.family.toolchain().to_string(),
+        toolchain => board.family.facts().toolchain().to_string(),
         parts => board.parts.iter().map(|part| context! {
             name => &part.name,
             ordered => part.ordered(),
@@ -89,14 +84,6 @@ fn listed(modes: &[Mode]) -> String {
 
 fn clocking(clock: &Clocking) -> Value {
     let Clocking { clock_hz, tick_ns, phases, made_by, why } = clock;
-    let made_by = match made_by {
-        ClockManager::Oscillator => "the oscillator".to_owned(),
-        ClockManager::Ice40Pll(pll) => {
-            format!("PLL: DIVR {}, DIVF {}, DIVQ {}, FILTER_RANGE {}", pll.divr, pll.divf, pll.divq, pll.filter_range)
-        }
-        ClockManager::Dcm(dcm) => format!("DCM: x {} / {}", dcm.multiply, dcm.divide),
-        ClockManager::Mmcm(mmcm) => format!("MMCM: x {} / {} / {}", mmcm.multiply, mmcm.divide, mmcm.out_divide),
-    };
     context! {
         mhz => mhz(*clock_hz),
         tick_ns => *tick_ns,
@@ -105,7 +92,7 @@ fn clocking(clock: &Clocking) -> Value {
         clocks => clock_hz * tick_ns / 1_000_000_000,
         phase_ns => thousandths(tick_ns * 1000 / u64::from(*phases)),
         khz => 500_000 / tick_ns,
-        made_by,
+        made_by => made_by.to_string(),
         why => why,
     }
 }

@@ -167,7 +167,7 @@ fn uart(machine: &Machine) -> Uart {
 impl<B: Make> Bench<B> {
     /// All axes stand at position zero; `starts` determines the places of their switches.
     pub fn new(machine: &Machine, starts: &[Start], seed: u64) -> Self {
-        let mut random = Random(seed ^ 0x5eed);
+        let mut random = Random::new(seed ^ 0x5eed);
         let guard = &machine.guard;
         let tick = u64::from(machine.timebase.clocks_per_tick());
         let mut axes = Vec::new();

@@ -1,0 +1,55 @@
+//! Lattice iCE40 LP, HX and UltraPlus.
+
+use super::{FpgaFamily, PllInput};
+use crate::Part;
+use crate::clock::ClockManagers;
+use crate::toolchain::Toolchain;
+
+pub(super) struct Ice40;
+
+static TOOLCHAIN: Toolchain = Toolchain {
+    title: "yosys, nextpnr-ice40, icestorm",
+    constraints: "top.pcf",
+    scripts: &[("build.sh", "open.sh")],
+    commands: &["./build.sh"],
+    programs: &["yosys", "nextpnr-ice40", "icepack", "icetime"],
+    by_hand: None,
+};
+
+impl FpgaFamily for Ice40 {
+    fn title(&self) -> &'static str {
+        "iCE40"
+    }
+
+    fn toolchain(&self) -> &'static Toolchain {
+        &TOOLCHAIN
+    }
+
+    fn clock_managers(&self) -> ClockManagers {
+        ClockManagers::Ice40
+    }
+
+    fn clock_cell(&self, pll: Option<PllInput>) -> &'static str {
+        if pll == Some(PllInput::Pad) { "SB_PLL40_PAD" } else { "SB_PLL40_CORE" }
+    }
+
+    fn clock_template(&self) -> &'static str {
+        "clock-ice40.v"
+    }
+
+    fn bitstream(&self) -> &'static str {
+        "bin"
+    }
+
+    fn has_speed_grades(&self) -> bool {
+        false
+    }
+
+    fn has_pll_input(&self) -> bool {
+        true
+    }
+
+    fn ordered(&self, Part { name, package, .. }: &Part) -> String {
+        format!("iCE40{}-{}", name.to_uppercase(), package.to_uppercase())
+    }
+}

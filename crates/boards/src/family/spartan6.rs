@@ -1,0 +1,38 @@
+//! Xilinx Spartan-6.
+
+use super::{FpgaFamily, PllInput};
+use crate::clock::ClockManagers;
+use crate::toolchain::{ISE, Toolchain};
+
+pub(super) struct Spartan6;
+
+impl FpgaFamily for Spartan6 {
+    fn title(&self) -> &'static str {
+        "Spartan-6"
+    }
+
+    fn toolchain(&self) -> &'static Toolchain {
+        &ISE
+    }
+
+    fn yosys(&self) -> Option<&'static str> {
+        Some("xc6s")
+    }
+
+    fn clock_managers(&self) -> ClockManagers {
+        // From memory: see [`FpgaFamily::clock_managers`]. The data sheet is DS162.
+        ClockManagers::Dcm { least_in: 1_000_000, least_out: 5_000_000, most_out: 311_000_000 }
+    }
+
+    fn clock_cell(&self, _: Option<PllInput>) -> &'static str {
+        "DCM_SP"
+    }
+
+    fn clock_template(&self) -> &'static str {
+        "clock-dcm.v"
+    }
+
+    fn vccaux(&self) -> &'static [&'static str] {
+        &["2.5", "3.3"]
+    }
+}

@@ -1,0 +1,47 @@
+//! Xilinx Spartan-7.
+
+use super::{FpgaFamily, PllInput};
+use crate::Part;
+use crate::clock::ClockManagers;
+use crate::toolchain::Toolchain;
+
+pub(super) struct Spartan7;
+
+static VIVADO: Toolchain = Toolchain {
+    title: "Vivado",
+    constraints: "top.xdc",
+    scripts: &[("build.tcl", "vivado.tcl")],
+    commands: &["vivado -mode batch -source build.tcl"],
+    programs: &["vivado"],
+    by_hand: Some("vivado -mode batch -source build.tcl"),
+};
+
+impl FpgaFamily for Spartan7 {
+    fn title(&self) -> &'static str {
+        "Spartan-7"
+    }
+
+    fn toolchain(&self) -> &'static Toolchain {
+        &VIVADO
+    }
+
+    fn yosys(&self) -> Option<&'static str> {
+        Some("xc7")
+    }
+
+    fn clock_managers(&self) -> ClockManagers {
+        ClockManagers::Mmcm
+    }
+
+    fn clock_cell(&self, _: Option<PllInput>) -> &'static str {
+        "MMCME2_BASE"
+    }
+
+    fn clock_template(&self) -> &'static str {
+        "clock-mmcm.v"
+    }
+
+    fn ordered(&self, part: &Part) -> String {
+        format!("{}{}{}", part.name, part.package, part.speed_suffix())
+    }
+}
