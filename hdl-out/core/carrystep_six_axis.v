@@ -3,7 +3,7 @@
 // carrystep_six_axis: step and direction for six axes. Generated: change the generator, not this file.
 //
 // Made from    sim/six-axis.toml
-// Made by      carrystep-export 0.1.0, with Rust-HDL 0.46.0
+// Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 // Clock        80000000 Hz
 // Tick         1000 ns, 80 clocks in 16 phases
 // Latency      161 clocks from the load of a move to the edge of its tick 1, phase 0

@@ -129,10 +129,10 @@ fn a_flipped_bit_of_a_memory_is_caught_on_the_bench() {
     for v in [1 << 60, -1 << 60] {
         let segment = Segment { ticks: 50, v, a: 0, j: 0, last: false };
         program.extend((0..6).map(|axis| Command::Segment { axis, segment }));
-        program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 60_000 }]);
+        program.extend([Command::Start { mask: 0x3f }, Command::Wait { clocks: 240_000 }]);
         program.push(Command::Clear);
     }
-    let recording = Recording::new(&stages.build, &program, &Vec::new(), 600_000);
+    let recording = Recording::new(&stages.build, &program, &Vec::new(), 2_400_000);
     let difference = |text: &str| {
         let text = ice40::simulated(text).expect("models of its memories");
         replay::difference(Level::Verilator, &text, &recording).expect("the tools")
