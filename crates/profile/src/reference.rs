@@ -5,7 +5,8 @@
 //! [`ProfileKind`]. The modules are private; the public items are listed below.
 //!
 //! ```
-//! use carrystep_profile::reference::{Drive, ProfileKind, Length, Listing, Quantity, Request, Travel};
+//! use carrystep_core::ProfileKind;
+//! use carrystep_profile::reference::{Drive, Length, Listing, Quantity, Request, Travel};
 //!
 //! // The example of the logistic source.
 //! let drive = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
