@@ -9,7 +9,8 @@
 //! clearing ____________________________________/^^^^\____
 //! ```
 
-use crate::primitives::constant::{Literal, Parameter};
+use crate::parameters::LIMIT_FREEZES;
+use crate::primitives::constant::{Literal, Parameter, Refusal};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::engine::Guard;
@@ -90,12 +91,18 @@ pub struct Stops<const N: usize> {
     limited: Literal<3, 5>,
     underrun: Literal<3, 6>,
     host: Literal<3, 7>,
+    limit_freezes_out_of_range: Refusal,
 }
 
 impl<const N: usize> Stops<N> {
     /// The stops of this guard.
     pub fn new(guard: &Guard) -> Self {
-        Self { limit_freezes: Parameter::new(u64::from(guard.limit_freezes)), ..Self::default() }
+        let freezes = LIMIT_FREEZES.of::<32>(guard.limit_freezes);
+        Self {
+            limit_freezes: Parameter::of(&freezes.bits(0)),
+            limit_freezes_out_of_range: Refusal::of(&freezes.is_outside(0, 1)),
+            ..Self::default()
+        }
     }
 }
 

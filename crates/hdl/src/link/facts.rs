@@ -9,6 +9,7 @@
 //! limit says its position in each of its turns, and the last one stays.
 
 use crate::primitives::constant::Literal;
+use crate::primitives::formula::Formula;
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
@@ -52,10 +53,9 @@ pub struct Facts {
 
 impl Facts {
     /// The memory with these facts, by address.
-    pub fn new(facts: &[(u8, u32)]) -> Self {
-        let words: Vec<_> =
-            facts.iter().map(|&(address, fact)| (usize::from(address), Word::from(u64::from(fact)))).collect();
-        Self { known: Memory::of_words(&words), ..Self::default() }
+    pub fn new(facts: &[(u8, Formula<32>)]) -> Self {
+        let words: Vec<_> = facts.iter().map(|(address, fact)| (usize::from(*address), fact.clone())).collect();
+        Self { known: Memory::of_formulas(&words), ..Self::default() }
     }
 }
 
@@ -96,6 +96,6 @@ mod tests {
 
     #[test]
     fn facts_synthesizes() {
-        assert_synthesizes(Facts::new(&[(0, 7)]), "carrystep_facts");
+        assert_synthesizes(Facts::new(&[(0, Formula::number(7))]), "carrystep_facts");
     }
 }

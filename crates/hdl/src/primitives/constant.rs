@@ -1,8 +1,11 @@
 //! Constants that a kernel may name; in Verilog they are local parameters.
 //!
 //! Rust-HDL's own `Constant` has no default, which would make every module spell out every field.
-//! [`Literal`] is known when the module is written, [`Parameter`] when it is built.
+//! [`Literal`] is known when the module is written, [`Parameter`] when it is built. A [`Parameter`] that is made of a
+//! [`Formula`] follows in Verilog from parameters. A [`Refusal`] is for Verilog only: its field's name is what is wrong
+//! with the parameters where its formula is 1.
 
+use crate::primitives::formula::{Formula, Note, ParameterValue};
 use crate::primitives::word::Word;
 use rust_hdl::core::signal::get_signal_id;
 use rust_hdl::prelude::{
@@ -33,6 +36,7 @@ impl<const N: usize, const VALUE: u64> Literal<N, VALUE> {
 #[derive(Debug)]
 pub struct Parameter<const N: usize> {
     value: Word<N>,
+    note: Option<Note>,
     id: usize,
 }
 
@@ -43,9 +47,14 @@ impl<const N: usize> Default for Parameter<N> {
 }
 
 impl<const N: usize> Parameter<N> {
-    /// The parameter with this value, which must fit.
+    /// The number with this value, which must fit, and which no parameter of the Verilog changes.
     pub fn new(value: u64) -> Self {
-        Self { value: Word::from(value), id: get_signal_id() }
+        Self { value: Word::from(value), note: None, id: get_signal_id() }
+    }
+
+    /// The number that follows from parameters of the Verilog.
+    pub fn of(formula: &Formula<N>) -> Self {
+        Self { value: formula.value(), note: Some(Note::of(formula, false)), id: get_signal_id() }
     }
 
     /// The number.
@@ -55,18 +64,64 @@ impl<const N: usize> Parameter<N> {
     }
 }
 
-/// All bits of a counter that goes up to `greatest`. Kernels mask their timers with it: what can never be
-/// set is then plainly zero, and synthesis drops those flip-flops.
-pub(crate) const fn used_bits(greatest: u64) -> u64 {
-    match greatest.checked_ilog2() {
-        Some(top) => (2 << top) - 1,
-        None => 0,
+/// Whether the parameters of the Verilog are out of range. Where it is 1, the Verilog instantiates a module that does not
+/// exist, named after this field. In this build it is 0, as whoever made the module has checked.
+#[derive(Debug)]
+pub struct Refusal {
+    value: Word<1>,
+    note: Option<Note>,
+    id: usize,
+}
+
+impl Default for Refusal {
+    fn default() -> Self {
+        Self::of(&Formula::number(0))
+    }
+}
+
+impl Refusal {
+    /// Refuses where the formula is 1.
+    pub fn of(formula: &Formula<1>) -> Self {
+        Self { value: formula.value(), note: Some(Note::of(formula, true)), id: get_signal_id() }
+    }
+
+    const fn val(&self) -> Word<1> {
+        self.value
+    }
+}
+
+/// In Verilog, what stands before the name of a [`Refusal`] in the name of the module that does not exist.
+pub const ERROR: &str = "carrystep_error_";
+
+/// A parameter of a module whose Verilog is text; its name is the parameter's.
+#[derive(Debug)]
+pub struct Given {
+    name: String,
+    note: Note,
+    id: usize,
+}
+
+impl Given {
+    /// This parameter.
+    pub fn new(given: ParameterValue) -> Self {
+        let (name, text) = (given.name.clone(), given.name.clone());
+        Self { name, note: Note { text, given: vec![given], is_refusal: false }, id: get_signal_id() }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Nothing in simulation asks for it.
+    const fn val(&self) -> Word<1> {
+        Word::new(0)
     }
 }
 
 /// What Rust-HDL wants to know of any constant.
 macro_rules! constant_atom {
-    ([$($generics:tt)*] $type:ty) => {
+    ([$($generics:tt)*] $type:ty, $bits:expr, $note:expr) => {
         impl<$($generics)*> Logic for $type {
             fn update(&mut self) {}
         }
@@ -86,7 +141,7 @@ macro_rules! constant_atom {
 
         impl<$($generics)*> Atom for $type {
             fn bits(&self) -> usize {
-                N
+                $bits
             }
             fn connected(&self) -> bool {
                 true
@@ -98,7 +153,10 @@ macro_rules! constant_atom {
                 AtomKind::Constant
             }
             fn descriptor(&self) -> TypeDescriptor {
-                Word::<N>::descriptor()
+                let note: fn(&Self) -> Option<&Note> = $note;
+                let plain = Word::<{ $bits }>::descriptor();
+                let name = note(self).map_or(plain.name, Note::written);
+                TypeDescriptor { name, kind: plain.kind }
             }
             fn vcd(&self) -> VCDValue {
                 self.val().vcd()
@@ -116,5 +174,7 @@ macro_rules! constant_atom {
     };
 }
 
-constant_atom!([const N: usize, const VALUE: u64] Literal<N, VALUE>);
-constant_atom!([const N: usize] Parameter<N>);
+constant_atom!([const N: usize, const VALUE: u64] Literal<N, VALUE>, N, |_| None);
+constant_atom!([const N: usize] Parameter<N>, N, |this| this.note.as_ref());
+constant_atom!([] Refusal, 1, |this| this.note.as_ref());
+constant_atom!([] Given, 1, |this| Some(&this.note));

@@ -13,12 +13,17 @@
 //! All kernels above and beside a register have run, or will run, on the values of before the edge:
 //! outputs travel upwards only in the next pass. So a clock edge is one pass at any depth.
 
+use crate::primitives::formula::{Formula, Note};
+use crate::primitives::word::Word;
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::signal::get_signal_id;
 use rust_hdl::prelude::{
     Atom, AtomKind, Block, Clock, Logic, Out, PinConstraint, Probe, Signal, Synth, TimingInfo, TypeDescriptor,
     VCDValue, Verilog,
 };
+
+/// In the text of a register, what stands before the note of its initial value.
+pub const NOTE: &str = "\n//\t";
 
 /// An input port; in kernels and Verilog it is `Signal<In, T>`.
 #[derive(Debug)]
@@ -108,13 +113,21 @@ pub struct Register<T: Synth> {
     /// The clock.
     pub clock: Input<Clock>,
     initial: T,
+    note: Option<Note>,
+}
+
+impl<const N: usize> Register<Word<N>> {
+    /// A register that configures to what follows from parameters of the Verilog.
+    pub fn of(initial: &Formula<N>) -> Self {
+        Self { note: Some(Note::of(initial, false)), ..Self::new(initial.value()) }
+    }
 }
 
 impl<T: Synth> Register<T> {
     /// A register that configures to `initial`.
     pub fn new(initial: T) -> Self {
         let d = Input { next: initial, ..Input::default() };
-        Self { d, q: Signal::new_with_default(initial), clock: Input::default(), initial }
+        Self { d, q: Signal::new_with_default(initial), clock: Input::default(), initial, note: None }
     }
 }
 
@@ -135,7 +148,9 @@ impl<T: Synth> Logic for Register<T> {
         self.q.connect();
     }
     fn hdl(&self) -> Verilog {
-        Verilog::Custom(format!("initial q = {};\nalways @(posedge clock) q <= d;", self.initial.verilog()))
+        let initial = self.initial.verilog();
+        let note = self.note.as_ref().map_or(String::new(), |note| format!("{NOTE}{}", note.written()));
+        Verilog::Custom(format!("initial q = {initial};\nalways @(posedge clock) q <= d;{note}"))
     }
     fn timing(&self) -> Vec<TimingInfo> {
         vec![TimingInfo {
@@ -175,7 +190,6 @@ impl<T: Synth> Block for Register<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::primitives::word::Word;
 
     #[test]
     fn q_follows_d_at_the_rising_edge_only() {
