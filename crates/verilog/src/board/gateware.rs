@@ -10,7 +10,6 @@ use carrystep_core::engine::Limits;
 use carrystep_core::link::{BuildId, Line, Uart};
 use carrystep_core::{ChosenTick, EngineBuild};
 use carrystep_files::{Machine, Source};
-use carrystep_hdl::primitives::memory::{BIT_BY_BIT, IN_BLOCK_RAM};
 use minijinja::{Value, context};
 
 const TOP: &str = include_str!("../../templates/board/top.v");
@@ -105,18 +104,8 @@ impl<'a> Gateware<'a> {
             self.design(&[], &[]).clock()?,
             file(line_name(self.line), line_verilog(self.line, &description)?),
             file(LINK_NAME, link_verilog(&self.build, self.line, &description)?),
-            file(ENGINE_NAME, self.placed(engine_verilog(&self.build, &description)?)),
+            file(ENGINE_NAME, engine_verilog(&self.build, &description)?),
         ])
-    }
-
-    /// Adapts the memories to the block RAMs of the board's family.
-    fn placed(&self, verilog: String) -> String {
-        if self.board.family.writes_parts_of_words() {
-            return verilog;
-        }
-        let in_luts = |module: &str| module.replace(IN_BLOCK_RAM, "ram_style = \"distributed\"");
-        let modules = verilog.split_inclusive("endmodule");
-        modules.map(|module| if module.contains(BIT_BY_BIT) { in_luts(module) } else { module.to_owned() }).collect()
     }
 
     /// All files of the board's directory.
