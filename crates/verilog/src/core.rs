@@ -5,10 +5,12 @@ use crate::guard;
 use crate::module::module_text;
 use crate::names::{Names, split_index};
 use crate::netlist::{self, Module};
+use crate::parameters;
 use crate::write::{TextFile, write};
 use carrystep_core::link::Line;
 use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
+use carrystep_hdl::primitives::formula::ParameterValue;
 use rust_hdl::prelude::{Block, check_all};
 use std::path::{Path, PathBuf};
 
@@ -106,13 +108,37 @@ pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Resul
 /// # Errors
 /// [`ExportError`] if the module cannot be generated.
 pub fn line_verilog(line: Line, description: &str) -> Result<String, ExportError> {
-    let facts =
-        Facts { title: "the line to the host".to_owned(), lines: format!("// Line         {line}\n") };
-    let mut module: Box<dyn Block> = match line {
+    let facts = Facts { title: "the line to the host".to_owned(), lines: format!("// Line         {line}\n") };
+    file_text(line_block(line).as_mut(), line_name(line), &facts, description)
+}
+
+fn line_block(line: Line) -> Box<dyn Block> {
+    match line {
         Line::Uart(uart) => Box::new(UartLine::new(uart)),
         Line::Spi => Box::new(Spi::new()),
-    };
-    file_text(module.as_mut(), line_name(line), &facts, description)
+    }
+}
+
+/// The parameters of a build's modules, with its values.
+#[derive(Debug)]
+pub(crate) struct Overrides {
+    pub(crate) line: Vec<ParameterValue>,
+    pub(crate) link: Vec<ParameterValue>,
+    pub(crate) engine: Vec<ParameterValue>,
+}
+
+impl Overrides {
+    pub(crate) fn of(build: &EngineBuild, line: Line) -> Result<Self, ExportError> {
+        let of = |block: &mut dyn Block| {
+            block.connect_all();
+            parameters::of(&netlist::read(block)?)
+        };
+        Ok(Self {
+            line: of(line_block(line).as_mut())?,
+            link: of(link(build, line.build_id(build))?.as_mut())?,
+            engine: of(engine(build)?.as_mut())?,
+        })
+    }
 }
 
 /// Name of a line's top module and of its file.
@@ -251,6 +277,10 @@ fn header(name: &str, facts: &Facts, description: &str) -> String {
 //
 // Made from    {description}
 // Made by      carrystep {version}, with Rust-HDL {RUST_HDL}
+//
+// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
+// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+//
 {lines}
 `default_nettype none
 ",

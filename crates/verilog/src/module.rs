@@ -6,6 +6,7 @@ use crate::names::{Constant, Names, Role, plain};
 use crate::netlist::Module;
 use crate::parameters;
 use carrystep_hdl::primitives::constant::ERROR;
+use carrystep_hdl::primitives::formula::ParameterValue;
 use rust_hdl::prelude::{AtomKind, Verilog};
 
 /// The text of `module` under the name `name`; `kinds` are the module names of its children.
@@ -16,7 +17,7 @@ pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Resu
     }
     let kernel = Kernel::new(module, &names)?;
     let mut page = Page::default();
-    head(&mut page, module, name)?;
+    head(&mut page, module, &names, name)?;
     ports(&mut page, &names, &kernel);
     page.close(");");
     page.indent += 1;
@@ -42,7 +43,7 @@ pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Resu
 /// A module that has its own body, such as a memory.
 fn primitive(module: &Module, names: &Names, name: &str, body: &str) -> Result<String, ExportError> {
     let mut page = Page::default();
-    head(&mut page, module, name)?;
+    head(&mut page, module, names, name)?;
     ports(&mut page, names, &Kernel::default());
     page.close(");");
     page.indent += 1;
@@ -54,8 +55,13 @@ fn primitive(module: &Module, names: &Names, name: &str, body: &str) -> Result<S
 }
 
 /// The beginning of a module, with its parameters if it has any.
-fn head(page: &mut Page, module: &Module, name: &str) -> Result<(), ExportError> {
+fn head(page: &mut Page, module: &Module, names: &Names, name: &str) -> Result<(), ExportError> {
     let parameters = parameters::of(module)?;
+    let is_twice = |one: &&ParameterValue| names.constants.iter().any(|own| own.name == one.name && own.text != one.name);
+    if let Some(one) = parameters.iter().find(is_twice) {
+        let what = format!("a constant with the name of the parameter {}", one.name);
+        return Err(ExportError::unsupported(&module.instance, what));
+    }
     if parameters.is_empty() {
         page.open(&format!("module {name} ("));
         return Ok(());

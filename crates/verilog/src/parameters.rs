@@ -67,6 +67,15 @@ pub(crate) fn head(parameters: &[ParameterValue]) -> Vec<String> {
     lines
 }
 
+/// The overrides of an instance, `#(.NAME(VALUE), ...)` with a space on each side; a space if there are none.
+pub(crate) fn overrides(parameters: &[ParameterValue]) -> String {
+    if parameters.is_empty() {
+        return " ".to_owned();
+    }
+    let each = parameters.iter().map(|one| format!("        .{}({})", one.name, one.literal));
+    format!(" #(\n{}\n    ) ", each.collect::<Vec<_>>().join(",\n"))
+}
+
 /// Functions for the constants in a module whose texts these are.
 pub(crate) fn functions(texts: &[&str]) -> Vec<String> {
     let is_used = |width: &usize| texts.iter().any(|text| text.contains(&format!("used_bits_{width}(")));

@@ -82,7 +82,7 @@ pub struct Stops<const N: usize> {
     ripe: Signal<Local, Bit>,
     by_host: Signal<Local, Bit>,
     calls: Signal<Local, Bit>,
-    limit_freezes: Parameter<1>,
+    limits_freeze: Parameter<1>,
     e_stop: Literal<3, 0>,
     overrun: Literal<3, 1>,
     protocol: Literal<3, 2>,
@@ -99,7 +99,7 @@ impl<const N: usize> Stops<N> {
     pub fn new(guard: &Guard) -> Self {
         let freezes = LIMIT_FREEZES.of::<32>(guard.limit_freezes);
         Self {
-            limit_freezes: Parameter::of(&freezes.bits(0)),
+            limits_freeze: Parameter::of(&freezes.bits(0)),
             limit_freezes_out_of_range: Refusal::of(&freezes.is_outside(0, 1)),
             ..Self::default()
         }
@@ -126,7 +126,7 @@ impl<const N: usize> Logic for Stops<N> {
                 self.kind.d.next = self.overspeed.val();
             }
         }
-        if self.turn_ends.val() & (self.too_fast.val() | (self.limit.val() & self.limit_freezes.val().any())) {
+        if self.turn_ends.val() & (self.too_fast.val() | (self.limit.val() & self.limits_freeze.val().any())) {
             self.found_freezing.d.next = true;
         }
         if self.turn_ends.val() & self.runs.val() {

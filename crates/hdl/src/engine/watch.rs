@@ -51,7 +51,7 @@ pub struct Watch {
     round_over: Signal<Local, Bit>,
     silent: Signal<Local, Bit>,
     is_warm: Signal<Local, Bit>,
-    estop_low: Parameter<1>,
+    pressed_low: Parameter<1>,
     round_bits: Parameter<10>,
     watchdog: Parameter<12>,
     silence_bits: Parameter<12>,
@@ -74,7 +74,7 @@ impl Watch {
         let (round, estop_low) = (ROUND_TICKS.of::<32>(guard.round), ESTOP_LOW.of::<32>(guard.estop_low));
         let no_power = (round.whole() & (round.whole() - Formula::number(1))).is_not(&Formula::number(0));
         Self {
-            estop_low: Parameter::of(&estop_low.bits(0)),
+            pressed_low: Parameter::of(&estop_low.bits(0)),
             round_bits: Parameter::of(&(round.bits(0) - Formula::number(1))),
             watchdog: Parameter::of(&watchdog.bits(0)),
             silence_bits: Parameter::of(&watchdog.bits::<12>(0).used_bits()),
@@ -95,7 +95,7 @@ impl Logic for Watch {
         dff_setup!(self, clock, sync, now, held, round, silence, power, warmth);
 
         // The e-stop.
-        self.sync.d.next = self.estop.val() ^ self.estop_low.val().any();
+        self.sync.d.next = self.estop.val() ^ self.pressed_low.val().any();
         self.now.d.next = self.sync.q.val();
         self.held.d.next = self.now.q.val() & (self.held.q.val() | self.strobe.val());
         self.pressed.next = self.held.q.val() & self.now.q.val();
