@@ -24,8 +24,8 @@ fn style_check() -> String {
     let style = EVENT_MEMORY.name;
     let error = format!("{ERROR}{}_out_of_range", style.to_lowercase());
     format!(
-        "generate\n    if (({style} != {BLOCK}) && ({style} != \"distributed\")) begin : refused\n        \
-         {error} error ();\n    end\nendgenerate\n\n"
+        "// Words of different lengths are compared.\n// verilator lint_off WIDTH\ngenerate\n    if (({style} != {BLOCK}) && ({style} != \"distributed\")) begin : refused\n        \
+         {error} error ();\n    end\nendgenerate\n// verilator lint_on WIDTH\n\n"
     )
 }
 
