@@ -97,6 +97,7 @@ pub const ERROR: &str = "carrystep_error_";
 #[derive(Debug)]
 pub struct Given {
     name: String,
+    value: Word<64>,
     note: Note,
     id: usize,
 }
@@ -104,8 +105,8 @@ pub struct Given {
 impl Given {
     /// This parameter.
     pub fn new(given: ParameterValue) -> Self {
-        let (name, text) = (given.name.clone(), given.name.clone());
-        Self { name, note: Note { text, given: vec![given], is_refusal: false }, id: get_signal_id() }
+        let (name, text, value) = (given.name.clone(), given.name.clone(), Word::from(given.number()));
+        Self { name, value, note: Note { text, given: vec![given], is_refusal: false }, id: get_signal_id() }
     }
 
     /// Its name.
@@ -113,9 +114,8 @@ impl Given {
         &self.name
     }
 
-    /// Nothing in simulation asks for it.
-    const fn val(&self) -> Word<1> {
-        Word::new(0)
+    const fn val(&self) -> Word<64> {
+        self.value
     }
 }
 
@@ -177,4 +177,4 @@ macro_rules! constant_atom {
 constant_atom!([const N: usize, const VALUE: u64] Literal<N, VALUE>, N, |_| None);
 constant_atom!([const N: usize] Parameter<N>, N, |this| this.note.as_ref());
 constant_atom!([] Refusal, 1, |this| this.note.as_ref());
-constant_atom!([] Given, 1, |this| Some(&this.note));
+constant_atom!([] Given, 64, |this| Some(&this.note));

@@ -77,6 +77,21 @@ pub struct ParameterValue {
     pub literal: String,
 }
 
+impl ParameterValue {
+    /// The value as a number; of a word, that of its characters, as Verilog has it.
+    pub(crate) fn number(&self) -> u64 {
+        let Some((_, digits)) = self.literal.split_once('\'') else {
+            return self.literal.trim_matches('"').bytes().fold(0, |number, byte| number << 8 | u64::from(byte));
+        };
+        let radix = match digits.bytes().next() {
+            Some(b'h') => 16,
+            Some(b'b') => 2,
+            _ => 10,
+        };
+        u64::from_str_radix(digits.get(1..).unwrap_or_default(), radix).unwrap_or_default()
+    }
+}
+
 impl<const N: usize> Formula<N> {
     /// A number, which no parameter changes.
     pub fn number(value: u64) -> Self {
@@ -288,6 +303,15 @@ mod tests {
             assert_eq!(given(greatest).bits::<17>(0).used_bits().value().value(), bits);
         }
         assert_eq!(given(5).bits::<17>(0).used_bits().text(), "used_bits_17(X[16:0])");
+    }
+
+    #[test]
+    fn value_of_a_parameter_is_that_of_its_literal() {
+        for value in [0, 1, 7, 65_536, u64::MAX] {
+            assert_eq!(Given::<64>::new("X", value).whole().given()[0].number(), value);
+        }
+        let word = ParameterValue { name: "X".to_owned(), bits: 0, literal: "\"ab\"".to_owned() };
+        assert_eq!(word.number(), 0x6162);
     }
 
     #[test]
