@@ -111,7 +111,8 @@ pub const BUILD_ID: Described = Described::new(
      override it too",
 );
 /// The clock.
-pub const CLOCK_HZ: Described = Described::new("CLOCK_HZ", "1 to 10^9", "frequency of the clock in Hz, told to the host");
+pub const CLOCK_HZ: Described =
+    Described::new("CLOCK_HZ", "1 to 10^9", "frequency of the clock in Hz, told to the host");
 /// The tick.
 pub const TICK_NS: Described = Described::new("TICK_NS", "1 to 2^32 - 1", "length of a tick in ns, told to the host");
 /// The UART's bit.

@@ -9,8 +9,8 @@ use crate::parameters;
 use crate::write::{TextFile, write};
 use carrystep_core::link::Line;
 use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
-use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
 use carrystep_hdl::primitives::formula::ParameterValue;
+use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
 use rust_hdl::prelude::{Block, check_all};
 use std::path::{Path, PathBuf};
 

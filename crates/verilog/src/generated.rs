@@ -1,8 +1,8 @@
 //! All files of the workspace that are generated from tables of `spec`: the files of the register
 //! map, the pages of boards and drivers, and the boards' gateware.
 
-use crate::write::{TextFile, write};
 use crate::core::{LINK_NAME, line_name, line_verilog, link_verilog};
+use crate::write::{TextFile, write};
 use crate::{ExportError, Gateware, board, registers};
 use carrystep_boards::boards;
 use carrystep_core::link::Line;

@@ -57,7 +57,8 @@ fn primitive(module: &Module, names: &Names, name: &str, body: &str) -> Result<S
 /// The beginning of a module, with its parameters if it has any.
 fn head(page: &mut Page, module: &Module, names: &Names, name: &str) -> Result<(), ExportError> {
     let parameters = parameters::of(module)?;
-    let is_twice = |one: &&ParameterValue| names.constants.iter().any(|own| own.name == one.name && own.text != one.name);
+    let is_twice =
+        |one: &&ParameterValue| names.constants.iter().any(|own| own.name == one.name && own.text != one.name);
     if let Some(one) = parameters.iter().find(is_twice) {
         let what = format!("a constant with the name of the parameter {}", one.name);
         return Err(ExportError::unsupported(&module.instance, what));

@@ -109,7 +109,8 @@ fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &
 #[test]
 fn core_has_the_ports_of_the_table() {
     let text = six_axis_verilog(&build(48_000_000, 16), "a test").unwrap();
-    let found: Vec<String> = ports_of(&text, CORE_NAME).lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+    let found: Vec<String> =
+        ports_of(&text, CORE_NAME).lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
     let expected = SIX_AXIS_PORTS.map(|port| {
         let way = if port.direction == Direction::Input { "input" } else { "output" };
         let range = if port.width == 1 { String::new() } else { format!("[{}:0] ", port.width - 1) };

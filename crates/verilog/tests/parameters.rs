@@ -42,8 +42,7 @@ fn builds_differ_in_the_values_of_parameters_alone() {
     let (first, second) = (first(), second());
     let uart = |clock, baud| Line::Uart(Uart::new(clock, baud).unwrap());
     let lines = [uart(80_000_000, 1_000_000), uart(96_000_000, 3_000_000)];
-    let parallel =
-        [build(80_000_000, 2, StartPhase::Half), build(96_000_000, 200, StartPhase::Zero)];
+    let parallel = [build(80_000_000, 2, StartPhase::Half), build(96_000_000, 200, StartPhase::Zero)];
     let pairs = [
         [&first, &second].map(|build| engine_verilog(build, "a test").unwrap()),
         [(&first, lines[0]), (&second, lines[1])].map(|(build, line)| link_verilog(build, line, "a test").unwrap()),

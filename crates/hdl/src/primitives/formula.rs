@@ -269,7 +269,8 @@ impl Note {
     /// The note as a type's name.
     pub(crate) fn written(&self) -> String {
         let kind = if self.is_refusal { REFUSAL } else { CONSTANT };
-        let given = self.given.iter().map(|ParameterValue { name, bits, literal }| format!("\t{name} {bits} {literal}"));
+        let given =
+            self.given.iter().map(|ParameterValue { name, bits, literal }| format!("\t{name} {bits} {literal}"));
         format!("{kind}\t{}{}", self.text, given.collect::<String>())
     }
 }

@@ -132,7 +132,8 @@ impl<'a> Gateware<'a> {
     /// [`ExportError`] if a module cannot be generated.
     pub fn files_beside(&self, core: &str) -> Result<Vec<TextFile>, ExportError> {
         let all = self.verilog()?;
-        let is_own = |file: &TextFile| file.name == format!("{}.v", self.top()) || file.name == format!("{CLOCK_NAME}.v");
+        let is_own =
+            |file: &TextFile| file.name == format!("{}.v", self.top()) || file.name == format!("{CLOCK_NAME}.v");
         let source = |file: &TextFile| if is_own(file) { file.name.clone() } else { format!("{core}/{}", file.name) };
         let sources = all.iter().map(source).collect();
         self.files_with(all.into_iter().filter(is_own).collect(), sources)
