@@ -6,7 +6,7 @@ use carrystep_core::{EngineBuild, Program, StartPhase};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_simulators::engine::{EngineCore, EngineHost, Events};
-use carrystep_tests::engine_programs::{build, run_programs};
+use carrystep_tests::engine_programs::{build, parameter_sets, run_programs};
 use proptest::prelude::*;
 
 /// Runs both until the program is over and both are idle. Returns the number of clocks.
@@ -88,6 +88,12 @@ fn random_programs_of_one_axis_in_the_shortest_phases() {
 #[test]
 fn random_programs_of_one_axis_in_the_shortest_tick() {
     in_rust_hdl(&build(1, 16_000_000, 4, StartPhase::Zero, Limits::One), 100_000);
+}
+
+/// Rung 5 compares the Verilog of the first set, with the parameters of each, with the same programs.
+#[test]
+fn random_programs_with_each_set_of_parameters() {
+    parameter_sets().iter().for_each(|build| in_rust_hdl(build, 100_000));
 }
 
 #[test]

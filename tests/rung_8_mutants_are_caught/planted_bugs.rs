@@ -33,9 +33,21 @@ const GATEWARE: [Bug; 9] = [
         text: "active & (left == ONE)",
         becomes: "active & (left == 32'd0)",
     },
-    Bug { name: "the gap is one clock short", text: "BUSY_LOAD = 17'd4;", becomes: "BUSY_LOAD = 17'd3;" },
-    Bug { name: "the hold is one clock short", text: "HOLD_LOAD = 16'd39;", becomes: "HOLD_LOAD = 16'd38;" },
-    Bug { name: "the set-up is one clock short", text: "SETUP_LOAD = 16'd19;", becomes: "SETUP_LOAD = 16'd18;" },
+    Bug {
+        name: "the gap is one clock short",
+        text: "BUSY_LOAD = ",
+        becomes: "BUSY_LOAD = ((STEP_HIGH + STEP_LOW) == 32'd5) ? 17'd3 : ",
+    },
+    Bug {
+        name: "the hold is one clock short",
+        text: "HOLD_LOAD = ",
+        becomes: "HOLD_LOAD = (DIR_HOLD == 32'd40) ? 16'd38 : ",
+    },
+    Bug {
+        name: "the set-up is one clock short",
+        text: "SETUP_LOAD = ",
+        becomes: "SETUP_LOAD = (DIR_SETUP == 32'd20) ? 16'd18 : ",
+    },
     Bug {
         name: "the bisection halves without the sign",
         text: "(bisect_v >> BY_ONE) | (bisect_v & SIGN)",

@@ -153,6 +153,22 @@ pub fn build(axes: usize, clock_hz: u64, phases: u32, phase: StartPhase, limits:
     build
 }
 
+/// Four sets of parameters of the engine of six axes and 16 phases, which is one text of Verilog. Each differs from the
+/// first in every parameter but the second's e-stop and limits.
+pub fn parameter_sets() -> [EngineBuild; 4] {
+    let first = build(AXES, 80_000_000, 16, StartPhase::Half, Limits::Pair);
+    let second = build(AXES, 96_000_000, 16, StartPhase::Zero, Limits::Pair);
+    let mut third = build(AXES, 112_000_000, 16, StartPhase::Zero, Limits::Each);
+    third.guard = Guard { round: 8, debounce: 1, watchdog: 0, enable: 0, ..third.guard };
+    third.pins.reverse();
+    third.guard.stop.reverse();
+    let mut fourth = build(AXES, 128_000_000, 16, StartPhase::Zero, Limits::One);
+    fourth.guard = Guard { round: 4, debounce: 5, watchdog: 21, enable: 7, ..fourth.guard };
+    fourth.pins.rotate_left(2);
+    fourth.guard.stop = (1..=AXES as u64).map(|axis| (axis << 53) - 1).collect();
+    [first, second, third, fourth]
+}
+
 /// Runs random programs until they have taken the required number of clocks.
 ///
 /// # Panics

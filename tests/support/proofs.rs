@@ -66,6 +66,8 @@ pub struct Case {
     pub name: String,
     /// The name of the exported module.
     pub dut: String,
+    /// The module's parameters with the values that replace those of the text.
+    pub parameters: Vec<(&'static str, u32)>,
     /// The whole exported text.
     pub verilog: Arc<str>,
     /// The numbers that `promises.sv` takes as parameters.
@@ -93,7 +95,8 @@ impl Case {
     /// # Panics If the text does not occur in the module exactly once; the bug must then be
     /// rewritten.
     pub fn with(&self, bug: &Bug) -> Self {
-        let start = self.verilog.find(&format!("module {} (", self.dut)).expect("the module is in its Verilog");
+        let begins = [" (", " #("].map(|head| self.verilog.find(&format!("module {}{head}\n", self.dut)));
+        let start = begins.into_iter().flatten().next().expect("the module is in its Verilog");
         let end = start + self.verilog[start..].find("endmodule").expect("the module ends");
         let module = &self.verilog[start..end];
         let found = module.matches(bug.text).count();

@@ -34,11 +34,14 @@
 //! `dry` means that a queue is empty when its next segment is due.
 
 use crate::HdlError;
-use crate::primitives::constant::{Literal, Parameter};
+use crate::parameters::CLOCKS_PER_TICK;
+use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::lanes::Lanes;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
+use carrystep_core::engine::least_clocks;
 use rust_hdl::prelude::*;
 
 pub mod adder;
@@ -196,6 +199,7 @@ pub struct Engine<const N: usize> {
     by_one: Literal<1, 1>,
     to_top: Parameter<3>,
     axes: Parameter<4>,
+    clocks_per_tick_too_few_for_the_axes: Refusal,
 }
 
 impl<const N: usize> Engine<N> {
@@ -206,6 +210,8 @@ impl<const N: usize> Engine<N> {
         for (pulser, pins) in pulser.iter_mut().zip(&build.pins) {
             *pulser = Pulser::new(pins)?;
         }
+        let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
+        let least = u64::from(least_clocks(N, build.timebase.phases()));
         Ok(Self {
             turn: Turn::new(),
             store: Store::new(build.phase, &build.guard.stop),
@@ -216,6 +222,7 @@ impl<const N: usize> Engine<N> {
             watch: Watch::new(&build.guard),
             pulser,
             axes: Parameter::new(N as u64),
+            clocks_per_tick_too_few_for_the_axes: Refusal::of(&clocks.whole().is_less(&Formula::number(least))),
             to_top: Parameter::new(N as u64 - 1),
             one_axis: Lanes::from_fn(|axis| Parameter::new(1 << axis)),
             rest_1: Register::new(true),

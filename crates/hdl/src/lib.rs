@@ -21,6 +21,7 @@ pub mod engine;
 pub mod line;
 pub mod link;
 pub mod parallel;
+pub mod parameters;
 pub mod parts;
 pub mod primitives;
 mod sim;

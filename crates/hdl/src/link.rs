@@ -22,9 +22,12 @@
 //! registers of the processor. The same protocol without a processor would need hundreds of logic
 //! cells.
 
+use crate::parameters::{BUILD_ID, CLOCK_HZ, ROUND_TICKS, TICK_NS, WATCHDOG_ROUNDS};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
+use carrystep_core::link::registers::{self, BUILD_HIGH, BUILD_LOW, WATCHDOG_TICKS};
 use carrystep_core::link::{BuildId, facts, image};
 use rust_hdl::prelude::*;
 
@@ -123,8 +126,28 @@ pub struct Link<const N: usize> {
 impl<const N: usize> Link<N> {
     /// Makes the link of this build.
     fn new(build: &EngineBuild, id: BuildId) -> Self {
-        Self { machine: Machine::new(&image()), facts: Facts::new(&facts(build, id)), ..Self::default() }
+        Self { machine: Machine::new(&image()), facts: Facts::new(&formulas(build, id)), ..Self::default() }
     }
+}
+
+/// What the build says of itself: address, and the number as it follows from parameters of the Verilog.
+fn formulas(build: &EngineBuild, id: BuildId) -> Vec<(u8, Formula<32>)> {
+    let number = |value: u64| value as u32;
+    let build_id = BUILD_ID.of::<64>(id.0);
+    let rounds = WATCHDOG_ROUNDS.of::<32>(build.guard.watchdog).whole();
+    let silence = rounds * ROUND_TICKS.of::<32>(build.guard.round).whole();
+    let formula = |(address, fact): (u8, u32)| {
+        let formula = match address {
+            BUILD_LOW => build_id.bits(0),
+            BUILD_HIGH => build_id.bits(32),
+            registers::CLOCK_HZ => CLOCK_HZ.of(number(build.timebase.clock_hz())).whole(),
+            registers::TICK_NS => TICK_NS.of(number(build.timebase.tick_ns())).whole(),
+            WATCHDOG_TICKS => silence.clone(),
+            _ => Formula::number(fact.into()),
+        };
+        (address, formula)
+    };
+    facts(build, id).into_iter().map(formula).collect()
 }
 
 impl<const N: usize> Logic for Link<N> {
@@ -182,6 +205,17 @@ mod tests {
     use crate::sim::assert_synthesizes;
     use carrystep_core::link::Line;
     use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
+
+    #[test]
+    fn formulas_are_the_facts_of_the_build() {
+        let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
+        let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
+        let mut build = EngineBuild::minimal(&build, 1);
+        build.guard.watchdog = 4095;
+        let id = Line::Spi.build_id(&build);
+        let values: Vec<_> = formulas(&build, id).iter().map(|(at, fact)| (*at, fact.value().value() as u32)).collect();
+        assert_eq!(values, facts(&build, id));
+    }
 
     #[test]
     fn link_synthesizes() {

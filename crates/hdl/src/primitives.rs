@@ -2,6 +2,7 @@
 //! registers with a reset value, memories, words of bits, and constants that differ between builds.
 
 pub mod constant;
+pub mod formula;
 pub mod lanes;
 pub mod memory;
 pub mod register;

@@ -5,9 +5,11 @@ use crate::guard;
 use crate::module::module_text;
 use crate::names::{Names, split_index};
 use crate::netlist::{self, Module};
+use crate::parameters;
 use crate::write::{TextFile, write};
 use carrystep_core::link::Line;
 use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
+use carrystep_hdl::primitives::formula::ParameterValue;
 use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
 use rust_hdl::prelude::{Block, check_all};
 use std::path::{Path, PathBuf};
@@ -96,7 +98,7 @@ pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Resul
     let id = line.build_id(build);
     let lines =
         format!("// Clock        {} Hz\n// Line         {line}\n// Build id     {id}\n", build.timebase.clock_hz());
-    let facts = Facts { title: "the host link of an engine".to_owned(), lines, pins: &[] };
+    let facts = Facts { title: "the host link of an engine".to_owned(), lines };
     file_text(link(build, id)?.as_mut(), LINK_NAME, &facts, description)
 }
 
@@ -106,13 +108,37 @@ pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Resul
 /// # Errors
 /// [`ExportError`] if the module cannot be generated.
 pub fn line_verilog(line: Line, description: &str) -> Result<String, ExportError> {
-    let facts =
-        Facts { title: "the line to the host".to_owned(), lines: format!("// Line         {line}\n"), pins: &[] };
-    let mut module: Box<dyn Block> = match line {
+    let facts = Facts { title: "the line to the host".to_owned(), lines: format!("// Line         {line}\n") };
+    file_text(line_block(line).as_mut(), line_name(line), &facts, description)
+}
+
+fn line_block(line: Line) -> Box<dyn Block> {
+    match line {
         Line::Uart(uart) => Box::new(UartLine::new(uart)),
         Line::Spi => Box::new(Spi::new()),
-    };
-    file_text(module.as_mut(), line_name(line), &facts, description)
+    }
+}
+
+/// The parameters of a build's modules, with its values.
+#[derive(Debug)]
+pub(crate) struct Overrides {
+    pub(crate) line: Vec<ParameterValue>,
+    pub(crate) link: Vec<ParameterValue>,
+    pub(crate) engine: Vec<ParameterValue>,
+}
+
+impl Overrides {
+    pub(crate) fn of(build: &EngineBuild, line: Line) -> Result<Self, ExportError> {
+        let of = |block: &mut dyn Block| {
+            block.connect_all();
+            parameters::of(&netlist::read(block)?)
+        };
+        Ok(Self {
+            line: of(line_block(line).as_mut())?,
+            link: of(link(build, line.build_id(build))?.as_mut())?,
+            engine: of(engine(build)?.as_mut())?,
+        })
+    }
 }
 
 /// Name of a line's top module and of its file.
@@ -136,21 +162,20 @@ pub(crate) fn link_ports(build: &EngineBuild, line: Line) -> Result<(Ports, Port
 }
 
 /// Contents of the header.
-struct Facts<'a> {
+struct Facts {
     title: String,
     lines: String,
-    pins: &'a [PinTiming],
 }
 
-fn file_text(core: &mut dyn Block, name: &str, build: &Facts<'_>, description: &str) -> Result<String, ExportError> {
+fn file_text(core: &mut dyn Block, name: &str, build: &Facts, description: &str) -> Result<String, ExportError> {
     core.connect_all();
     check_all(core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
     let mut top = netlist::read(core)?;
     top.instance = name.trim_start_matches("carrystep_").into();
-    let mut library = Library { build, modules: Vec::new() };
+    let mut library = Library::default();
     library.add(&top)?;
     let mut text = header(name, build, description);
-    for (name, module) in &library.modules {
+    for Written { name, text: module, .. } in &library.modules {
         let purpose = PURPOSES.iter().find(|(kind, _)| name.starts_with(kind)).map_or("", |(_, purpose)| purpose);
         text.push_str(&format!("\n// {purpose}\n{module}"));
     }
@@ -180,40 +205,40 @@ fn files(name: &str, verilog: String, waivers: &str) -> [TextFile; 2] {
 }
 
 /// The modules collected so far, children first.
-struct Library<'a> {
-    build: &'a Facts<'a>,
-    modules: Vec<(String, String)>,
+#[derive(Default)]
+struct Library {
+    modules: Vec<Written>,
 }
 
-impl Library<'_> {
+/// A module in Verilog.
+struct Written {
+    name: String,
+    /// Its text without the values of its parameters.
+    neutral: String,
+    /// Its text; its parameters have the values of its first instance.
+    text: String,
+}
+
+impl Library {
     /// Adds a module and its children, and returns the module's name.
     fn add(&mut self, module: &Module) -> Result<String, ExportError> {
         let kinds = module.children.iter().map(|child| self.add(child)).collect::<Result<Vec<_>, _>>()?;
-        let name = self.name(&module.instance);
-        let text = module_text(module, &name, &kinds)?;
-        match self.modules.iter().find(|(known, _)| *known == name) {
-            None => self.modules.push((name.clone(), text)),
-            Some((_, known)) if *known == text => {}
+        let name = format!("carrystep_{}", split_index(&module.instance).0);
+        let neutral = module_text(&module.without_values(), &name, &kinds)?;
+        match self.modules.iter().find(|known| known.name == name) {
+            None => {
+                let text = module_text(module, &name, &kinds)?;
+                self.modules.push(Written { name: name.clone(), neutral, text });
+            }
+            Some(known) if known.neutral == neutral => {}
             Some(_) => return Err(ExportError::SameName(name)),
         }
         Ok(name)
     }
-
-    /// The name of an instance's module. The instances of an array share one module, except for
-    /// shapers and pulsers, which are named by their timing.
-    fn name(&self, instance: &str) -> String {
-        let (base, index) = split_index(instance);
-        match index.and_then(|index| self.build.pins.get(index)) {
-            Some(pins) if base == "shaper" || base == "pulser" => {
-                format!("carrystep_{base}_w{}_s{}_d{}_h{}", pins.width, pins.gap, pins.setup, pins.hold)
-            }
-            _ => format!("carrystep_{base}"),
-        }
-    }
 }
 
-impl<'a> Facts<'a> {
-    fn of_axes(time: &Timebase, phase: StartPhase, pins: &'a [PinTiming], guard: &str) -> Self {
+impl Facts {
+    fn of_axes(time: &Timebase, phase: StartPhase, pins: &[PinTiming], guard: &str) -> Self {
         let start = match phase {
             StartPhase::Half => "half a step",
             StartPhase::Zero => "0",
@@ -237,13 +262,13 @@ impl<'a> Facts<'a> {
         }
         let count = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"].get(pins.len());
         let title = format!("step and direction for {} axes", count.unwrap_or(&"many"));
-        Self { title, lines: lines + guard, pins }
+        Self { title, lines: lines + guard }
     }
 }
 
-fn header(name: &str, facts: &Facts<'_>, description: &str) -> String {
+fn header(name: &str, facts: &Facts, description: &str) -> String {
     let description = description.replace(['\n', '\r'], " ");
-    let Facts { title, lines, .. } = facts;
+    let Facts { title, lines } = facts;
     format!(
         "\
 // SPDX-License-Identifier: MIT OR Apache-2.0
@@ -252,6 +277,10 @@ fn header(name: &str, facts: &Facts<'_>, description: &str) -> String {
 //
 // Made from    {description}
 // Made by      carrystep {version}, with Rust-HDL {RUST_HDL}
+//
+// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
+// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+//
 {lines}
 `default_nettype none
 ",

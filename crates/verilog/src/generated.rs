@@ -1,10 +1,20 @@
 //! All files of the workspace that are generated from tables of `spec`: the files of the register
 //! map, the pages of boards and drivers, and the boards' gateware.
 
+use crate::core::{LINK_NAME, line_name, line_verilog, link_verilog};
 use crate::write::{TextFile, write};
 use crate::{ExportError, Gateware, board, registers};
 use carrystep_boards::boards;
+use carrystep_core::link::Line;
+use carrystep_files::{Machine, Source};
 use std::path::Path;
+
+/// Where the modules are that boards share.
+const CORE: &str = "hdl-out/core";
+
+/// The machine whose parameters are the defaults there.
+const SHIPPED: &str = "sim/six-axis.toml";
+const SHIPPED_TEXT: &str = include_str!("../../../sim/six-axis.toml");
 
 /// Each file, named by its path in the workspace.
 ///
@@ -13,9 +23,22 @@ use std::path::Path;
 pub fn generated_files() -> Result<Vec<TextFile>, ExportError> {
     let mut files: Vec<_> = registers::files()?.into_iter().map(|(path, text)| TextFile::new(path, text)).collect();
     files.extend(board::pages()?);
+    files.extend(core_files()?);
     for board in boards() {
-        let made = Gateware::shipped(board, &board.parts[0])?.files()?.into_iter();
+        let made = Gateware::shipped(board, &board.parts[0])?.files_beside("../core")?.into_iter();
         files.extend(made.map(|file| TextFile { name: format!("hdl-out/{}/{}", board.name, file.name), ..file }));
+    }
+    Ok(files)
+}
+
+/// The modules of the host's link, each once, with the parameters of the shipped machine as defaults.
+fn core_files() -> Result<Vec<TextFile>, ExportError> {
+    let machine = Machine::from_source(&Source { path: SHIPPED.into(), text: SHIPPED_TEXT.into() })?;
+    let (build, line) = (machine.engine(), machine.line()?);
+    let file = |name: &str, text| TextFile::new(format!("{CORE}/{name}.v"), text);
+    let mut files = vec![file(LINK_NAME, link_verilog(&build, line, SHIPPED)?)];
+    for line in [line, Line::Spi] {
+        files.push(file(line_name(line), line_verilog(line, SHIPPED)?));
     }
     Ok(files)
 }

@@ -19,6 +19,7 @@ mod kernel;
 mod module;
 mod names;
 mod netlist;
+mod parameters;
 mod registers;
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 //! port).
 
 use crate::ExportError;
-use crate::netlist::{Module, Number};
+use crate::netlist::Module;
 use rust_hdl::prelude::AtomKind;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -40,12 +40,22 @@ pub(crate) struct Port {
     pub(crate) output: bool,
 }
 
+/// A constant of the module in Verilog.
+#[derive(Debug, Clone)]
+pub(crate) struct Constant {
+    pub(crate) name: String,
+    pub(crate) width: usize,
+    pub(crate) text: String,
+}
+
 /// All names of a module.
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     pub(crate) ports: Vec<Port>,
     pub(crate) locals: Vec<String>,
-    pub(crate) constants: Vec<(String, Number)>,
+    pub(crate) constants: Vec<Constant>,
+    /// Conditions under which the module refuses its parameters, with the error's name.
+    pub(crate) refusals: Vec<(String, String)>,
     known: BTreeMap<String, Name>,
 }
 
@@ -71,11 +81,16 @@ impl Names {
                     names.locals.push(text.clone());
                     names.add(&atom.name, text, atom.width, Role::Driven);
                 }
-                AtomKind::Constant => {
-                    let text = plain(&atom.name).to_uppercase();
-                    names.constants.push((text.clone(), atom.value));
-                    names.add(&atom.name, text, atom.width, Role::Given);
-                }
+                AtomKind::Constant => match &atom.note {
+                    Some(note) if note.is_refusal && note.given.is_empty() => {}
+                    Some(note) if note.is_refusal => names.refusals.push((plain(&atom.name), note.text.clone())),
+                    note => {
+                        let name = plain(&atom.name).to_uppercase();
+                        let text = note.as_ref().map_or_else(|| atom.value.to_string(), |note| note.text.clone());
+                        names.constants.push(Constant { name: name.clone(), width: atom.width, text });
+                        names.add(&atom.name, name, atom.width, Role::Given);
+                    }
+                },
                 _ => return Err(ExportError::unsupported(&module.instance, format!("signal {}", atom.name))),
             }
         }

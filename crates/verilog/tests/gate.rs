@@ -124,6 +124,13 @@ fn no_line_to_the_host_is_driven_before_the_gate_allows_it() {
     }
 }
 
+/// The text without the overrides of parameters, which modules that yosys makes from their instances do not have.
+fn without_overrides(text: &str) -> String {
+    let mut parts = text.split(" #(\n");
+    let first = parts.next().unwrap().to_owned();
+    parts.fold(first, |text, part| text + " " + part.split_once("\n    ) ").unwrap().1)
+}
+
 /// Both toolchains for a Spartan-6 turn such a line into a buffer with an output enable; yosys
 /// shows it here.
 #[test]
@@ -133,7 +140,7 @@ fn held_line_becomes_a_buffer_with_an_output_enable() {
         let gateware = gateware(board, spi);
         let top = gateware.verilog().unwrap().remove(0);
         let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("top.v"), top.text).unwrap();
+        std::fs::write(folder.path().join("top.v"), without_overrides(&top.text)).unwrap();
         let script = format!(
             "read_verilog top.v; hierarchy -generate carrystep_* o:clock i:*; synth_xilinx -family xc6s -ise -nowidelut -top {}; \
              select -assert-count 1 t:OBUFT",

@@ -58,10 +58,10 @@ pub fn sample(verilog: &str, top: &str, count: usize) -> Sample {
     std::fs::write(folder.path().join("core.v"), verilog).expect("a file");
     // The number is greater than that of all mutants, so yosys lists all of them.
     let list = format!("mutate -list 1000000 -seed {SEED} -o list");
-    yosys(
-        folder.path(),
-        &format!("read_verilog core.v; hierarchy -check -top {top}; {PREPARE}; write_rtlil core.il; {PURGE}; {list}"),
-    );
+    yosys(folder.path(), &format!("read_verilog core.v; hierarchy -check -top {top}; {PREPARE}; write_rtlil core.il"));
+    let netlist = named_by_instance(&read("core.il"));
+    std::fs::write(folder.path().join("core.il"), &netlist).expect("a file");
+    yosys(folder.path(), &format!("read_rtlil core.il; {PURGE}; {list}"));
     let mutants = draw(candidates(&read("list"), verilog), count);
     let width = usize::BITS - count.leading_zeros();
     let mut script = format!("read_rtlil core.il\n{PURGE}\n");
@@ -72,7 +72,7 @@ pub fn sample(verilog: &str, top: &str, count: usize) -> Sample {
     let _ = write!(script, "delete -port {top}/w:mutant\nwrite_verilog -noattr mutants.v\n");
     std::fs::write(folder.path().join("apply.ys"), script).expect("a file");
     yosys(folder.path(), "script apply.ys");
-    Sample { mutants, verilog: with_choice(&read("mutants.v"), top, width), netlist: read("core.il") }
+    Sample { mutants, verilog: with_choice(&read("mutants.v"), top, width), netlist }
 }
 
 impl Sample {
@@ -88,6 +88,31 @@ impl Sample {
         yosys(folder.path(), "script alone.ys");
         std::fs::read_to_string(folder.path().join("alone.v")).expect("what yosys has written")
     }
+}
+
+/// The netlist (RTLIL) in which a module that yosys has made of one with parameters is named after its kind or, in an
+/// array of instances, after the first of its instances: `carrystep_pulser_2` in place of
+/// `$paramod$1f2e\carrystep_pulser`.
+fn named_by_instance(netlist: &str) -> String {
+    let mut names: HashMap<&str, String> = HashMap::new();
+    for line in netlist.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let ["cell", part, instance] = words[..] else { continue };
+        let Some((_, kind)) = part.strip_prefix("$paramod").and_then(|rest| rest.split_once("\\carrystep_")) else {
+            continue;
+        };
+        let kind = kind.split('\\').next().unwrap_or(kind);
+        let instance = instance.trim_start_matches('\\');
+        let index = instance.strip_prefix(kind).filter(|rest| rest.strip_prefix('_').is_some_and(is_number));
+        names.entry(part).or_insert_with(|| format!("\\carrystep_{kind}{}", index.unwrap_or_default()));
+    }
+    let word = |word: &str| names.get(word).map_or(word, String::as_str).to_owned();
+    let line = |line: &str| line.split(' ').map(word).collect::<Vec<_>>().join(" ") + "\n";
+    netlist.lines().map(line).collect()
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// The selecting input is replaced by a variable that is set once. As a port, Verilator would

@@ -34,8 +34,13 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
-    let case =
-        Case { name: "any".into(), dut: "carrystep_adder".into(), verilog: built.1.clone(), numbers: Vec::new() };
+    let case = Case {
+        name: "any".into(),
+        dut: "carrystep_adder".into(),
+        parameters: Vec::new(),
+        verilog: built.1.clone(),
+        numbers: Vec::new(),
+    };
     Proof {
         module: "adder",
         promises: Promises { text: include_str!("../../../crates/hdl/src/engine/adder/promises.sv") },

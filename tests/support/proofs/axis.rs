@@ -26,6 +26,7 @@ pub(super) fn proof() -> Proof {
     let case = |(build, verilog): (Build, _)| Case {
         name: format!("{:?}", build.phase),
         dut: "carrystep_axis".into(),
+        parameters: Vec::new(),
         verilog,
         numbers: vec![("START", format!("64'h{:x}", build.phase.start_value()))],
     };

@@ -7,6 +7,7 @@ use carrystep_core::build::MAX_CLOCKS;
 use carrystep_core::engine::{EngineBuild, Guard, Limits};
 use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
+use carrystep_hdl::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
 use std::sync::Arc;
 
 /// The shipped machine: its build, and its committed Verilog in `hdl-out/`.
@@ -88,8 +89,7 @@ pub fn beat_name(time: &Timebase) -> String {
     format!("{} clocks in {} phases", time.clocks_per_tick(), time.phases())
 }
 
-/// One case for each pin timing of the builds, with the module of this kind that was exported for
-/// it.
+/// One case for each pin timing of the builds. All are of one module of this kind, whose parameters they are.
 pub fn pin_cases(kind: &str, builds: &[(Vec<PinTiming>, Arc<str>)]) -> Vec<Case> {
     let mut cases: Vec<Case> = Vec::new();
     for (pins, verilog) in builds {
@@ -97,11 +97,17 @@ pub fn pin_cases(kind: &str, builds: &[(Vec<PinTiming>, Arc<str>)]) -> Vec<Case>
             let name = format!("w{}_s{}_d{}_h{}", pins.width, pins.gap, pins.setup, pins.hold);
             let numbers = [("W", pins.width), ("S", pins.gap), ("D", pins.setup), ("H", pins.hold)];
             let numbers = numbers.into_iter().map(|(name, clocks)| (name, clocks.to_string())).collect();
-            let dut = format!("{kind}_{name}");
-            if cases.iter().all(|case| case.dut != dut) {
-                cases.push(Case { name, dut, verilog: verilog.clone(), numbers });
+            if cases.iter().all(|case| case.name != name) {
+                let (dut, parameters) = (kind.to_owned(), pin_parameters(pins));
+                cases.push(Case { name, dut, parameters, verilog: verilog.clone(), numbers });
             }
         }
     }
     cases
+}
+
+/// The parameters of a pulser or shaper with this timing.
+pub fn pin_parameters(pins: &PinTiming) -> Vec<(&'static str, u32)> {
+    let &PinTiming { width, gap, setup, hold } = pins;
+    vec![(STEP_HIGH.name, width), (STEP_LOW.name, gap), (DIR_SETUP.name, setup), (DIR_HOLD.name, hold)]
 }

@@ -22,6 +22,7 @@ pub(super) fn proof() -> Proof {
     let case = |(build, verilog): (Build, _)| Case {
         name: beat_name(&build.timebase),
         dut: "carrystep_step_edge".into(),
+        parameters: Vec::new(),
         verilog,
         numbers: beat(&build.timebase),
     };

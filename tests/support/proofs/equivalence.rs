@@ -95,6 +95,7 @@ fn new_move(axes: usize, clocks: u32, phases: u32, ticks: [u32; 2], free: u64) -
         engine: Case {
             name: format!("{axes} axes, {clocks} clocks, {phases} phases, {ticks:?} ticks, bits {free:x}"),
             dut: "carrystep_engine".into(),
+            parameters: Vec::new(),
             verilog: engine,
             numbers: numbers.into(),
         },

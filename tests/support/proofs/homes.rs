@@ -18,6 +18,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes at {} Hz", build.axes(), build.timebase.clock_hz()),
         dut: "carrystep_homes".into(),
+        parameters: Vec::new(),
         verilog,
         numbers: vec![axes(&build)],
     };

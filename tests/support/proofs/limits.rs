@@ -26,6 +26,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         Case {
             name: format!("{:?}, {} looks", guard.limits, guard.debounce),
             dut: "carrystep_limits".into(),
+            parameters: Vec::new(),
             verilog,
             numbers: vec![
                 axes(&build),

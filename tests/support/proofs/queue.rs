@@ -37,8 +37,13 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
-    let case =
-        Case { name: "any".into(), dut: "carrystep_queue".into(), verilog: built.1.clone(), numbers: Vec::new() };
+    let case = Case {
+        name: "any".into(),
+        dut: "carrystep_queue".into(),
+        parameters: Vec::new(),
+        verilog: built.1.clone(),
+        numbers: Vec::new(),
+    };
     Proof {
         module: "queue",
         promises: Promises { text: include_str!("../../../crates/hdl/src/engine/queue/promises.sv") },

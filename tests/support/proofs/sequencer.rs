@@ -24,8 +24,13 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof() -> Proof {
-    let case =
-        Case { name: "any".into(), dut: "carrystep_sequencer".into(), verilog: shipped().1, numbers: Vec::new() };
+    let case = Case {
+        name: "any".into(),
+        dut: "carrystep_sequencer".into(),
+        parameters: Vec::new(),
+        verilog: shipped().1,
+        numbers: Vec::new(),
+    };
     Proof {
         module: "sequencer",
         promises: Promises { text: include_str!("../../../crates/hdl/src/parallel/sequencer/promises.sv") },

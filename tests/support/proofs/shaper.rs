@@ -8,7 +8,7 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_1_width", text: "(step_pin & (busy", becomes: "(step_pin & !frozen & (busy" },
     Bug { breaks: "promise_2_gap", text: "& (busy == 17'd0) &", becomes: "& (busy <= BUSY_ONE) &" },
     Bug { breaks: "promise_3_setup", text: "setup <= SETUP_LOAD;", becomes: "setup <= SETUP_LOAD - TIMER_ONE;" },
-    Bug { breaks: "promise_3_setup", text: "setup = 16'd3;", becomes: "setup = 16'd0;" },
+    Bug { breaks: "promise_3_setup", text: "setup = DIR_SETUP[15:0] - 16'd1;", becomes: "setup = 16'd0;" },
     Bug { breaks: "promise_4_hold", text: "hold <= HOLD_LOAD;", becomes: "hold <= HOLD_LOAD - TIMER_ONE;" },
     Bug { breaks: "promise_5_no_new_edge", text: "rise = pending & !frozen", becomes: "rise = pending" },
     Bug { breaks: "promise_5_never_left_high", text: "(busy != GAP)", becomes: "((busy != GAP) | frozen)" },

@@ -25,6 +25,7 @@ pub(super) fn proof() -> Proof {
     let case = |(build, verilog): (Build, _)| Case {
         name: beat_name(&build.timebase),
         dut: "carrystep_six_axis".into(),
+        parameters: Vec::new(),
         verilog,
         numbers: vec![("AXES", AXES.to_string())],
     };

@@ -144,7 +144,12 @@ fn any_reached(dir: &Path, clocks: u32) -> Result<(bool, String), ProofError> {
 /// The commands of yosys: they read the unchanged exported text and the promises, and name the
 /// internal signals that the promises refer to.
 fn script(promises: &Promises, case: &Case, question: Question) -> String {
-    let mut text = format!("read_verilog -sv exported.v look.sv\nread_verilog -formal -sv -D DUT={}", case.dut);
+    let mut text = "read_verilog -sv exported.v look.sv\n".to_owned();
+    for (name, value) in &case.parameters {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "chparam -set {name} {value} {}", case.dut);
+    }
+    let _ = write!(text, "read_verilog -formal -sv -D DUT={}", case.dut);
     for (name, number) in &case.numbers {
         // Writing to a string cannot fail.
         let _ = write!(text, " -D {name}={number}");

@@ -25,6 +25,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{:?}", build.guard.limits),
         dut: "carrystep_stops".into(),
+        parameters: Vec::new(),
         verilog,
         numbers: vec![axes(&build), ("LIMIT_FREEZES", u8::from(build.guard.limit_freezes).to_string())],
     };

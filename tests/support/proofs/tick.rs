@@ -16,6 +16,7 @@ pub(super) fn proof() -> Proof {
     let case = |(build, verilog): (Build, _)| Case {
         name: beat_name(&build.timebase),
         dut: "carrystep_tick".into(),
+        parameters: Vec::new(),
         verilog,
         numbers: beat(&build.timebase),
     };

@@ -17,6 +17,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} clocks", build.timebase.clocks_per_tick()),
         dut: "carrystep_turn".into(),
+        parameters: Vec::new(),
         verilog,
         numbers: vec![axes(&build), ("CLOCKS", build.timebase.clocks_per_tick().to_string())],
     };

@@ -6,7 +6,7 @@ use carrystep_core::engine::{EngineBuild, Limits};
 
 const BUGS: &[Bug] = &[
     Bug { breaks: "promise_5_pressed_for_a_whole_tick", text: "now & (held | strobe)", becomes: "now & (held | now)" },
-    Bug { breaks: "promise_5_pressed_for_a_whole_tick", text: "ESTOP_LOW != 1'b0", becomes: "ESTOP_LOW == 1'b0" },
+    Bug { breaks: "promise_5_pressed_for_a_whole_tick", text: "PRESSED_LOW != 1'b0", becomes: "PRESSED_LOW == 1'b0" },
     Bug { breaks: "promise_10_not_before_its_time", text: "silence <= NO_ROUND;", becomes: "silence <= ONE_ROUND;" },
     Bug { breaks: "promise_10_missed_in_time", text: "round_over & !silent", becomes: "round_over & !silent & idle" },
     Bug {
@@ -32,6 +32,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         Case {
             name: format!("rounds of {} ticks", guard.round),
             dut: "carrystep_watch".into(),
+            parameters: Vec::new(),
             verilog,
             numbers: vec![
                 number("ESTOP_LOW", guard.estop_low.into()),

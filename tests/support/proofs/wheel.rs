@@ -33,6 +33,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes, {}", build.axes(), beat_name(&build.timebase)),
         dut: "carrystep_wheel".into(),
+        parameters: Vec::new(),
         verilog,
         numbers: [vec![axes(&build)], beat(&build.timebase)].concat(),
     };

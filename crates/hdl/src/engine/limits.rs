@@ -14,11 +14,13 @@
 //!
 //! Cost: one synchronizer and one debouncer for all switches, and a memory of 16 words of 8 bits.
 
-use crate::primitives::constant::{Literal, Parameter};
+use crate::parameters::{DEBOUNCE_LOOKS, LIMITS, LIMITS_LOW};
+use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
-use carrystep_core::engine::{Guard, Limits as Wiring};
+use carrystep_core::engine::{Guard, Limits as Wiring, MAX_LOOKS};
 use rust_hdl::prelude::*;
 
 /// The debouncer of all limit switches, and the decision whether a switch stops the axis.
@@ -77,18 +79,32 @@ pub struct Limits<const N: usize> {
     no_side: Literal<4, 0>,
     max_bit: Signal<Local, Word<4>>,
     by_one: Literal<1, 1>,
+    limits_out_of_range: Refusal,
+    limits_low_out_of_range: Refusal,
+    debounce_looks_out_of_range: Refusal,
 }
 
 impl<const N: usize> Limits<N> {
     /// Makes the limits of this guard. The caller has checked the guard.
     pub fn new(guard: &Guard) -> Self {
-        let is = |wiring| Parameter::new(u64::from(guard.limits == wiring));
+        let number = |wiring| match wiring {
+            Wiring::None => 0_u32,
+            Wiring::Pair => 1,
+            Wiring::Each => 2,
+            Wiring::One => 3,
+        };
+        let wiring = LIMITS.of::<32>(number(guard.limits));
+        let is = |one| wiring.whole().is(&Formula::number(number(one).into()));
+        let (low, looks) = (LIMITS_LOW.of::<32>(guard.limits_low), DEBOUNCE_LOOKS.of::<32>(guard.debounce));
         Self {
-            exist: Parameter::new(u64::from(guard.limits != Wiring::None)),
-            pair: is(Wiring::Pair),
-            one_for_all: is(Wiring::One),
-            low: Parameter::new(u64::from(guard.limits_low)),
-            last_look: Parameter::new(u64::from(guard.debounce - 1)),
+            exist: Parameter::of(&wiring.whole().is_not(&Formula::number(number(Wiring::None).into()))),
+            pair: Parameter::of(&is(Wiring::Pair)),
+            one_for_all: Parameter::of(&is(Wiring::One)),
+            low: Parameter::of(&low.bits(0)),
+            last_look: Parameter::of(&(looks.bits(0) - Formula::number(1))),
+            limits_out_of_range: Refusal::of(&wiring.is_outside(0, 3)),
+            limits_low_out_of_range: Refusal::of(&low.is_outside(0, 1)),
+            debounce_looks_out_of_range: Refusal::of(&looks.is_outside(1, MAX_LOOKS.into())),
             ..Self::default()
         }
     }

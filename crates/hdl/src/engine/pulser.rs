@@ -25,7 +25,9 @@
 //! timing requires.
 
 use crate::HdlError;
-use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
+use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::PinTiming;
@@ -93,6 +95,10 @@ pub struct Pulser {
     at_3: Literal<4, 3>,
     one: Literal<3, 1>,
     minus_one: Literal<3, 7>,
+    step_high_out_of_range: Refusal,
+    step_low_out_of_range: Refusal,
+    dir_setup_out_of_range: Refusal,
+    dir_hold_out_of_range: Refusal,
 }
 
 impl Pulser {
@@ -107,17 +113,29 @@ impl Pulser {
                 return Err(HdlError::PinTiming { name, clocks });
             }
         }
-        let [width, gap, setup, hold] = [width, gap, setup, hold].map(u64::from);
-        let (gap_over, hold_over, setup_over) = (width + gap - 2, hold.saturating_sub(2), setup.saturating_sub(2));
+        let (width, gap) = (STEP_HIGH.of::<32>(width), STEP_LOW.of::<32>(gap));
+        let (setup, hold) = (DIR_SETUP.of::<32>(setup), DIR_HOLD.of::<32>(hold));
+        let most = u64::from(MAX_CLOCKS);
+        let pulse_over = width.bits::<17>(0) - Formula::number(1);
+        let gap_over = (width.bits::<17>(0) + gap.bits::<17>(0)) - Formula::number(2);
+        let hold_over = hold.bits::<17>(0).without(Formula::number(2));
+        // In 16 bits 65536 is 0, and two less than it what it should be.
+        let at_once = setup.whole().is(&Formula::number(1));
+        let setup_over = Formula::number(0).where_or(&at_once, setup.bits::<16>(0) - Formula::number(2));
+        let greatest = gap_over.clone().or_more(hold_over.clone());
         Ok(Self {
-            pulse_over: Parameter::new(width - 1),
-            gap_over: Parameter::new(gap_over),
-            hold_over: Parameter::new(hold_over),
-            since_bits: Parameter::new(used_bits((width - 1).max(gap_over).max(hold_over))),
-            setup_over: Parameter::new(setup_over),
-            after_bits: Parameter::new(used_bits(setup_over)),
-            holds: Parameter::new(u64::from(hold > 1)),
-            instant: Parameter::new(u64::from(setup == 1)),
+            pulse_over: Parameter::of(&pulse_over),
+            gap_over: Parameter::of(&gap_over),
+            hold_over: Parameter::of(&hold_over),
+            since_bits: Parameter::of(&greatest.or_more(pulse_over).used_bits()),
+            setup_over: Parameter::of(&setup_over),
+            after_bits: Parameter::of(&setup_over.used_bits()),
+            holds: Parameter::of(&hold.whole().is_more(&Formula::number(1))),
+            instant: Parameter::of(&at_once),
+            step_high_out_of_range: Refusal::of(&width.is_outside(1, most)),
+            step_low_out_of_range: Refusal::of(&gap.is_outside(1, most)),
+            dir_setup_out_of_range: Refusal::of(&setup.is_outside(1, most)),
+            dir_hold_out_of_range: Refusal::of(&hold.is_outside(1, most)),
             ..Self::default()
         })
     }

@@ -19,7 +19,8 @@
 //!
 //! Cost: about a dozen flip-flops, two registers of 3 bits for causes, and one flip-flop per axis.
 
-use crate::primitives::constant::{Literal, Parameter};
+use crate::parameters::LIMIT_FREEZES;
+use crate::primitives::constant::{Literal, Parameter, Refusal};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::engine::Guard;
@@ -92,7 +93,7 @@ pub struct Stops<const N: usize> {
     ripe: Signal<Local, Bit>,
     by_host: Signal<Local, Bit>,
     calls: Signal<Local, Bit>,
-    limit_freezes: Parameter<1>,
+    limits_freeze: Parameter<1>,
     e_stop: Literal<3, 0>,
     overrun: Literal<3, 1>,
     protocol: Literal<3, 2>,
@@ -101,12 +102,18 @@ pub struct Stops<const N: usize> {
     limited: Literal<3, 5>,
     underrun: Literal<3, 6>,
     host: Literal<3, 7>,
+    limit_freezes_out_of_range: Refusal,
 }
 
 impl<const N: usize> Stops<N> {
     /// Makes the stop control of this guard.
     pub fn new(guard: &Guard) -> Self {
-        Self { limit_freezes: Parameter::new(u64::from(guard.limit_freezes)), ..Self::default() }
+        let freezes = LIMIT_FREEZES.of::<32>(guard.limit_freezes);
+        Self {
+            limits_freeze: Parameter::of(&freezes.bits(0)),
+            limit_freezes_out_of_range: Refusal::of(&freezes.is_outside(0, 1)),
+            ..Self::default()
+        }
     }
 }
 
@@ -130,7 +137,7 @@ impl<const N: usize> Logic for Stops<N> {
                 self.kind.d.next = self.overspeed.val();
             }
         }
-        if self.turn_ends.val() & (self.too_fast.val() | (self.limit.val() & self.limit_freezes.val().any())) {
+        if self.turn_ends.val() & (self.too_fast.val() | (self.limit.val() & self.limits_freeze.val().any())) {
             self.found_freezing.d.next = true;
         }
         if self.turn_ends.val() & self.runs.val() {

@@ -18,11 +18,15 @@
 //!
 //! Cost: one memory of 512 words of 32 bits.
 
-use crate::primitives::constant::{Literal, Parameter};
+use crate::parameters::{START_HALF, STOP_ACCEL};
+use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::formula::Formula;
+use crate::primitives::lanes::Lanes;
 use crate::primitives::memory::Memory;
 use crate::primitives::register::Input;
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::StartPhase;
+use carrystep_core::engine::MAX_AXES;
 use rust_hdl::prelude::*;
 
 /// The memory and the selection of its addresses.
@@ -93,20 +97,36 @@ pub struct Store {
     start_high: Parameter<32>,
     no: Literal<32, 0>,
     all: Literal<32, 0xffff_ffff>,
+    start_half_out_of_range: Refusal,
+    stop_accel_out_of_range: Lanes<Refusal, MAX_AXES>,
 }
 
 impl Store {
     /// Makes the memory. `start` is the start value of P; `stops` are the stop accelerations of the
     /// axes in 2^-64 step per tick^2.
     pub fn new(start: StartPhase, stops: &[u64]) -> Self {
-        let start_high = start.start_value() >> 32;
+        let half = START_HALF.of::<32>(start == StartPhase::Half);
+        let high = |start: StartPhase| Formula::number(start.start_value() >> 32);
+        let start_high = high(StartPhase::Half).where_or(&half.bits(0), high(StartPhase::Zero));
         let mut kept = Vec::new();
+        let mut store = Self::default();
         for (axis, stop) in stops.iter().enumerate() {
-            let (down, low) = (stop.wrapping_neg(), 0xffff_ffff);
-            let words = [(1, start_high), (4, down & low), (5, down >> 32), (6, stop & low), (7, stop >> 32)];
-            kept.extend(words.map(|(slot, word)| (axis << 6 | slot << 3 | 7, Word::from(word))));
+            let stop = STOP_ACCEL.of_axis::<64>(axis, *stop);
+            let (low, high) = (stop.bits::<32>(0), stop.bits::<32>(32));
+            // -s: one more than its complement, whose low half carries where s has zeros only there.
+            let carry = Formula::number(1).where_or(&low.is(&Formula::number(0)), Formula::number(0));
+            let down = [Formula::number(0) - low.clone(), !high.clone() + carry];
+            let [down_low, down_high] = down;
+            let words = [(1, start_high.clone()), (4, down_low), (5, down_high), (6, low), (7, high)];
+            kept.extend(words.map(|(slot, word)| (axis << 6 | slot << 3 | 7, word)));
+            store.stop_accel_out_of_range[axis] = Refusal::of(&stop.is_outside(1, 1 << 62));
         }
-        Self { segments: Memory::of_words(&kept), start_high: Parameter::new(start_high), ..Self::default() }
+        Self {
+            segments: Memory::of_formulas(&kept),
+            start_high: Parameter::of(&start_high),
+            start_half_out_of_range: Refusal::of(&half.is_outside(0, 1)),
+            ..store
+        }
     }
 }
 

@@ -15,10 +15,12 @@
 //! Cost: a counter of the ticks in a round, up to 10 bits, and two counters of rounds, up to 12
 //! bits each.
 
-use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::parameters::{ENABLE_ROUNDS, ESTOP_LOW, ROUND_TICKS, WATCHDOG_ROUNDS};
+use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
-use carrystep_core::engine::Guard;
+use carrystep_core::engine::{Guard, MAX_ROUND, MAX_ROUNDS};
 use rust_hdl::prelude::*;
 
 /// The e-stop, the watchdog, the power of the drivers, and the round.
@@ -58,7 +60,7 @@ pub struct Watch {
     round_over: Signal<Local, Bit>,
     silent: Signal<Local, Bit>,
     is_warm: Signal<Local, Bit>,
-    estop_low: Parameter<1>,
+    pressed_low: Parameter<1>,
     round_bits: Parameter<10>,
     watchdog: Parameter<12>,
     silence_bits: Parameter<12>,
@@ -68,19 +70,29 @@ pub struct Watch {
     one_tick: Literal<10, 1>,
     no_round: Literal<12, 0>,
     one_round: Literal<12, 1>,
+    round_ticks_out_of_range: Refusal,
+    watchdog_rounds_out_of_range: Refusal,
+    enable_rounds_out_of_range: Refusal,
+    estop_low_out_of_range: Refusal,
 }
 
 impl Watch {
     /// Makes the monitor of this guard. The caller has checked the guard.
     pub fn new(guard: &Guard) -> Self {
-        let [watchdog, enable] = [guard.watchdog, guard.enable].map(u64::from);
+        let (watchdog, enable) = (WATCHDOG_ROUNDS.of::<32>(guard.watchdog), ENABLE_ROUNDS.of::<32>(guard.enable));
+        let (round, estop_low) = (ROUND_TICKS.of::<32>(guard.round), ESTOP_LOW.of::<32>(guard.estop_low));
+        let no_power = (round.whole() & (round.whole() - Formula::number(1))).is_not(&Formula::number(0));
         Self {
-            estop_low: Parameter::new(u64::from(guard.estop_low)),
-            round_bits: Parameter::new(u64::from(guard.round - 1)),
-            watchdog: Parameter::new(watchdog),
-            silence_bits: Parameter::new(used_bits(watchdog)),
-            warm_at: Parameter::new(enable),
-            warm_bits: Parameter::new(used_bits(enable)),
+            pressed_low: Parameter::of(&estop_low.bits(0)),
+            round_bits: Parameter::of(&(round.bits(0) - Formula::number(1))),
+            watchdog: Parameter::of(&watchdog.bits(0)),
+            silence_bits: Parameter::of(&watchdog.bits::<12>(0).used_bits()),
+            warm_at: Parameter::of(&enable.bits(0)),
+            warm_bits: Parameter::of(&enable.bits::<12>(0).used_bits()),
+            round_ticks_out_of_range: Refusal::of(&(round.is_outside(2, MAX_ROUND.into()) | no_power)),
+            watchdog_rounds_out_of_range: Refusal::of(&watchdog.is_outside(0, MAX_ROUNDS.into())),
+            enable_rounds_out_of_range: Refusal::of(&enable.is_outside(0, MAX_ROUNDS.into())),
+            estop_low_out_of_range: Refusal::of(&estop_low.is_outside(0, 1)),
             ..Self::default()
         }
     }
@@ -92,7 +104,7 @@ impl Logic for Watch {
         dff_setup!(self, clock, sync, now, held, round, silence, power, warmth);
 
         // The e-stop.
-        self.sync.d.next = self.estop.val() ^ self.estop_low.val().any();
+        self.sync.d.next = self.estop.val() ^ self.pressed_low.val().any();
         self.now.d.next = self.sync.q.val();
         self.held.d.next = self.now.q.val() & (self.held.q.val() | self.strobe.val());
         self.pressed.next = self.held.q.val() & self.now.q.val();

@@ -13,6 +13,7 @@
 //! Cost: one memory of 128 words of 32 bits and a counter of 5 bits.
 
 use crate::primitives::constant::Literal;
+use crate::primitives::formula::Formula;
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
@@ -57,10 +58,9 @@ pub struct Facts {
 
 impl Facts {
     /// Makes the memory with these constants, each given as its address and its value.
-    pub fn new(facts: &[(u8, u32)]) -> Self {
-        let words: Vec<_> =
-            facts.iter().map(|&(address, fact)| (usize::from(address), Word::from(u64::from(fact)))).collect();
-        Self { known: Memory::of_words(&words), ..Self::default() }
+    pub fn new(facts: &[(u8, Formula<32>)]) -> Self {
+        let words: Vec<_> = facts.iter().map(|(address, fact)| (usize::from(*address), fact.clone())).collect();
+        Self { known: Memory::of_formulas(&words), ..Self::default() }
     }
 }
 
@@ -101,6 +101,6 @@ mod tests {
 
     #[test]
     fn facts_synthesizes() {
-        assert_synthesizes(Facts::new(&[(0, 7)]), "carrystep_facts");
+        assert_synthesizes(Facts::new(&[(0, Formula::number(7))]), "carrystep_facts");
     }
 }

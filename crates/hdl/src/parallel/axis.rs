@@ -21,8 +21,10 @@
 //! bits.
 
 use crate::parallel::sequencer::Sequencer;
+use crate::parameters::START_HALF;
 use crate::parts::edge::Edge;
-use crate::primitives::constant::{Literal, Parameter};
+use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::StartPhase;
@@ -105,16 +107,20 @@ pub struct Axis {
     start_value: Parameter<64>,
     zero: Literal<64, 0>,
     least: Literal<64, 0x8000_0000_0000_0000>,
+    start_half_out_of_range: Refusal,
 }
 
 impl Axis {
     /// Makes an axis for ticks of Q phases. [`carrystep_core::Timebase`] has checked that Q is 1, 4
     /// or 16.
     pub(crate) fn new(phases: u32, start: StartPhase) -> Self {
-        let start = start.start_value();
+        let half = START_HALF.of::<32>(start == StartPhase::Half);
+        let value = |start: StartPhase| Formula::number(start.start_value());
+        let start = value(StartPhase::Half).where_or(&half.bits(0), value(StartPhase::Zero));
         Self {
-            position: Register::new(Word::from(start)),
-            start_value: Parameter::new(start),
+            position: Register::of(&start),
+            start_value: Parameter::of(&start),
+            start_half_out_of_range: Refusal::of(&half.is_outside(0, 1)),
             step_edge: Edge::new(phases),
             ..Self::default()
         }

@@ -21,7 +21,9 @@
 //! [`crate::engine::pulser`] does the same with shorter counters.
 
 use crate::HdlError;
-use crate::primitives::constant::{Literal, Parameter, used_bits};
+use crate::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
+use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::PinTiming;
@@ -87,6 +89,10 @@ pub struct Shaper {
     timer_one: Literal<16, 1>,
     one: Literal<32, 1>,
     two: Literal<32, 2>,
+    step_high_out_of_range: Refusal,
+    step_low_out_of_range: Refusal,
+    dir_setup_out_of_range: Refusal,
+    dir_hold_out_of_range: Refusal,
 }
 
 impl Shaper {
@@ -101,17 +107,25 @@ impl Shaper {
                 return Err(HdlError::PinTiming { name, clocks });
             }
         }
-        let [width, gap, setup, hold] = [width, gap, setup, hold].map(u64::from);
-        let (busy_load, setup_load, hold_load) = (width + gap - 1, setup - 1, hold - 1);
+        let (width, gap) = (STEP_HIGH.of::<32>(width), STEP_LOW.of::<32>(gap));
+        let (setup, hold) = (DIR_SETUP.of::<32>(setup), DIR_HOLD.of::<32>(hold));
+        let most = u64::from(MAX_CLOCKS);
+        let busy_load = (width.bits::<17>(0) + gap.bits::<17>(0)) - Formula::number(1);
+        let (setup_load, hold_load) =
+            (setup.bits::<16>(0) - Formula::number(1), hold.bits::<16>(0) - Formula::number(1));
         Ok(Self {
-            setup: Register::new(Word::from(setup_load)),
-            gap: Parameter::new(gap),
-            busy_load: Parameter::new(busy_load),
-            busy_bits: Parameter::new(used_bits(busy_load)),
-            hold_load: Parameter::new(hold_load),
-            hold_bits: Parameter::new(used_bits(hold_load)),
-            setup_load: Parameter::new(setup_load),
-            setup_bits: Parameter::new(used_bits(setup_load)),
+            setup: Register::of(&setup_load),
+            gap: Parameter::of(&gap.bits(0)),
+            busy_load: Parameter::of(&busy_load),
+            busy_bits: Parameter::of(&busy_load.used_bits()),
+            hold_load: Parameter::of(&hold_load),
+            hold_bits: Parameter::of(&hold_load.used_bits()),
+            setup_load: Parameter::of(&setup_load),
+            setup_bits: Parameter::of(&setup_load.used_bits()),
+            step_high_out_of_range: Refusal::of(&width.is_outside(1, most)),
+            step_low_out_of_range: Refusal::of(&gap.is_outside(1, most)),
+            dir_setup_out_of_range: Refusal::of(&setup.is_outside(1, most)),
+            dir_hold_out_of_range: Refusal::of(&hold.is_outside(1, most)),
             ..Self::default()
         })
     }

@@ -10,16 +10,25 @@
 //! that is read in the cycle in which it is written. Real block RAMs differ there. A design that
 //! needs neither value costs no bypass logic. The simulation returns zero and the old word.
 
+use crate::parameters::EVENT_MEMORY;
+use crate::primitives::constant::{ERROR, Given};
+use crate::primitives::formula::{Formula, ParameterValue};
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
 use rust_hdl::prelude::*;
 
-/// The Verilog attribute that places a memory in block RAM. The Verilog of every memory contains
-/// it.
-pub const IN_BLOCK_RAM: &str = "ram_style = \"block\"";
-/// The Verilog statement that writes one bit of a word. Only the Verilog of memories with a write
-/// enable for each bit contains it.
-pub const BIT_BY_BIT: &str = "words[write_address][i] <= write_data[i];";
+const BLOCK: &str = "\"block\"";
+
+/// The Verilog that refuses a memory style other than block and distributed RAM: it instantiates a
+/// module that does not exist.
+fn style_check() -> String {
+    let style = EVENT_MEMORY.name;
+    let error = format!("{ERROR}{}_out_of_range", style.to_lowercase());
+    format!(
+        "// Words of different lengths are compared.\n// verilator lint_off WIDTH\ngenerate\n    if (({style} != {BLOCK}) && ({style} != \"distributed\")) begin : refused\n        \
+         {error} error ();\n    end\nendgenerate\n// verilator lint_on WIDTH\n\n"
+    )
+}
 
 /// A memory of 2^A words of W bits.
 pub struct Memory<const A: usize, const W: usize> {
@@ -38,7 +47,8 @@ pub struct Memory<const A: usize, const W: usize> {
     words: Vec<Word<W>>,
     rose: bool,
     whole_words: bool,
-    initial: Vec<Word<W>>,
+    initial: Vec<(usize, Formula<W>)>,
+    given: Vec<Given>,
 }
 
 impl<const A: usize, const W: usize> Memory<A, W> {
@@ -48,18 +58,29 @@ impl<const A: usize, const W: usize> Memory<A, W> {
     /// # Panics
     /// Panics if an address of `initial` is 2^A or more.
     pub fn of_words(initial: &[(usize, Word<W>)]) -> Self {
+        let numbers: Vec<_> = initial.iter().map(|&(address, word)| (address, Formula::from(word))).collect();
+        Self::of_formulas(&numbers)
+    }
+
+    /// The same with words that follow from parameters of the Verilog.
+    pub fn of_formulas(initial: &[(usize, Formula<W>)]) -> Self {
         let mut memory = Self::of_bits();
         memory.whole_words = true;
+        let mut given: Vec<ParameterValue> = Vec::new();
         for (address, word) in initial {
-            memory.words[*address] = *word;
+            memory.words[*address] = word.value();
+            given.extend(word.given().iter().filter(|one| !given.contains(one)).cloned().collect::<Vec<_>>());
         }
-        memory.initial.clone_from(&memory.words);
+        memory.given = given.into_iter().map(Given::new).collect();
+        memory.initial = initial.to_vec();
         memory
     }
 
-    /// Makes a memory with a write enable for each bit. All its words are initially zero.
+    /// Makes a memory with a write enable for each bit. All its words are initially zero. Not every
+    /// FPGA has block RAM with such enables: the parameter `EVENT_MEMORY` of the Verilog places it.
     pub fn of_bits() -> Self {
         let words = vec![Word::default(); 1 << A];
+        let style = ParameterValue { name: EVENT_MEMORY.name.to_owned(), bits: 0, literal: BLOCK.to_owned() };
         Self {
             clock: Input::default(),
             read_address: Input::default(),
@@ -67,7 +88,8 @@ impl<const A: usize, const W: usize> Memory<A, W> {
             write_address: Input::default(),
             write_bits: Input::default(),
             write_data: Input::default(),
-            initial: words.clone(),
+            initial: Vec::new(),
+            given: vec![Given::new(style)],
             words,
             rose: false,
             whole_words: false,
@@ -86,13 +108,24 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         let top = W - 1;
         let range = if W == 1 { String::new() } else { format!("[{top}:0] ") };
         let words = self.words.len();
+        let (style, check) = match self.whole_words {
+            true => (BLOCK, String::new()),
+            false => (EVENT_MEMORY.name, style_check()),
+        };
         let mut text = format!(
-            "(* no_rw_check, {IN_BLOCK_RAM} *) reg {range}words [0:{}];\nreg {range}value; // a block RAM gives no value before its first clock\ninteger i;\n\n\
+            "{check}// No word that is read in the clock in which it is written is ever used: no bypass is needed.\n\
+             (* no_rw_check, ram_style = {style} *) reg {range}words [0:{}];\nreg {range}value; // a block RAM gives no value before its first clock\ninteger i;\n\n\
              assign read_data = value;\n\ninitial begin\n    for (i = 0; i < {words}; i = i + 1) words[i] = 0;\n",
             words - 1
         );
-        for (address, word) in self.initial.iter().enumerate().filter(|(_, word)| word.any()) {
-            text.push_str(&format!("    words[{address}] = {W}'h{:x};\n", word.value()));
+        // The words have been zero already.
+        let is_zero = |word: &Formula<W>| word.given().is_empty() && !word.value().any();
+        for (address, word) in self.initial.iter().filter(|(_, word)| !is_zero(word)) {
+            let text_of_word = match word.given().is_empty() {
+                true => format!("{W}'h{:x}", word.value().value()),
+                false => word.text().to_owned(),
+            };
+            text.push_str(&format!("    words[{address}] = {text_of_word};\n"));
         }
         text.push_str("end\n\nalways @(posedge clock) begin\n    value <= words[read_address];\n");
         text.push_str(match (self.whole_words, W) {
@@ -103,7 +136,7 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         if !self.whole_words && W > 1 {
             text.push_str(&format!(
                 "    for (i = 0; i < {W}; i = i + 1) begin\n        \
-                 if (write_bits[i]) {BIT_BY_BIT}\n    end\nend"
+                 if (write_bits[i]) words[write_address][i] <= write_data[i];\n    end\nend"
             ));
         }
         text
@@ -165,6 +198,9 @@ impl<const A: usize, const W: usize> Block for Memory<A, W> {
         self.write_address.accept("write_address", probe);
         self.write_bits.accept("write_bits", probe);
         self.write_data.accept("write_data", probe);
+        for given in &self.given {
+            given.accept(given.name(), probe);
+        }
         probe.visit_end_scope(name, self);
     }
 }

@@ -3,15 +3,22 @@
 
 use super::{CLOCK_NAME, Design, rendered};
 use crate::ExportError;
-use crate::core::{ENGINE_NAME, LINK_NAME, engine_verilog, line_name, line_verilog, link_ports, link_verilog};
+use crate::core::{
+    ENGINE_NAME, LINK_NAME, Overrides, engine_verilog, line_name, line_verilog, link_ports, link_verilog,
+};
+use crate::parameters::overrides;
 use crate::write::TextFile;
 use carrystep_boards::{Board, Clocking, Part};
 use carrystep_core::engine::Limits;
 use carrystep_core::link::{BuildId, Line, Uart};
 use carrystep_core::{ChosenTick, EngineBuild};
 use carrystep_files::{Machine, Source};
-use carrystep_hdl::primitives::memory::{BIT_BY_BIT, IN_BLOCK_RAM};
+use carrystep_hdl::parameters::EVENT_MEMORY;
 use minijinja::{Value, context};
+
+/// The list of the Verilog files, one in a line, in the format of the option `-f` of Icarus and
+/// Verilator.
+const FILE_LIST: &str = "files.f";
 
 /// The machine that boards are built for where no other is asked for; clock, tick and limits are put before its axes.
 const SHIPPED: &str = include_str!("../../../../sim/six-axis.toml");
@@ -103,27 +110,37 @@ impl<'a> Gateware<'a> {
             self.design(&[], &[]).clock()?,
             file(line_name(self.line), line_verilog(self.line, &description)?),
             file(LINK_NAME, link_verilog(&self.build, self.line, &description)?),
-            file(ENGINE_NAME, self.placed(engine_verilog(&self.build, &description)?)),
+            file(ENGINE_NAME, engine_verilog(&self.build, &description)?),
         ])
     }
 
-    /// Adapts the memories to the block RAMs of the board's family.
-    fn placed(&self, verilog: String) -> String {
-        if self.board.family.facts().writes_parts_of_words() {
-            return verilog;
-        }
-        let in_luts = |module: &str| module.replace(IN_BLOCK_RAM, "ram_style = \"distributed\"");
-        let modules = verilog.split_inclusive("endmodule");
-        modules.map(|module| if module.contains(BIT_BY_BIT) { in_luts(module) } else { module.to_owned() }).collect()
-    }
-
-    /// All files of the board's directory.
+    /// All files of a directory that contains all modules of the board.
     ///
     /// # Errors
     /// [`ExportError`] if a module cannot be generated.
     pub fn files(&self) -> Result<Vec<TextFile>, ExportError> {
-        let mut files = self.verilog()?;
-        let sources: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
+        let verilog = self.verilog()?;
+        let sources = verilog.iter().map(|file| file.name.clone()).collect();
+        self.files_with(verilog, sources)
+    }
+
+    /// All files of a directory that takes the modules of link and engine from another one, which the top level's
+    /// directory reaches as `core`.
+    ///
+    /// # Errors
+    /// [`ExportError`] if a module cannot be generated.
+    pub fn files_beside(&self, core: &str) -> Result<Vec<TextFile>, ExportError> {
+        let all = self.verilog()?;
+        let is_own =
+            |file: &TextFile| file.name == format!("{}.v", self.top()) || file.name == format!("{CLOCK_NAME}.v");
+        let source = |file: &TextFile| if is_own(file) { file.name.clone() } else { format!("{core}/{}", file.name) };
+        let sources = all.iter().map(source).collect();
+        self.files_with(all.into_iter().filter(is_own).collect(), sources)
+    }
+
+    fn files_with(&self, verilog: Vec<TextFile>, sources: Vec<String>) -> Result<Vec<TextFile>, ExportError> {
+        let mut files = verilog;
+        files.push(TextFile::new(FILE_LIST, sources.join("\n") + "\n"));
         let sources: Vec<&str> = sources.iter().map(String::as_str).collect();
         let ports = self.ports();
         let design = self.design(&ports, &sources);
@@ -187,6 +204,13 @@ impl<'a> Gateware<'a> {
         // An output of the link is connected to the engine's input of the same name, and vice
         // versa.
         let (bytes, between) = link_ports(&self.build, self.line)?;
+        let mut given = Overrides::of(&self.build, self.line)?;
+        // Where block RAMs write whole words only, the memory that is written bit by bit lies in LUTs.
+        if !self.board.family.facts().writes_parts_of_words() {
+            for memory in given.engine.iter_mut().filter(|one| one.name == EVENT_MEMORY.name) {
+                memory.literal = "\"distributed\"".to_owned();
+            }
+        }
         let row = |(name, width): &(String, usize)| context! { name, range => range(*width) };
         let values = context! {
             title => &self.board.title,
@@ -195,6 +219,9 @@ impl<'a> Gateware<'a> {
             line => line_name(self.line),
             link => LINK_NAME,
             engine => ENGINE_NAME,
+            line_parameters => overrides(&given.line),
+            link_parameters => overrides(&given.link),
+            engine_parameters => overrides(&given.engine),
             axes => range(axes),
             low => (low > 0).then(|| range(low)),
             high => (high > 0).then(|| range(high)),

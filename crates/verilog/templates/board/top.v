@@ -40,7 +40,7 @@ module {{ top }} (
 {% for wire in line_pins if wire.held %}
     wire {{ wire.pin }}_out;
 {% endfor %}
-    {{ line }} line (
+    {{ line }}{{ line_parameters }}line (
 {% for wire in bytes %}
         .{{ wire.name }}({{ wire.name }}),
 {% endfor %}
@@ -67,7 +67,7 @@ module {{ top }} (
 {% endfor %}
 
 {% endif %}
-    {{ link }} link (
+    {{ link }}{{ link_parameters }}link (
 {% for wire in bytes + between %}
         .{{ wire.name }}({{ wire.name }}),
 {% endfor %}
@@ -76,7 +76,7 @@ module {{ top }} (
 
     wire enabled;
     assign enable_n = !enabled;
-    {{ engine }} engine (
+    {{ engine }}{{ engine_parameters }}engine (
 {% for wire in between %}
         .{{ wire.name }}({{ wire.name }}),
 {% endfor %}
