@@ -32,7 +32,10 @@ fn golden_vectors_to_the_last_edge_and_phase() {
         let (edges, p) = edges(case.p0(), &case.segments());
         case.assert_edges(&edges);
         assert_eq!(p, case.p_end(), "{}: P at the end", case.name);
-        assert_eq!(case.segments().iter().map(|s| u64::from(s.ticks)).sum::<u64>(), case.total_ticks);
+        assert_eq!(
+            case.segments().iter().map(|s| u64::from(s.ticks)).sum::<u64>(),
+            case.total_ticks
+        );
     }
 }
 

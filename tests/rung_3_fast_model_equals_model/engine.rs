@@ -12,11 +12,16 @@ use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 
 /// Compares the engines under programs with events; returns the counts.
-fn engines(build: &EngineBuild, cases: u32, programs: impl Strategy<Value = (Program, Events)>) -> Came {
+fn engines(
+    build: &EngineBuild,
+    cases: u32,
+    programs: impl Strategy<Value = (Program, Events)>,
+) -> Came {
     let sum = Cell::new(Came::default());
     let mut runner = TestRunner::new(Config { cases, max_shrink_iters: 300, ..Config::default() });
     let held = runner.run(&(programs, leaps()), |((program, events), leaps)| {
-        let came = engine_twins::run(build, &program, &events, &leaps, 500_000).map_err(TestCaseError::fail)?;
+        let came = engine_twins::run(build, &program, &events, &leaps, 500_000)
+            .map_err(TestCaseError::fail)?;
         sum.set(sum.get().and(came));
         Ok(())
     });
@@ -62,7 +67,8 @@ fn an_engine_of_many_edges() {
     let build = engine_programs::build(6, 80_000_000, 16, StartPhase::Zero, Limits::None);
     let guard = Guard { watchdog: 0, ..build.guard.clone() };
     let build = EngineBuild { guard, pins: vec![PinTiming::SHORTEST; 6], ..build };
-    let programs = dense::program(500).prop_map(|program| (engine_programs::queued_first(program), Events::new()));
+    let programs = dense::program(500)
+        .prop_map(|program| (engine_programs::queued_first(program), Events::new()));
     let came = engines(&build, 100, programs);
     let underruns = came.faults[Cause::Underrun as usize];
     assert!(came.edges > 30_000 && underruns > 0, "{came:?}");

@@ -10,7 +10,11 @@ use carrystep_tests::engine_programs::{build, parameter_sets, run_programs};
 use proptest::prelude::*;
 
 /// Runs both until the program is over and both are idle. Returns the number of clocks.
-fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Result<u64, TestCaseError> {
+fn assert_equal(
+    build: &EngineBuild,
+    program: &Program,
+    events: &Events,
+) -> Result<u64, TestCaseError> {
     let mut model = Engine::new(build);
     let mut engine = EngineSim::new(build).expect("a fine build");
     let mut host = EngineHost::new(&build.guard, program, events);
@@ -45,12 +49,21 @@ fn assert_equal(build: &EngineBuild, program: &Program, events: &Events) -> Resu
 }
 
 /// Compares P, positions and discarded steps while nothing moves.
-fn assert_kept(build: &EngineBuild, model: &Engine, engine: &EngineSim) -> Result<(), TestCaseError> {
+fn assert_kept(
+    build: &EngineBuild,
+    model: &Engine,
+    engine: &EngineSim,
+) -> Result<(), TestCaseError> {
     for axis in 0..build.axes() {
         let shaper = model.shaper(axis);
         let p = u64::from(engine.kept(axis, 1)) << 32 | u64::from(engine.kept(axis, 0));
         prop_assert_eq!(model.fraction(axis), p, "P of axis {}", axis);
-        prop_assert_eq!(shaper.position, engine.kept(axis, 2).cast_signed(), "position of axis {}", axis);
+        prop_assert_eq!(
+            shaper.position,
+            engine.kept(axis, 2).cast_signed(),
+            "position of axis {}",
+            axis
+        );
         prop_assert_eq!(shaper.discarded, engine.kept(axis, 3), "discarded steps of axis {}", axis);
     }
     Ok(())
@@ -102,7 +115,13 @@ fn engine_without_a_host_stays_idle() {
     let mut engine = EngineSim::new(&build).expect("a fine build");
     for _ in 0..1000 {
         let outputs = engine.settle(&EngineInputs::default());
-        assert!(outputs.idle && outputs.fault.is_none() && outputs.step == 0 && outputs.dir == 0 && !outputs.enabled);
+        assert!(
+            outputs.idle
+                && outputs.fault.is_none()
+                && outputs.step == 0
+                && outputs.dir == 0
+                && !outputs.enabled
+        );
         engine.clock();
     }
 }

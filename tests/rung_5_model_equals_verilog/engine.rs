@@ -1,7 +1,9 @@
 //! The exported engine in Icarus and in Verilator is the engine's model, every output in every clock.
 
 use carrystep_core::engine::{CAUSES, Cause, Limits, QUEUE};
-use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_core::{
+    AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
+};
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::Events;
 use carrystep_simulators::engine::replay::{self, Recording};
@@ -89,7 +91,11 @@ fn random_programs_of_eight_axes_in_verilator() {
 
 #[test]
 fn random_programs_of_one_axis_in_verilator() {
-    in_verilog(Level::Verilator, &build(1, 32_000_000, 16, StartPhase::Zero, Limits::Pair), 1_000_000);
+    in_verilog(
+        Level::Verilator,
+        &build(1, 32_000_000, 16, StartPhase::Zero, Limits::Pair),
+        1_000_000,
+    );
 }
 
 #[test]
@@ -111,7 +117,8 @@ fn with_parameters(verilog: &str, of: &EngineBuild) -> String {
     let (parameters, rest) = head.split_once("\n) (\n").expect("ports");
     let (ports, _) = rest.split_once("\n);").expect("the end of the ports");
     let overrides = parameters.lines().filter_map(|line| {
-        let (declared, value) = line.trim().strip_prefix("parameter ")?.trim_end_matches(',').split_once(" = ")?;
+        let (declared, value) =
+            line.trim().strip_prefix("parameter ")?.trim_end_matches(',').split_once(" = ")?;
         Some(format!(".{}({value})", declared.rsplit(' ').next()?))
     });
     let overrides: Vec<String> = overrides.collect();
@@ -135,7 +142,8 @@ fn verilog_of_one_build_with_the_parameters_of_others_is_theirs() {
     let sets = parameter_sets();
     let verilog = carrystep_verilog::engine_verilog(&sets[0], "a test").expect("a fine build");
     for (build, usual) in sets.iter().zip([500_000; 4]) {
-        let seen = in_this_verilog(Level::Verilator, &with_parameters(&verilog, build), build, usual);
+        let seen =
+            in_this_verilog(Level::Verilator, &with_parameters(&verilog, build), build, usual);
         assert!(seen.edges > 0 && seen.together > 0, "too little happens: {seen:?}");
         in_this_verilog(Level::Icarus, &with_parameters(&verilog, build), build, 50_000);
     }
@@ -167,15 +175,20 @@ fn golden_vectors_in_verilator() {
     for phase in [StartPhase::Zero, StartPhase::Half] {
         let cases: Vec<&Case> = vectors
             .iter()
-            .filter(|case| case.phase() == phase && (effort::is_long() || case.total_ticks <= 400_000))
+            .filter(|case| {
+                case.phase() == phase && (effort::is_long() || case.total_ticks <= 400_000)
+            })
             .collect();
         for cases in cases.chunks(AXES) {
             let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
             let build = Build { timebase, phase, pins: [PinTiming::SHORTEST; AXES] };
             let build = EngineBuild::minimal(&build, 1 << 40);
-            let recording = Recording::new(&build, &golden_program(cases), &Events::new(), u64::MAX);
-            let verilog = carrystep_verilog::engine_verilog(&build, "a test").expect("a fine build");
-            let difference = replay::difference(Level::Verilator, &verilog, &recording).expect("the tools");
+            let recording =
+                Recording::new(&build, &golden_program(cases), &Events::new(), u64::MAX);
+            let verilog =
+                carrystep_verilog::engine_verilog(&build, "a test").expect("a fine build");
+            let difference =
+                replay::difference(Level::Verilator, &verilog, &recording).expect("the tools");
             assert_eq!(difference, None);
             for (axis, case) in cases.iter().enumerate() {
                 case.assert_edges(&edges(&build, &recording, axis));
@@ -193,7 +206,9 @@ fn golden_program(cases: &[&Case]) -> Program {
     let part = |rows: std::ops::Range<usize>| {
         let mut part = Program::new();
         for row in rows {
-            let lanes = (0..).zip(&segments).filter_map(|(axis, lane)| lane.get(row).map(|segment| (axis, *segment)));
+            let lanes = (0..)
+                .zip(&segments)
+                .filter_map(|(axis, lane)| lane.get(row).map(|segment| (axis, *segment)));
             part.extend(lanes.map(|(axis, segment)| Command::Segment { axis, segment }));
         }
         part
@@ -216,7 +231,11 @@ fn edges(build: &EngineBuild, recording: &Recording, axis: usize) -> Vec<Edge> {
         if level(outputs.step) && !before {
             let since = cycle - zero;
             assert_eq!(since % phase, 0, "an edge off its phase");
-            edges.push((since / tick + 1, (since % tick / phase) as u32, if level(outputs.dir) { -1 } else { 1 }));
+            edges.push((
+                since / tick + 1,
+                (since % tick / phase) as u32,
+                if level(outputs.dir) { -1 } else { 1 },
+            ));
         }
         before = level(outputs.step);
     }

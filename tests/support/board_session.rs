@@ -50,7 +50,8 @@ impl Session {
         bench.board = Some(BoardPins::new(board));
         talk(&mut bench);
         let vectors = bench.board.expect("what was kept").vectors;
-        let verilog = gateware.verilog().expect("its Verilog").into_iter().map(|file| file.text).collect();
+        let verilog =
+            gateware.verilog().expect("its Verilog").into_iter().map(|file| file.text).collect();
         Self { gateware, vectors, verilog }
     }
 

@@ -68,7 +68,15 @@ impl LinkBench {
         let mut link = link(build, Line::Spi.build_id(build)).expect("a link");
         link.connect_all();
         let model = Link::new(build, Line::Spi);
-        Self::new(build, Wire::Spi { link, line: SpiSim::new().expect("a line"), model, host: SpiHost::new(tenths) })
+        Self::new(
+            build,
+            Wire::Spi {
+                link,
+                line: SpiSim::new().expect("a line"),
+                model,
+                host: SpiHost::new(tenths),
+            },
+        )
     }
 
     fn new(build: &EngineBuild, wire: Wire) -> Self {
@@ -182,9 +190,10 @@ impl Wire {
         both.link.add(ports::link_inputs(seen, bytes), ports::link_outputs(shown, offered));
         let told = match self {
             Self::Uart { .. } => Bits::default().and(1, u64::from(seen.rx)),
-            Self::Spi { host, .. } => {
-                host.pins().into_iter().fold(Bits::default(), |bits, pin| bits.and(1, u64::from(pin)))
-            }
+            Self::Spi { host, .. } => host
+                .pins()
+                .into_iter()
+                .fold(Bits::default(), |bits, pin| bits.and(1, u64::from(pin))),
         };
         both.line.add(
             told.and(1, u64::from(offered.is_some())).and(8, offered.map_or(0, u64::from)),
@@ -193,7 +202,13 @@ impl Wire {
     }
 
     /// Advances by one cycle and returns the byte that the host has received.
-    fn clock(&mut self, seen: &LinkInputs, shown: &LinkOutputs, level: bool, clocks: u64) -> Option<u8> {
+    fn clock(
+        &mut self,
+        seen: &LinkInputs,
+        shown: &LinkOutputs,
+        level: bool,
+        clocks: u64,
+    ) -> Option<u8> {
         match self {
             Self::Uart { link, model, receiver, .. } => {
                 assert_eq!(model.outputs(), *shown, "cycle {clocks}: model and Rust-HDL");

@@ -87,7 +87,11 @@ pub struct Bug {
 impl Case {
     /// Number of axes for which a star in `promises.sv` stands: the parameter `AXES`.
     pub fn axes(&self) -> usize {
-        self.numbers.iter().find(|(name, _)| *name == "AXES").and_then(|(_, axes)| axes.parse().ok()).unwrap_or(1)
+        self.numbers
+            .iter()
+            .find(|(name, _)| *name == "AXES")
+            .and_then(|(_, axes)| axes.parse().ok())
+            .unwrap_or(1)
     }
 
     /// The same Verilog with a bug planted.
@@ -95,12 +99,17 @@ impl Case {
     /// # Panics If the text does not occur in the module exactly once; the bug must then be
     /// rewritten.
     pub fn with(&self, bug: &Bug) -> Self {
-        let begins = [" (", " #("].map(|head| self.verilog.find(&format!("module {}{head}\n", self.dut)));
+        let begins =
+            [" (", " #("].map(|head| self.verilog.find(&format!("module {}{head}\n", self.dut)));
         let start = begins.into_iter().flatten().next().expect("the module is in its Verilog");
         let end = start + self.verilog[start..].find("endmodule").expect("the module ends");
         let module = &self.verilog[start..end];
         let found = module.matches(bug.text).count();
-        assert_eq!(found, 1, "{}: '{}' stands {found} times in {}, not once", bug.breaks, bug.text, self.dut);
+        assert_eq!(
+            found, 1,
+            "{}: '{}' stands {found} times in {}, not once",
+            bug.breaks, bug.text, self.dut
+        );
         let changed = module.replace(bug.text, bug.becomes);
         let verilog = [&self.verilog[..start], &changed, &self.verilog[end..]].concat();
         Self { verilog: verilog.into(), ..self.clone() }

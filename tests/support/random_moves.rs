@@ -89,12 +89,19 @@ impl RandomMoves {
             .expect("a string takes all");
         }
         let constant = self.axes.iter().all(|axis| axis.start > 0.0);
-        for (i, RandomMove { profile, steps, straight, fit_ns, .. }) in self.moves.iter().enumerate() {
-            let profile = if *profile == ProfileKind::Constant && !constant { ProfileKind::Ranade } else { *profile };
+        for (i, RandomMove { profile, steps, straight, fit_ns, .. }) in
+            self.moves.iter().enumerate()
+        {
+            let profile = if *profile == ProfileKind::Constant && !constant {
+                ProfileKind::Ranade
+            } else {
+                *profile
+            };
             let to: Vec<String> = (steps.iter().zip(&self.axes).enumerate())
                 .map(|(i, (&n, axis))| format!("a{i} = {:?}", f64::from(n) / axis.per_unit))
                 .collect();
-            let time = times.get(i).cloned().flatten().map_or(String::new(), |t| format!("time = {t}\n"));
+            let time =
+                times.get(i).cloned().flatten().map_or(String::new(), |t| format!("time = {t}\n"));
             let fit = fit_ns.map_or(String::new(), |ns| format!("fit_ns = {ns}\n"));
             let path = if *straight { "straight" } else { "free" };
             write!(
@@ -110,7 +117,8 @@ impl RandomMoves {
     /// The file without times, and the same file with the stretched times.
     pub fn files(&self) -> Vec<MoveFile> {
         let fast = file(&self.text(&[]));
-        let planned = plan::<f64>(&fast).unwrap_or_else(|error| panic!("{error}\n{}", self.text(&[])));
+        let planned =
+            plan::<f64>(&fast).unwrap_or_else(|error| panic!("{error}\n{}", self.text(&[])));
         let times: Vec<Option<String>> = (self.moves.iter().zip(&planned.moves))
             .map(|(RandomMove { stretch, .. }, planned)| {
                 // A file allows times up to 10^6 s.
@@ -119,7 +127,11 @@ impl RandomMoves {
                 }
                 let ns = (planned.seconds * 1e9 * (*stretch)?).min(1e15);
                 let ticks = (ns / self.tick_ns as f64).ceil() * self.tick_ns as f64;
-                Some(if self.zero { format!("{:.9}", ticks / 1e9) } else { format!("{:.12}", ns / 1e9) })
+                Some(if self.zero {
+                    format!("{:.9}", ticks / 1e9)
+                } else {
+                    format!("{:.12}", ns / 1e9)
+                })
             })
             .collect();
         vec![fast, file(&self.text(&times))]
@@ -139,18 +151,23 @@ fn axis(pace: Pace) -> impl Strategy<Value = RandomAxis> {
     let start = prop_oneof![2 => Just(0.0), 2 => 0.001..0.9, 1 => Just(1.0)];
     let pins = [1_u64..3000, 1_u64..3000, 1_u64..40_000, 1_u64..40_000];
     let unit = prop_oneof![Just(1.0), Just(80.0), decades(0.01, 1000.0)];
-    (speed, start, accel, jerk, unit, pins).prop_map(|(speed, start, accel, jerk, per_unit, pins)| RandomAxis {
-        speed,
-        start,
-        accel,
-        jerk,
-        per_unit,
-        pins,
-    })
+    (speed, start, accel, jerk, unit, pins).prop_map(
+        |(speed, start, accel, jerk, per_unit, pins)| RandomAxis {
+            speed,
+            start,
+            accel,
+            jerk,
+            per_unit,
+            pins,
+        },
+    )
 }
 
 /// One to four moves of these kinds, for machines with one to three axes.
-pub fn random_moves(pace: Pace, kinds: &'static [ProfileKind]) -> impl Strategy<Value = RandomMoves> {
+pub fn random_moves(
+    pace: Pace,
+    kinds: &'static [ProfileKind],
+) -> impl Strategy<Value = RandomMoves> {
     let ticks: &[u64] = match pace {
         Pace::Any => &[500, 1000, 2000, 10_000],
         Pace::Brisk => &[500, 1000],
@@ -161,13 +178,25 @@ pub fn random_moves(pace: Pace, kinds: &'static [ProfileKind]) -> impl Strategy<
         move |(tick_ns, phases, zero, axes)| {
             let steps = prop_oneof![1 => Just(0), 2 => -3..4, 3 => -40..40, 3 => -3000..3000];
             let steps = proptest::collection::vec(steps, axes.len());
-            let stretch = proptest::option::of(prop_oneof![Just(1.0000001), 1.0001..1.5, 1.0001..20.0]);
+            let stretch =
+                proptest::option::of(prop_oneof![Just(1.0000001), 1.0001..1.5, 1.0001..20.0]);
             let fit_ns = proptest::option::of(decades(1.0, 1e5).prop_map(|ns| ns as u64));
-            let moved = (prop::sample::select(kinds), steps, any::<bool>(), stretch, fit_ns).prop_map(
-                |(profile, steps, straight, stretch, fit_ns)| RandomMove { profile, steps, stretch, straight, fit_ns },
-            );
+            let moved = (prop::sample::select(kinds), steps, any::<bool>(), stretch, fit_ns)
+                .prop_map(|(profile, steps, straight, stretch, fit_ns)| RandomMove {
+                    profile,
+                    steps,
+                    stretch,
+                    straight,
+                    fit_ns,
+                });
             let moves = proptest::collection::vec(moved, 1..5);
-            moves.prop_map(move |moves| RandomMoves { tick_ns, phases, zero, axes: axes.clone(), moves })
+            moves.prop_map(move |moves| RandomMoves {
+                tick_ns,
+                phases,
+                zero,
+                axes: axes.clone(),
+                moves,
+            })
         },
     )
 }

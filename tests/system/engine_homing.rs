@@ -3,7 +3,9 @@
 //! clock, and planted bugs are caught.
 
 use carrystep_core::engine::{Cause, Guard, Limits};
-use carrystep_core::{AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase};
+use carrystep_core::{
+    AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
+};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
 use carrystep_simulators::Level;
@@ -22,7 +24,10 @@ fn build(limits: Limits) -> EngineBuild {
     let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
     let pins = [PinTiming { width: 5, gap: 5, setup: 3, hold: 3 }; AXES];
     let build = EngineBuild::minimal(&Build { timebase, phase: StartPhase::Half, pins }, 1 << 53);
-    EngineBuild { guard: Guard { round: 2, debounce: 3, enable: 2, limits, ..build.guard }, ..build }
+    EngineBuild {
+        guard: Guard { round: 2, debounce: 3, enable: 2, limits, ..build.guard },
+        ..build
+    }
 }
 
 /// All axes move at a sixteenth of a step per tick, the odd ones backward, in three segments each.
@@ -32,8 +37,10 @@ fn cruise() -> Program {
         Command::Segment { axis, segment: Segment { ticks, v, a: 0, j: 0, last } }
     };
     let rows = [(400, false), (100, false), (400, true)];
-    let mut program: Program =
-        rows.iter().flat_map(|&(ticks, last)| (0..6).map(move |axis| segment(axis, ticks, last))).collect();
+    let mut program: Program = rows
+        .iter()
+        .flat_map(|&(ticks, last)| (0..6).map(move |axis| segment(axis, ticks, last)))
+        .collect();
     program.push(Command::Start { mask: 0x3f });
     program
 }
@@ -42,7 +49,11 @@ fn cruise() -> Program {
 /// `then` on.
 fn events(then: u64) -> Events {
     let limit = 1 << HOMING;
-    vec![(100, Event::Home(limit)), (then, Event::LimitMin(limit)), (then + 3_000, Event::LimitMin(0))]
+    vec![
+        (100, Event::Home(limit)),
+        (then, Event::LimitMin(limit)),
+        (then + 3_000, Event::LimitMin(0)),
+    ]
 }
 
 fn run(limits: Limits, program: &Program, events: &Events) -> Recording {
@@ -53,7 +64,10 @@ fn run(limits: Limits, program: &Program, events: &Events) -> Recording {
 fn edges(recording: &Recording, axis: usize) -> Vec<u64> {
     let level = |mask: u8| mask >> axis & 1 == 1;
     let pairs = recording.outputs.windows(2);
-    pairs.filter(|pair| !level(pair[0].1.step) && level(pair[1].1.step)).map(|pair| pair[1].0).collect()
+    pairs
+        .filter(|pair| !level(pair[0].1.step) && level(pair[1].1.step))
+        .map(|pair| pair[1].0)
+        .collect()
 }
 
 #[test]
@@ -61,27 +75,46 @@ fn homing_axis_slows_down_alone_at_its_limit() {
     for limits in [Limits::Pair, Limits::Each] {
         let free = run(limits, &cruise(), &Events::new());
         let homed = run(limits, &cruise(), &events(THEN));
-        assert!(homed.outputs.iter().all(|(_, out)| out.fault.is_none()), "{limits:?}: nothing is called");
+        assert!(
+            homed.outputs.iter().all(|(_, out)| out.fault.is_none()),
+            "{limits:?}: nothing is called"
+        );
         for axis in (0..AXES).filter(|axis| *axis != HOMING) {
             assert_eq!(edges(&free, axis), edges(&homed, axis), "{limits:?}, axis {axis}");
         }
         let (all, fewer) = (edges(&free, HOMING), edges(&homed, HOMING));
-        let met =
-            homed.outputs.iter().find(|(cycle, out)| *cycle > 200 && out.homing == 0).expect("it meets its limit").0;
+        let met = homed
+            .outputs
+            .iter()
+            .find(|(cycle, out)| *cycle > 200 && out.homing == 0)
+            .expect("it meets its limit")
+            .0;
         // The ramp takes 128 ticks, and a step needs two more ticks to reach the pins.
         let last = *fewer.last().expect("it has moved");
-        assert!(met > THEN && last > met + 20 * 80 && last < met + 131 * 80, "{limits:?}: {met}, {last}");
+        assert!(
+            met > THEN && last > met + 20 * 80 && last < met + 131 * 80,
+            "{limits:?}: {met}, {last}"
+        );
         assert!(fewer.len() + 20 < all.len(), "{limits:?}: {} of {} steps", fewer.len(), all.len());
-        assert!(homed.outputs.last().is_some_and(|(_, out)| out.idle), "{limits:?}: its queue is empty");
+        assert!(
+            homed.outputs.last().is_some_and(|(_, out)| out.idle),
+            "{limits:?}: its queue is empty"
+        );
     }
 }
 
 #[test]
 fn limit_of_an_axis_that_does_not_home_stops_all_axes() {
-    let other =
-        vec![(100, Event::Home(1 << HOMING)), (THEN, Event::LimitMin(1 << 3)), (THEN + 3_000, Event::LimitMin(0))];
+    let other = vec![
+        (100, Event::Home(1 << HOMING)),
+        (THEN, Event::LimitMin(1 << 3)),
+        (THEN + 3_000, Event::LimitMin(0)),
+    ];
     let recording = run(Limits::Pair, &cruise(), &other);
-    assert_eq!(recording.outputs.iter().find_map(|(_, out)| out.fault), Some((Cause::Limit, 1 << 3)));
+    assert_eq!(
+        recording.outputs.iter().find_map(|(_, out)| out.fault),
+        Some((Cause::Limit, 1 << 3))
+    );
 }
 
 #[test]
@@ -94,7 +127,8 @@ fn start_after_homing_calls_protocol_because_the_queue_is_empty() {
 #[test]
 fn latch_reports_the_position_at_the_limit() {
     let build = build(Limits::Pair);
-    let (mut model, mut engine) = (Engine::new(&build), EngineSim::new(&build).expect("a fine build"));
+    let (mut model, mut engine) =
+        (Engine::new(&build), EngineSim::new(&build).expect("a fine build"));
     let mut host = EngineHost::new(&build.guard, &cruise(), &events(THEN));
     let (mut told, mut met) = (None, None);
     while met.is_none() {
@@ -120,20 +154,26 @@ fn latch_reports_the_position_at_the_limit() {
 /// Runs in which the limit becomes active in every part of a tick, while segments still arrive and
 /// a start waits.
 fn recordings() -> Vec<Recording> {
-    let late =
-        |ticks| Command::Segment { axis: HOMING as u8, segment: Segment { ticks, v: 0, a: 0, j: 0, last: true } };
+    let late = |ticks| Command::Segment {
+        axis: HOMING as u8,
+        segment: Segment { ticks, v: 0, a: 0, j: 0, last: true },
+    };
     let busy = [cruise(), (1..12).map(late).collect()].concat();
     let waiting = [cruise(), vec![Command::Start { mask: 1 << HOMING }]].concat();
-    let mut all: Vec<_> = (0..12).map(|k| run(Limits::Pair, &busy, &events(THEN + 371 * k))).collect();
+    let mut all: Vec<_> =
+        (0..12).map(|k| run(Limits::Pair, &busy, &events(THEN + 371 * k))).collect();
     all.extend((0..3).map(|k| run(Limits::Pair, &waiting, &events(THEN + 601 * k))));
     all
 }
 
 /// True if the changed Verilog differs from the model.
 fn caught(change: impl Fn(String) -> String) -> bool {
-    let verilog = change(carrystep_verilog::engine_verilog(&build(Limits::Pair), "a test").expect("a fine build"));
-    let differs =
-        |recording: &Recording| replay::difference(Level::Verilator, &verilog, recording).expect("the tools").is_some();
+    let verilog = change(
+        carrystep_verilog::engine_verilog(&build(Limits::Pair), "a test").expect("a fine build"),
+    );
+    let differs = |recording: &Recording| {
+        replay::difference(Level::Verilator, &verilog, recording).expect("the tools").is_some()
+    };
     recordings().iter().any(differs)
 }
 
@@ -147,7 +187,11 @@ const BUGS: [planted::Bug; 5] = [
     ("the limit is met once more on the way", "& !homes_slows", ""),
     ("all axes slow down", "mine_slows <= (slowing & lane_next)", "mine_slows <= (slowing)"),
     ("the queue keeps what waits", "next_live = newest;", "next_live = live_now;"),
-    ("a start does not wait for an axis that slows", "queue_goes_on | homes_slows", "queue_goes_on"),
+    (
+        "a start does not wait for an axis that slows",
+        "queue_goes_on | homes_slows",
+        "queue_goes_on",
+    ),
 ];
 
 #[test]

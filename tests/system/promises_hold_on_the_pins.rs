@@ -25,7 +25,13 @@ struct Watch {
 }
 
 /// Checks one change of the outputs against the promises.
-fn watch(axes: &mut [Watch; AXES], build: &Build, cycle: u64, outputs: &Outputs, frozen_before: bool) {
+fn watch(
+    axes: &mut [Watch; AXES],
+    build: &Build,
+    cycle: u64,
+    outputs: &Outputs,
+    frozen_before: bool,
+) {
     for (i, axis) in axes.iter_mut().enumerate() {
         let pins = build.pins[i];
         let step = outputs.step >> i & 1 == 1;
@@ -45,7 +51,10 @@ fn watch(axes: &mut [Watch; AXES], build: &Build, cycle: u64, outputs: &Outputs,
                 axis.fell.is_none_or(|fell| since(fell) >= u64::from(pins.gap)),
                 "promise 2: gap, axis {i}, cycle {cycle}"
             );
-            assert!(since(axis.turned) >= u64::from(pins.setup), "promise 3: set-up, axis {i}, cycle {cycle}");
+            assert!(
+                since(axis.turned) >= u64::from(pins.setup),
+                "promise 3: set-up, axis {i}, cycle {cycle}"
+            );
             axis.position = axis.position.wrapping_add(if dir { -1 } else { 1 });
             axis.rose = Some(cycle);
         }
@@ -55,14 +64,21 @@ fn watch(axes: &mut [Watch; AXES], build: &Build, cycle: u64, outputs: &Outputs,
             axis.fell = Some(cycle);
         }
         axis.step = step;
-        assert_eq!(outputs.position[i], axis.position, "promise 7: position, axis {i}, cycle {cycle}");
+        assert_eq!(
+            outputs.position[i], axis.position,
+            "promise 7: position, axis {i}, cycle {cycle}"
+        );
         assert!(!outputs.idle || !step, "promise 8: done with STEP high, axis {i}, cycle {cycle}");
     }
 }
 
 /// Runs a program and returns the observations, the outputs at the end if the run ended (a host can
 /// block itself), and whether a fault occurred.
-fn run_and_watch(level: Level, build: &Build, program: &Program) -> ([Watch; AXES], Option<Outputs>, bool) {
+fn run_and_watch(
+    level: Level,
+    build: &Build,
+    program: &Program,
+) -> ([Watch; AXES], Option<Outputs>, bool) {
     let job = lockstep::job(build, program);
     let mut axes = [Watch::default(); AXES];
     let mut frozen = false;
@@ -79,7 +95,9 @@ fn run_and_watch(level: Level, build: &Build, program: &Program) -> ([Watch; AXE
 /// The position of an axis according to its accumulator after a program that ran to its end.
 fn whole_steps(program: &Program, axis: u8, phase: StartPhase) -> BigInt {
     let distance = |command: &Command| match command {
-        Command::Segment { axis: a, segment } if *a == axis => closed_form::distance(segment, segment.ticks),
+        Command::Segment { axis: a, segment } if *a == axis => {
+            closed_form::distance(segment, segment.ticks)
+        }
         _ => BigInt::from(0),
     };
     let sum: BigInt = program.iter().map(distance).sum();
@@ -108,7 +126,10 @@ fn random_programs_meet_every_fault() {
         });
         ended += u32::from(outcome.is_ok());
     }
-    assert!(pulses > 5000 && turns > 1000 && cleared > 30, "{pulses} pulses, {turns} turns, {cleared} clears");
+    assert!(
+        pulses > 5000 && turns > 1000 && cleared > 30,
+        "{pulses} pulses, {turns} turns, {cleared} clears"
+    );
     assert!(ended > 150, "only {ended} of 200 programs come to an end");
     assert!(
         faults.overrun.count_ones() >= 1

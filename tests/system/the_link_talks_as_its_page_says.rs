@@ -27,7 +27,9 @@ fn bench() -> LinkBench {
 /// Sends a request and receives its answer.
 fn ask(bench: &mut LinkBench, sequence: u8, address: u8, words: &[u32]) -> Said {
     bench.send(&on_the_line(&frame(sequence, address, words)));
-    let answer = bench.answer(PATIENCE).unwrap_or_else(|| panic!("no answer to {sequence:02x} {address:02x}"));
+    let answer = bench
+        .answer(PATIENCE)
+        .unwrap_or_else(|| panic!("no answer to {sequence:02x} {address:02x}"));
     let said = Said::of(&unframe(&answer).unwrap_or_else(|| panic!("{answer:02x?} is no frame")));
     assert_eq!((said.sequence, said.address), (sequence, address));
     said
@@ -85,7 +87,8 @@ fn link_answers_the_example_frames_of_the_page() {
             // The frame was lost on the line.
             ">x" => {}
             "<" | "<x" => {
-                let answer = bench.answer(PATIENCE).unwrap_or_else(|| panic!("no answer for {line}"));
+                let answer =
+                    bench.answer(PATIENCE).unwrap_or_else(|| panic!("no answer for {line}"));
                 shown = format!("c0 {} c0", hex(&answer));
             }
             _ => panic!("{line}"),
@@ -162,15 +165,21 @@ fn a_broken_protocol_is_a_latched_fault_and_never_a_pulse() {
     let no_ticks = |bench: &mut LinkBench, next: &mut u8| {
         write(bench, next, of_axis(SEGMENT, 3), &[u32::MAX, 0, 1 << 30, 0, 0, 0, 0, 1])
     };
-    let nobody = |bench: &mut LinkBench, next: &mut u8| write(bench, next, of_axis(SEGMENT, 6), &cruise(100, QUARTER));
+    let nobody = |bench: &mut LinkBench, next: &mut u8| {
+        write(bench, next, of_axis(SEGMENT, 6), &cruise(100, QUARTER))
+    };
     let unfed = |bench: &mut LinkBench, next: &mut u8| {
         write(bench, next, START, &[1]);
         bench.rest(1000);
         status(bench)
     };
     type Breaks<'a> = &'a dyn Fn(&mut LinkBench, &mut u8) -> Said;
-    let all: [(&str, Breaks<'_>); 4] =
-        [("a full queue", &full), ("no ticks", &no_ticks), ("no such axis", &nobody), ("an empty queue", &unfed)];
+    let all: [(&str, Breaks<'_>); 4] = [
+        ("a full queue", &full),
+        ("no ticks", &no_ticks),
+        ("no such axis", &nobody),
+        ("an empty queue", &unfed),
+    ];
     for (name, breaks) in all {
         let mut bench = bench();
         let mut next = 0;
@@ -186,7 +195,11 @@ fn a_broken_protocol_is_a_latched_fault_and_never_a_pulse() {
         write(&mut bench, &mut next, CLEAR, &[0]);
         bench.rest(2000);
         let said = ask(&mut bench, 0, of_axis(POSITION, 3), &[]);
-        assert_eq!((said.fault, said.free, said.idle, said.data), (None, 7, true, 0), "{name}: {said:?}");
+        assert_eq!(
+            (said.fault, said.free, said.idle, said.data),
+            (None, 7, true, 0),
+            "{name}: {said:?}"
+        );
         write(&mut bench, &mut next, of_axis(SEGMENT, 3), &cruise(100, QUARTER));
         write(&mut bench, &mut next, START, &[1 << 3]);
         while !status(&mut bench).idle {}
@@ -243,7 +256,11 @@ fn segments_sent_back_to_back_are_all_accepted() {
     let first = next;
     for _ in 0..7 {
         for axis in 0..AXES as u8 {
-            bench.send(&on_the_line(&frame(next, 0x80 | of_axis(SEGMENT, axis), &cruise(100, QUARTER))));
+            bench.send(&on_the_line(&frame(
+                next,
+                0x80 | of_axis(SEGMENT, axis),
+                &cruise(100, QUARTER),
+            )));
             next += 1;
         }
     }
@@ -274,7 +291,11 @@ fn segments_over_spi_are_all_accepted() {
             for sequence in first..next {
                 let answer = bench.answer(PATIENCE).expect("an answer");
                 let said = Said::of(&unframe(&answer).expect("a frame"));
-                assert_eq!((said.sequence, said.next, said.refused), (sequence, sequence + 1, false), "{tenths}");
+                assert_eq!(
+                    (said.sequence, said.next, said.refused),
+                    (sequence, sequence + 1, false),
+                    "{tenths}"
+                );
             }
         }
         assert_eq!(ask(&mut bench, 0xc0, of_axis(POSITION, 5), &[]).free, 0);
@@ -321,7 +342,10 @@ fn replayed(mut bench: LinkBench, line: Line, vectors: Vectors) {
     ] {
         let planted = text.replacen(from, to, 1);
         assert_ne!(&planted, text, "{from} is not in {name}");
-        assert!(vectors.difference(name, &planted).expect("Icarus").is_some(), "{name}: {to} is not seen");
+        assert!(
+            vectors.difference(name, &planted).expect("Icarus").is_some(),
+            "{name}: {to} is not seen"
+        );
     }
 }
 

@@ -202,7 +202,10 @@ fn names() -> String {
 /// # Errors
 /// [`BoardError::Unknown`] if there is none; it names the boards that exist.
 pub fn board(name: &str) -> Result<&'static Board, BoardError> {
-    boards().iter().find(|board| board.name == name).ok_or_else(|| BoardError::Unknown { name: name.to_owned() })
+    boards()
+        .iter()
+        .find(|board| board.name == name)
+        .ok_or_else(|| BoardError::Unknown { name: name.to_owned() })
 }
 
 impl Board {
@@ -240,10 +243,8 @@ impl Board {
     /// # Errors
     /// [`BoardError::Clock`] if it cannot be made; it names the nearest possible clock.
     pub fn clock(&self, clock_hz: u64) -> Result<ClockManager, BoardError> {
-        self.family.facts().clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| BoardError::Clock {
-            board: self.name.clone(),
-            source,
-            proposed: self.proposed(None),
+        self.family.facts().clock_managers().solve(self.oscillator.hz, clock_hz).map_err(|source| {
+            BoardError::Clock { board: self.name.clone(), source, proposed: self.proposed(None) }
         })
     }
 
@@ -254,7 +255,10 @@ impl Board {
     /// [`BaudError`] if there is no such rate.
     pub fn uart(&self, clock_hz: u64) -> Result<Uart, BaudError> {
         let most = self.max_baud.unwrap_or(BAUDS[0]);
-        let made = BAUDS.into_iter().filter(|baud| *baud <= most).find_map(|baud| Uart::new(clock_hz, baud).ok());
+        let made = BAUDS
+            .into_iter()
+            .filter(|baud| *baud <= most)
+            .find_map(|baud| Uart::new(clock_hz, baud).ok());
         made.map_or_else(|| Uart::new(clock_hz, most), Ok)
     }
 
@@ -264,7 +268,9 @@ impl Board {
     /// [`BoardError::Baud`] names the greatest rate that it supports.
     pub fn takes(&self, baud: u32) -> Result<(), BoardError> {
         match self.max_baud {
-            Some(most) if most < baud => Err(BoardError::Baud { board: self.name.clone(), most, wanted: baud }),
+            Some(most) if most < baud => {
+                Err(BoardError::Baud { board: self.name.clone(), most, wanted: baud })
+            }
             _ => Ok(()),
         }
     }
@@ -289,7 +295,11 @@ impl Board {
         if needs_low <= low && needs_high <= high {
             return Ok(());
         }
-        let instead = if axes <= low { "limits = \"each\" or \"one\" would do" } else { "limits = \"one\" would do" };
+        let instead = if axes <= low {
+            "limits = \"each\" or \"one\" would do"
+        } else {
+            "limits = \"one\" would do"
+        };
         Err(BoardError::Limits { board: board(), low, high, wanted, instead })
     }
 

@@ -79,10 +79,21 @@ pub(crate) struct AxisCheck<'a> {
 }
 
 impl<'a> AxisCheck<'a> {
-    pub(crate) fn new(setup: AxisSetup<'a>, phase: StartPhase, timebase: Timebase, slack_ps: u64) -> Self {
-        let mut crossings: Box<dyn Iterator<Item = Crossing> + 'a> = Box::new(setup.timeline.crossings(phase));
+    pub(crate) fn new(
+        setup: AxisSetup<'a>,
+        phase: StartPhase,
+        timebase: Timebase,
+        slack_ps: u64,
+    ) -> Self {
+        let mut crossings: Box<dyn Iterator<Item = Crossing> + 'a> =
+            Box::new(setup.timeline.crossings(phase));
         let next = [crossings.next(), crossings.next()];
-        let fit_ps = setup.timeline.legs.iter().map(|leg| (leg.fit_seconds * PS).round()).fold(0.0, f64::max);
+        let fit_ps = setup
+            .timeline
+            .legs
+            .iter()
+            .map(|leg| (leg.fit_seconds * PS).round())
+            .fold(0.0, f64::max);
         Self {
             setup,
             timebase,
@@ -207,7 +218,9 @@ impl<'a> AxisCheck<'a> {
 
     fn is_missing(&self, ps: u64, origin_ps: i64, sure: bool) -> bool {
         match self.period(ps, origin_ps, sure) {
-            Some((since, [Some(this), Some(after)])) => since > f64::midpoint(this, after) + self.tolerance_ps(),
+            Some((since, [Some(this), Some(after)])) => {
+                since > f64::midpoint(this, after) + self.tolerance_ps()
+            }
             _ => false,
         }
     }
@@ -227,7 +240,10 @@ impl<'a> AxisCheck<'a> {
             [Some(first), Some(_)] => {
                 let due = due_ps(origin_ps, &first, tick_ps(&self.timebase));
                 let number = self.number;
-                self.fail_pulse(&format!("pulse {number} and all behind it are missing, due from {}", moment(due)));
+                self.fail_pulse(&format!(
+                    "pulse {number} and all behind it are missing, due from {}",
+                    moment(due)
+                ));
             }
             _ => self.miss(origin_ps),
         }
@@ -271,18 +287,24 @@ impl<'a> AxisCheck<'a> {
             self.fail(&format!("{found} pulses, {} expected", self.setup.expected_pulses));
         }
         if self.position != self.setup.expected_position {
-            self.fail(&format!("final position {}, {} expected", self.position, self.setup.expected_position));
+            self.fail(&format!(
+                "final position {}, {} expected",
+                self.position, self.setup.expected_position
+            ));
         }
         let phase = phase_ps(&self.timebase);
         let (fit, bound) = (self.fit_ps, self.bound_ps());
         self.judge_errors(shift_ps as f64, bound);
         if let Some(Off { steps, bound, pulse }) = line.filter(|off| off.steps > off.bound) {
-            self.fail(&format!("{steps:.3} steps off its line after a pulse {pulse}, the bound is {bound:.3} steps"));
+            self.fail(&format!(
+                "{steps:.3} steps off its line after a pulse {pulse}, the bound is {bound:.3} steps"
+            ));
         }
         let shortest = self.watch.shortest();
         let measured = [shortest.high, shortest.low, shortest.setup, shortest.hold];
         self.judge_pins(measured);
-        let [high_min_ns, low_min_ns, setup_min_ns, hold_min_ns] = measured.map(|s| s.map(|s| s.ps as f64 / NS));
+        let [high_min_ns, low_min_ns, setup_min_ns, hold_min_ns] =
+            measured.map(|s| s.map(|s| s.ps as f64 / NS));
         let [high_required_ns, low_required_ns, setup_required_ns, hold_required_ns] =
             self.setup.pins_ns.map(|ns| ns as f64);
         let errors = self.errors.shifted(-(shift_ps as f64));

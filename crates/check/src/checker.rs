@@ -64,7 +64,10 @@ pub struct Checker<'a> {
 
 impl fmt::Debug for Checker<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Checker").field("origin", &self.origin).field("base_ps", &self.base_ps).finish_non_exhaustive()
+        f.debug_struct("Checker")
+            .field("origin", &self.origin)
+            .field("base_ps", &self.base_ps)
+            .finish_non_exhaustive()
     }
 }
 
@@ -73,7 +76,8 @@ impl<'a> Checker<'a> {
     pub fn new(setup: Setup<'a>) -> Self {
         let Setup { timebase, phase, axes, lines, origin, slack_ps } = setup;
         let lines = LinesCheck::new(lines, phase, axes.len());
-        let axes = axes.into_iter().map(|axis| AxisCheck::new(axis, phase, timebase, slack_ps)).collect();
+        let axes =
+            axes.into_iter().map(|axis| AxisCheck::new(axis, phase, timebase, slack_ps)).collect();
         let base_ps = match origin {
             Origin::Known { ps } | Origin::Fixed { ps } => Some(ps),
             Origin::Midpoint => None,
@@ -93,7 +97,8 @@ impl<'a> Checker<'a> {
         let shift = if kind == OriginKind::Midpoint { midpoint(&self.axes) } else { 0 };
         let late = self.axes.iter().map(AxisCheck::bound_ps).fold(0.0, f64::max) / crate::ideal::PS;
         let axes = self.axes.into_iter().enumerate();
-        let axes: Vec<_> = axes.map(|(i, axis)| axis.finish(base, shift, self.lines.off(i, late))).collect();
+        let axes: Vec<_> =
+            axes.map(|(i, axis)| axis.finish(base, shift, self.lines.off(i, late))).collect();
         Report {
             passed: axes.iter().all(|axis| axis.passed),
             origin: kind,

@@ -64,7 +64,10 @@ struct Curves<'a> {
 
 impl fmt::Debug for Plot<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Plot").field("title", &self.title).field("span_s", &self.span_s).finish_non_exhaustive()
+        f.debug_struct("Plot")
+            .field("title", &self.title)
+            .field("span_s", &self.span_s)
+            .finish_non_exhaustive()
     }
 }
 

@@ -168,7 +168,11 @@ const PINS: [&str; 5] = ["axis", "high", "low", "set-up", "hold"];
 
 /// Writes rows below their headings. Names and columns without a heading are aligned to the left,
 /// numbers to the right.
-fn table<const N: usize>(f: &mut fmt::Formatter<'_>, head: [&str; N], rows: &[[String; N]]) -> fmt::Result {
+fn table<const N: usize>(
+    f: &mut fmt::Formatter<'_>,
+    head: [&str; N],
+    rows: &[[String; N]],
+) -> fmt::Result {
     let mut widths = head.map(str::len);
     for row in rows {
         for (width, cell) in widths.iter_mut().zip(row) {
@@ -197,11 +201,19 @@ impl fmt::Display for Report {
         writeln!(f, "times in ns; found/required; phase {} ns", self.phase_ns)?;
         match self.origin {
             OriginKind::Known => {}
-            OriginKind::Midpoint => writeln!(f, "origin: one for all axes, at {} ps of the capture", self.origin_ps)?,
-            OriginKind::Fixed => writeln!(f, "origin: fixed at {} ps of the capture", self.origin_ps)?,
+            OriginKind::Midpoint => {
+                writeln!(f, "origin: one for all axes, at {} ps of the capture", self.origin_ps)?
+            }
+            OriginKind::Fixed => {
+                writeln!(f, "origin: fixed at {} ps of the capture", self.origin_ps)?
+            }
         }
         if self.slack_ns > 0.0 {
-            writeln!(f, "the capture is good to {} ns: every bound is wider by that", self.slack_ns)?;
+            writeln!(
+                f,
+                "the capture is good to {} ns: every bound is wider by that",
+                self.slack_ns
+            )?;
         }
         let fit = self.axes.iter().map(|axis| axis.error_fit_ns).fold(0.0, f64::max);
         if fit > 0.0 {
@@ -213,7 +225,13 @@ impl fmt::Display for Report {
                     Some(unit) => unit.both(steps, 0),
                     None => format!("{steps:.3} steps"),
                 };
-                writeln!(f, "straight: axis {} up to {} off the line, bound {}", axis.axis, far(off), far(bound))?;
+                writeln!(
+                    f,
+                    "straight: axis {} up to {} off the line, bound {}",
+                    axis.axis,
+                    far(off),
+                    far(bound)
+                )?;
             }
         }
         for axis in &self.axes {

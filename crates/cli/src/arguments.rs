@@ -339,5 +339,6 @@ fn named<T>() -> impl TypedValueParser<Value = T>
 where
     T: VariantArray + Copy + Into<&'static str> + FromStr<Err = strum::ParseError> + Send + Sync,
 {
-    PossibleValuesParser::new(T::VARIANTS.iter().map(|&variant| variant.into())).try_map(|name| name.parse::<T>())
+    PossibleValuesParser::new(T::VARIANTS.iter().map(|&variant| variant.into()))
+        .try_map(|name| name.parse::<T>())
 }

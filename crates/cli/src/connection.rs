@@ -71,7 +71,12 @@ pub fn wanted(machine: &Machine, name: &Path) -> Result<(Uart, BuildId), Failure
 /// Connects to the board of a machine in order to drive it; `command` is the name of the
 /// subcommand. A board that was built from a different machine is refused. Nothing is written to
 /// the board. From now on `carrystep stop` reaches this command through [`Connection::control`].
-pub fn to_machine(port: &Port, machine: &Machine, name: &Path, command: &'static str) -> Result<Connection, Failure> {
+pub fn to_machine(
+    port: &Port,
+    machine: &Machine,
+    name: &Path,
+    command: &'static str,
+) -> Result<Connection, Failure> {
     Ok(machines(port, machine, name, command, true)?)
 }
 
@@ -85,7 +90,13 @@ pub fn to_peer(peer: &Peer, baud: u32, command: &'static str) -> Result<Connecti
     }
     let (board, control) = connect(&peer.port.name, baud, None, command, false)?;
     let axes = (0..board.facts().axes).map(|axis| axis.to_string()).collect();
-    Ok(known(Connection { board, axes, steps_per_unit: Vec::new(), port: peer.port.name.clone(), control }))
+    Ok(known(Connection {
+        board,
+        axes,
+        steps_per_unit: Vec::new(),
+        port: peer.port.name.clone(),
+        control,
+    }))
 }
 
 fn machines(
@@ -108,7 +119,12 @@ fn machines(
 fn known(mut connection: Connection) -> Connection {
     let Connection { board, axes, steps_per_unit, port, control } = &mut connection;
     let facts = *board.facts();
-    let known = Known { port: port.clone(), facts, axes: axes.clone(), steps_per_unit: steps_per_unit.clone() };
+    let known = Known {
+        port: port.clone(),
+        facts,
+        axes: axes.clone(),
+        steps_per_unit: steps_per_unit.clone(),
+    };
     control.connected(&facts, known);
     connection
 }
@@ -124,7 +140,8 @@ fn connect(
     let busy = |message: String| Refused { busy: true, failure: Failure::input(message) };
     // From here on Ctrl-C requests a stop and does not end the process.
     interrupt::watch();
-    let unclaimed = |error: io::Error| fine(format!("no lock for the serial port {port} can be made: {error}"));
+    let unclaimed =
+        |error: io::Error| fine(format!("no lock for the serial port {port} can be made: {error}"));
     let begin = Instant::now();
     let claim = loop {
         if let Some(claim) = control::claim(port, baud, command, drives).map_err(unclaimed)? {
@@ -145,8 +162,9 @@ fn connect(
     })?;
     let control = Control::new(claim, drives).map_err(unclaimed)?;
     // A wrong board is an input error: nothing was moved.
-    let board = Board::connect(line, SystemClock::default(), id.map(|id| id.0), Patience::default())
-        .map_err(|error| fine(format!("{port}: {error}")))?;
+    let board =
+        Board::connect(line, SystemClock::default(), id.map(|id| id.0), Patience::default())
+            .map_err(|error| fine(format!("{port}: {error}")))?;
     Ok((board, control))
 }
 
@@ -154,7 +172,9 @@ fn connect(
 /// error.
 fn opening(port: &str, error: &OpenError) -> String {
     let access = match error {
-        OpenError::Busy { .. } | OpenError::NotPermitted { .. } => carrystep_tools::doctor::obstacle(Path::new(port)),
+        OpenError::Busy { .. } | OpenError::NotPermitted { .. } => {
+            carrystep_tools::doctor::obstacle(Path::new(port))
+        }
         OpenError::Absent { .. } | OpenError::NoPort { .. } | OpenError::Unusable { .. } => None,
     };
     access.map_or_else(|| error.to_string(), |access| format!("serial port {port} {access}"))
@@ -164,12 +184,21 @@ fn opening(port: &str, error: &OpenError) -> String {
 pub fn broken(error: &BoardError, axes: &[String]) -> Failure {
     match *error {
         HostError::Program(error) => Failure::input(error.to_string()),
-        HostError::Line(ref why) => Failure::Run(format!("{error}: {why}; what moves stops by its watchdog")),
+        HostError::Line(ref why) => {
+            Failure::Run(format!("{error}: {why}; what moves stops by its watchdog"))
+        }
         HostError::NotIdle => Failure::Run(format!("{error}: `carrystep stop --clear` does that")),
         HostError::Fault { cause, culprits } => {
-            let remedy = CAUSES.get(usize::from(cause)).map_or("`carrystep stop --clear`", |cause| cause.remedy());
-            let name = CAUSES.get(usize::from(cause)).map_or_else(|| "?".to_owned(), ToString::to_string);
-            let from = if culprits == 0 { String::new() } else { format!(", from {}", names(axes, culprits)) };
+            let remedy = CAUSES
+                .get(usize::from(cause))
+                .map_or("`carrystep stop --clear`", |cause| cause.remedy());
+            let name =
+                CAUSES.get(usize::from(cause)).map_or_else(|| "?".to_owned(), ToString::to_string);
+            let from = if culprits == 0 {
+                String::new()
+            } else {
+                format!(", from {}", names(axes, culprits))
+            };
             Failure::Run(format!("the machine has stopped: {name}{from}; {remedy}"))
         }
         _ => Failure::Run(error.to_string()),
@@ -180,7 +209,9 @@ pub fn broken(error: &BoardError, axes: &[String]) -> Failure {
 pub fn lost(error: &BoardError, axes: &[String], facts: &Facts) -> Failure {
     let why = match error {
         HostError::Line(why) => format!("{error}: {why}"),
-        HostError::Lost { .. } | HostError::OutOfStep(_) | HostError::Foreign(_) => error.to_string(),
+        HostError::Lost { .. } | HostError::OutOfStep(_) | HostError::Foreign(_) => {
+            error.to_string()
+        }
         _ => return broken(error, axes),
     };
     let watchdog = watchdog((facts.watchdog_ticks, facts.tick_ns));
@@ -205,16 +236,24 @@ fn watchdog((ticks, tick_ns): (u32, u32)) -> String {
 pub fn hangs(port: &str, holder: &Holder, asked: Request, what: &str) -> String {
     let pid = holder.pid;
     let asleep = if suspended(pid) {
-        let then = if asked == Request::Stop { ": then it stops the axes, as it was asked to" } else { "" };
+        let then = if asked == Request::Stop {
+            ": then it stops the axes, as it was asked to"
+        } else {
+            ""
+        };
         format!("; it is suspended, and `kill -CONT {pid}` wakes it{then}")
     } else {
         String::new()
     };
     let now = match holder.watchdog {
-        Some(known) => format!("As the board said when that command connected: {}", watchdog(known)),
+        Some(known) => {
+            format!("As the board said when that command connected: {}", watchdog(known))
+        }
         None => "It had not connected to the board, so it has moved nothing".to_owned(),
     };
-    format!("{holder} holds {port} and does not {what}{asleep}. {now}. If anything still moves, press the e-stop")
+    format!(
+        "{holder} holds {port} and does not {what}{asleep}. {now}. If anything still moves, press the e-stop"
+    )
 }
 
 /// True if the system has suspended the process, for example by Ctrl-Z.

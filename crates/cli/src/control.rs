@@ -107,7 +107,8 @@ impl Control {
             let stop = door.poll(&mut |request| match request {
                 Request::Stop => "taken".to_owned(),
                 Request::Status => known.as_ref().map_or_else(String::new, |known| {
-                    let found = Found { held_by: Some(holder.clone()), ..Found::new(status, known, None) };
+                    let found =
+                        Found { held_by: Some(holder.clone()), ..Found::new(status, known, None) };
                     serde_json::to_string(&found).unwrap_or_default()
                 }),
             });

@@ -30,7 +30,10 @@ impl<B: Gateware> Manned<B> {
         let look = self.panel.look(|axis| self.desk.board.position(axis));
         for line in look.unknown {
             // If this write fails, there is no channel left to report it.
-            let _ = writeln!(std::io::stderr(), "not understood: {line:?}; known are: estop 1, min x 1, max x 0, end");
+            let _ = writeln!(
+                std::io::stderr(),
+                "not understood: {line:?}; known are: estop 1, min x 1, max x 0, end"
+            );
         }
         if look.ends || interrupt::watch().load(Ordering::Relaxed) {
             return Ok(false);

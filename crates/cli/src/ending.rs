@@ -72,7 +72,14 @@ enum Kind {
 
 impl Failed {
     fn new(kind: Kind, message: impl Into<String>) -> Self {
-        let error = ErrorJson { kind, message: message.into(), file: None, line: None, column: None, help: None };
+        let error = ErrorJson {
+            kind,
+            message: message.into(),
+            file: None,
+            line: None,
+            column: None,
+            help: None,
+        };
         Self { passed: false, error }
     }
 
@@ -115,7 +122,8 @@ pub fn usage(error: &clap::Error) -> ExitCode {
 /// Formats an input error: the message, then file, line and column, then the line with the wrong
 /// part marked.
 fn render(error: &InputError, terminal: bool) -> String {
-    let Some((source, span)) = error.place.as_ref().filter(|(source, _)| !source.text.is_empty()) else {
+    let Some((source, span)) = error.place.as_ref().filter(|(source, _)| !source.text.is_empty())
+    else {
         return format!("error: {}", harmless(&error.to_string()));
     };
     let mut diagnostic = MietteDiagnostic::new(harmless(&error.message));

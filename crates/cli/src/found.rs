@@ -97,7 +97,8 @@ pub fn by_number(cause: u8) -> Option<Cause> {
 /// The names of the axes in a mask of one bit per axis, separated by commas.
 pub fn names(axes: &[String], mask: u8) -> String {
     let is_of = |number: usize| mask.checked_shr(number as u32).is_some_and(|bits| bits & 1 == 1);
-    let names: Vec<&str> = (0..).zip(axes).filter(|&(number, _)| is_of(number)).map(|(_, name)| &**name).collect();
+    let names: Vec<&str> =
+        (0..).zip(axes).filter(|&(number, _)| is_of(number)).map(|(_, name)| &**name).collect();
     names.join(", ")
 }
 
@@ -146,15 +147,23 @@ impl Found {
 impl fmt::Display for Found {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { port, build, clock_hz, tick_ns, phases, .. } = self;
-        writeln!(f, "{port}: build {build}, clock {clock_hz} Hz, tick {tick_ns} ns, {phases} phases")?;
+        writeln!(
+            f,
+            "{port}: build {build}, clock {clock_hz} Hz, tick {tick_ns} ns, {phases} phases"
+        )?;
         if let Some(holder) = &self.stopped {
             writeln!(f, "{holder} was stopped")?;
         }
         if let Some(holder) = &self.held_by {
             writeln!(f, "{holder} drives it")?;
         }
-        let culprits: Vec<&str> = self.axes.iter().filter(|axis| axis.culprit).map(|axis| &*axis.axis).collect();
-        let from = if culprits.is_empty() { String::new() } else { format!(", from {}", culprits.join(", ")) };
+        let culprits: Vec<&str> =
+            self.axes.iter().filter(|axis| axis.culprit).map(|axis| &*axis.axis).collect();
+        let from = if culprits.is_empty() {
+            String::new()
+        } else {
+            format!(", from {}", culprits.join(", "))
+        };
         let power = if self.ready { "drivers powered" } else { "drivers without power" };
         match (&self.cause, self.halted, self.idle) {
             (Some(cause), true, _) => writeln!(f, "STOPPED: {cause}{from}; {power}")?,
@@ -169,13 +178,17 @@ impl fmt::Display for Found {
         let heading = if in_units { format!("  {:>12}", "place") } else { String::new() };
         writeln!(f, "{:<6}{heading}  {:>11}  {:>9}", "axis", "steps", "discarded")?;
         for AxisFound { axis, position, place, machine, discarded, homing, culprit } in &self.axes {
-            let machine =
-                machine.map_or_else(String::new, |machine| format!("  homed: at {machine:.4} of the machine"));
+            let machine = machine.map_or_else(String::new, |machine| {
+                format!("  homed: at {machine:.4} of the machine")
+            });
             let place = place.map_or_else(String::new, |place| format!("  {place:>12.4}"));
             let discarded = discarded.map_or_else(|| "-".to_owned(), |count| count.to_string());
             let homing = if *homing { "  waits for its limit" } else { "" };
             let culprit = if *culprit { "  it caused the stop" } else { "" };
-            writeln!(f, "{axis:<6}{place}  {position:>11}  {discarded:>9}{machine}{homing}{culprit}")?;
+            writeln!(
+                f,
+                "{axis:<6}{place}  {position:>11}  {discarded:>9}{machine}{homing}{culprit}"
+            )?;
         }
         Ok(())
     }

@@ -35,18 +35,31 @@ impl Gateware<'_> {
 
     /// Runs the plan. `watch` is called with cycle, STEP and DIR (bit i is axis i) in each cycle in
     /// which any output has changed.
-    pub fn run(&self, level: Level, watch: &mut dyn FnMut(u64, u8, u8)) -> Result<Ended, LevelError> {
+    pub fn run(
+        &self,
+        level: Level,
+        watch: &mut dyn FnMut(u64, u8, u8),
+    ) -> Result<Ended, LevelError> {
         match self {
             Self::Parallel(job) => {
                 let outcome = carrystep_simulators::run(level, job, &mut |cycle, outputs| {
                     watch(cycle, outputs.step, outputs.dir);
                 })?;
                 let (positions, faults) = (outcome.last.position.to_vec(), outcome.last.faults);
-                Ok(Ended { clocks: outcome.clocks, positions, fault: faults.any().then(|| faults.to_string()) })
+                Ok(Ended {
+                    clocks: outcome.clocks,
+                    positions,
+                    fault: faults.any().then(|| faults.to_string()),
+                })
             }
             Self::Engine(job) => {
-                let outcome = job.run(level, &mut |cycle, outputs| watch(cycle, outputs.step, outputs.dir))?;
-                Ok(Ended { clocks: outcome.clocks, positions: outcome.positions, fault: outcome.fault.map(told) })
+                let outcome =
+                    job.run(level, &mut |cycle, outputs| watch(cycle, outputs.step, outputs.dir))?;
+                Ok(Ended {
+                    clocks: outcome.clocks,
+                    positions: outcome.positions,
+                    fault: outcome.fault.map(told),
+                })
             }
         }
     }
@@ -67,11 +80,16 @@ pub fn engine(machine: &Machine, name: &str) -> Result<EngineBuild, Failure> {
 /// What is said of the parallel core where only the engine's turns do not fit.
 fn sibling(machine: &Machine, error: &EngineError) -> &'static str {
     let by_turns = matches!(error, EngineError::Schedule { .. } | EngineError::ShortPhase { .. });
-    if by_turns && machine.build().is_ok() { "; the parallel core holds it as it is: `--core parallel`" } else { "" }
+    if by_turns && machine.build().is_ok() {
+        "; the parallel core holds it as it is: `--core parallel`"
+    } else {
+        ""
+    }
 }
 
 /// A cause, and the axes that it came from.
 pub fn told((cause, culprits): (Cause, u8)) -> String {
-    let axes: Vec<String> = (0..8).filter(|axis| culprits >> axis & 1 == 1).map(|axis| axis.to_string()).collect();
+    let axes: Vec<String> =
+        (0..8).filter(|axis| culprits >> axis & 1 == 1).map(|axis| axis.to_string()).collect();
     if axes.is_empty() { cause.to_string() } else { format!("{cause} on axis {}", axes.join(", ")) }
 }

@@ -16,7 +16,10 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
     let mut wanted = 0_u8;
     for name in names {
         let number = machine.axis_index(name).ok_or_else(|| {
-            Failure::input(format!("no axis is called '{name}': the axes are {}", machine.axis_names()))
+            Failure::input(format!(
+                "no axis is called '{name}': the axes are {}",
+                machine.axis_names()
+            ))
         })?;
         if machine.axes[number].home.is_none() {
             return Err(Failure::input(format!(
@@ -27,8 +30,12 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
     }
     let mask = |group: &Vec<usize>| group.iter().fold(0_u8, |mask, axis| mask | 1 << axis);
     let wanted = if names.is_empty() { u8::MAX } else { wanted };
-    let groups: Vec<u8> =
-        machine.home_order.iter().map(|group| mask(group) & wanted).filter(|&mask| mask != 0).collect();
+    let groups: Vec<u8> = machine
+        .home_order
+        .iter()
+        .map(|group| mask(group) & wanted)
+        .filter(|&mask| mask != 0)
+        .collect();
     if groups.is_empty() {
         return Err(Failure::input(
             "no axis of the machine has a home table: home = { toward = \"min\", ... }, as in docs/homing.md",
@@ -41,10 +48,22 @@ pub fn groups(machine: &Machine, names: &[String]) -> Result<Vec<u8>, Failure> {
 pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
     let mut axes = [None; 8];
     for (place, axis) in axes.iter_mut().zip(&machine.axes) {
-        *place =
-            axis.home.map(|AxisHome { toward, start, accel, seek, slow, move_off, max_travel, pull_off, .. }| {
-                AxisHoming { toward_max: toward == End::Max, start, accel, seek, slow, move_off, max_travel, pull_off }
-            });
+        *place = axis.home.map(
+            |AxisHome {
+                 toward, start, accel, seek, slow, move_off, max_travel, pull_off, ..
+             }| {
+                AxisHoming {
+                    toward_max: toward == End::Max,
+                    start,
+                    accel,
+                    seek,
+                    slow,
+                    move_off,
+                    max_travel,
+                    pull_off,
+                }
+            },
+        );
     }
     let wiring = match machine.guard.limits {
         Limits::Each => Wiring::Each,

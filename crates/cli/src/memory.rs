@@ -84,17 +84,28 @@ impl Memory {
     pub fn recall(connection: &Connection) -> Self {
         let Connection { board, axes, steps_per_unit, port, .. } = connection;
         // The canonical path, so that every link to the port gives the same name.
-        let port = Path::new(port).canonicalize().map_or_else(|_| port.clone(), |path| path.display().to_string());
+        let port = Path::new(port)
+            .canonicalize()
+            .map_or_else(|_| port.clone(), |path| path.display().to_string());
         let build = format!("{:016x}", board.facts().build);
-        let name: String = port.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+        let name: String =
+            port.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
         let path = folder().map(|folder| folder.join(format!("{name}-{build}.json")));
         let blank = vec![AxisRecord::default(); axes.len()];
         let Status { answer, positions } = *board.status();
-        let mut record = Record { schema: SCHEMA, port, build, next: answer.next, ready: answer.ready, axes: blank };
+        let mut record = Record {
+            schema: SCHEMA,
+            port,
+            build,
+            next: answer.next,
+            ready: answer.ready,
+            axes: blank,
+        };
         let stored = path.as_ref().and_then(|path| std::fs::read(path).ok());
         if let Some(stored) = stored.and_then(|text| serde_json::from_slice::<Record>(&text).ok())
             && (stored.schema, &stored.port, &stored.build) == (SCHEMA, &record.port, &record.build)
-            && (stored.next, stored.ready, stored.axes.len()) == (record.next, record.ready, record.axes.len())
+            && (stored.next, stored.ready, stored.axes.len())
+                == (record.next, record.ready, record.axes.len())
             && stored.axes.iter().zip(positions).all(|(axis, position)| axis.position == position)
         {
             record.axes = stored.axes;
@@ -154,7 +165,10 @@ impl Memory {
             // A motor without power does not keep its position.
             axis.offset = axis.offset.filter(|_| answer.ready);
         }
-        let path = self.path.as_ref().ok_or_else(|| io::Error::other("the system names no folder for it"))?;
+        let path = self
+            .path
+            .as_ref()
+            .ok_or_else(|| io::Error::other("the system names no folder for it"))?;
         let folder = path.parent().unwrap_or(Path::new("."));
         std::fs::create_dir_all(folder)?;
         let mut file = tempfile::NamedTempFile::new_in(folder)?;
@@ -181,7 +195,9 @@ pub const fn always_freezes(cause: Cause) -> bool {
 fn folder() -> Option<PathBuf> {
     match std::env::var_os(FOLDER) {
         Some(folder) => Some(folder.into()),
-        None => Some(dirs::state_dir().or_else(dirs::data_local_dir)?.join("carrystep").join("boards")),
+        None => {
+            Some(dirs::state_dir().or_else(dirs::data_local_dir)?.join("carrystep").join("boards"))
+        }
     }
 }
 
@@ -192,7 +208,10 @@ mod tests {
     #[test]
     fn axis_is_clear_of_its_limit_after_moving_back_the_clear_distance() {
         let back = Limit { direction: -1, at: -105, clear: 20 };
-        assert_eq!([-105, -104, -86, -85, 300, -110].map(|position| back.to_go(position)), [20, 19, 1, 0, 0, 25]);
+        assert_eq!(
+            [-105, -104, -86, -85, 300, -110].map(|position| back.to_go(position)),
+            [20, 19, 1, 0, 0, 25]
+        );
         let forth = Limit { direction: 1, at: 105, clear: 20 };
         assert_eq!([105, 86, 85, -300].map(|position| forth.to_go(position)), [20, 1, 0, 0]);
     }

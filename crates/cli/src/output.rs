@@ -18,10 +18,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// fails otherwise.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    let painted = if colour::wanted(&out) { Cow::Owned(colour::painted(text)) } else { Cow::Borrowed(text) };
-    out.write_all(painted.as_bytes()).and_then(|()| out.flush()).map_err(|error| match error.kind() {
-        ErrorKind::BrokenPipe => Failure::ReaderGone,
-        _ => Failure::input(format!("cannot write to standard output: {error}")),
+    let painted =
+        if colour::wanted(&out) { Cow::Owned(colour::painted(text)) } else { Cow::Borrowed(text) };
+    out.write_all(painted.as_bytes()).and_then(|()| out.flush()).map_err(|error| {
+        match error.kind() {
+            ErrorKind::BrokenPipe => Failure::ReaderGone,
+            _ => Failure::input(format!("cannot write to standard output: {error}")),
+        }
     })
 }
 
@@ -45,7 +48,8 @@ pub fn lacks_json() -> bool {
 /// Prints one JSON document, preceded by the name and the version of its schema.
 pub fn print_json(document: &impl Document) -> Result<(), Failure> {
     JSON_PRINTED.store(true, Ordering::Relaxed);
-    let text = serde_json::to_string_pretty(&Named::new(document)).map_err(|error| Failure::Run(error.to_string()))?;
+    let text = serde_json::to_string_pretty(&Named::new(document))
+        .map_err(|error| Failure::Run(error.to_string()))?;
     print(&format!("{text}\n"))
 }
 

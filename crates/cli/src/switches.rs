@@ -76,7 +76,13 @@ impl Panel {
                 limits.push(read.ok_or_else(wrong)?);
             }
         }
-        Ok(Self { limits, axes, hand: Switches::default(), wiring: machine.guard.limits, lines: lines() })
+        Ok(Self {
+            limits,
+            axes,
+            hand: Switches::default(),
+            wiring: machine.guard.limits,
+            lines: lines(),
+        })
     }
 
     /// Reads pending commands and returns the state of the inputs for these positions (steps).

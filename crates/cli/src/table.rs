@@ -65,12 +65,15 @@ pub fn limits(file: &MoveFile, plan: &Plan) -> Limits {
 fn axis_limits(index: usize, axis: &Axis, plan: &Plan) -> AxisLimits {
     let timebase = &plan.build.timebase;
     let planned = || plan.moves.iter().map(|m| &m.axes[index]);
-    let greatest = |of: fn(&carrystep_plan::Peaks) -> u64| planned().map(|a| of(&a.peaks)).max().unwrap_or(0);
-    let (v, a, start) = (greatest(|p| p.speed), greatest(|p| p.acceleration), greatest(|p| p.start_speed));
+    let greatest =
+        |of: fn(&carrystep_plan::Peaks) -> u64| planned().map(|a| of(&a.peaks)).max().unwrap_or(0);
+    let (v, a, start) =
+        (greatest(|p| p.speed), greatest(|p| p.acceleration), greatest(|p| p.start_speed));
     let steps: i64 = planned().map(|a| a.steps).sum();
     let travelled: i128 = plan.axis_segments(index).map(|(_, segment)| distance(&segment)).sum();
-    let per_second =
-        |units: u64, power: u32| units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power.cast_signed());
+    let per_second = |units: u64, power: u32| {
+        units as f64 * 2_f64.powi(-64) / timebase.tick_seconds().powi(power.cast_signed())
+    };
     AxisLimits {
         axis: axis.name.clone(),
         unit: axis.unit.name.clone(),
@@ -163,7 +166,11 @@ pub fn columns<const N: usize>(
     table.load_style(NOTHING).set_header(head).add_rows(rows);
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 2));
-        column.set_cell_alignment(if left(index) { CellAlignment::Left } else { CellAlignment::Right });
+        column.set_cell_alignment(if left(index) {
+            CellAlignment::Left
+        } else {
+            CellAlignment::Right
+        });
     }
     writeln!(out, "{}", table.trim_fmt())
 }

@@ -100,8 +100,20 @@ const fn field(name: &'static str, byte: usize, bit: u8, bits: u8, what: &'stati
 pub const ANSWER: [Field; 13] = [
     field("sequence", 0, 0, 8, "the request's sequence number"),
     field("address", 1, 0, 8, "the request's address"),
-    field("next", 2, 0, 8, "the sequence number that the next write must have: all before it have been executed"),
-    field("fault", 3, 0, 1, "a stop has been called; segments and starts are dropped until a clear"),
+    field(
+        "next",
+        2,
+        0,
+        8,
+        "the sequence number that the next write must have: all before it have been executed",
+    ),
+    field(
+        "fault",
+        3,
+        0,
+        1,
+        "a stop has been called; segments and starts are dropped until a clear",
+    ),
     field("halted", 3, 1, 1, "the stop is over: no axis moves any more"),
     field("idle", 3, 2, 1, "all axes are done, and no start is armed"),
     field("ready", 3, 3, 1, "the drivers have had power for long enough: starts are taken"),

@@ -24,8 +24,9 @@ pub struct Driver {
 
 /// All presets, by lower-case name.
 pub fn drivers() -> &'static BTreeMap<String, Driver> {
-    static DRIVERS: LazyLock<BTreeMap<String, Driver>> =
-        LazyLock::new(|| toml::from_str(DATA).unwrap_or_else(|error| unreachable!("data/drivers.toml: {error}")));
+    static DRIVERS: LazyLock<BTreeMap<String, Driver>> = LazyLock::new(|| {
+        toml::from_str(DATA).unwrap_or_else(|error| unreachable!("data/drivers.toml: {error}"))
+    });
     &DRIVERS
 }
 

@@ -79,7 +79,8 @@ impl Source {
         let text = String::from_utf8(bytes).map_err(|error| {
             let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             let (line, column) = line_column(&String::from_utf8_lossy(good));
-            InputError::new(format!("{shown}:{line}:{column}: not UTF-8")).help("a text file in TOML is expected")
+            InputError::new(format!("{shown}:{line}:{column}: not UTF-8"))
+                .help("a text file in TOML is expected")
         })?;
         Ok(Self { path: path.to_owned(), text: text.into() })
     }
@@ -149,7 +150,10 @@ fn in_plain_words(message: &str) -> String {
             "expected tables in double brackets, as in [[move]] and [[machine.axis]], or a list in brackets, as in [0, 300]",
         ),
         ("expected a map", "expected distances, as in { x = 1.5 }"),
-        ("integer number overflowed", "a number of too many digits: at most 38, or 60 with a point, are expected"),
+        (
+            "integer number overflowed",
+            "a number of too many digits: at most 38, or 60 with a point, are expected",
+        ),
         ("floating-point number overflowed", "the number is too great: it must be under 10^30"),
     ];
     WORDS.iter().fold(message.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))

@@ -54,7 +54,9 @@ pub struct Machine {
 
 /// Error: the six-axis core cannot drive this machine, because it has more than six axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("{0} axes: the parallel gateware drives at most {AXES}; an engine may have up to {MAX_AXES}")]
+#[error(
+    "{0} axes: the parallel gateware drives at most {AXES}; an engine may have up to {MAX_AXES}"
+)]
 pub struct TooManyAxes(pub usize);
 
 /// One axis. Its speeds and accelerations are exact products of the file's numbers.
@@ -132,7 +134,11 @@ impl Machine {
     /// # Errors
     /// [`BaudError`] if the file gives no baud rate and its clock cannot make the default.
     pub fn line(&self) -> Result<Line, BaudError> {
-        if self.spi { Ok(Line::Spi) } else { Uart::new(self.timebase.clock_hz(), self.baud).map(Line::Uart) }
+        if self.spi {
+            Ok(Line::Spi)
+        } else {
+            Uart::new(self.timebase.clock_hz(), self.baud).map(Line::Uart)
+        }
     }
 
     /// The number of the axis of this name, from 0.
@@ -186,9 +192,8 @@ impl RawMachine {
         }
         if raw.len() > MAX_AXES {
             let message = format!("{} axes: an engine drives at most {MAX_AXES}", raw.len());
-            return Err(
-                InputError::at(source, raw[MAX_AXES].span(), message).help("leave out axes, or build two engines")
-            );
+            return Err(InputError::at(source, raw[MAX_AXES].span(), message)
+                .help("leave out axes, or build two engines"));
         }
         let mut axes: Vec<Axis> = Vec::with_capacity(raw.len());
         let mut places: Vec<RawPlace> = Vec::with_capacity(raw.len());
@@ -199,13 +204,19 @@ impl RawMachine {
             let axis = axis.check(source, table, &timebase);
             let axis = axis.map_err(|error| with_proposal(error, chosen_tick.as_ref()))?;
             if axes.iter().any(|other| other.name == axis.name) {
-                return Err(InputError::at(source, name_span, format!("two axes are called '{}'", axis.name))
-                    .help("give each axis a name of its own"));
+                return Err(InputError::at(
+                    source,
+                    name_span,
+                    format!("two axes are called '{}'", axis.name),
+                )
+                .help("give each axis a name of its own"));
             }
             axes.push(axis);
         }
-        let guard = self.guard.check(source, &timebase, axes.iter().map(|axis| axis.stop).collect())?;
-        let home_order = home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
+        let guard =
+            self.guard.check(source, &timebase, axes.iter().map(|axis| axis.stop).collect())?;
+        let home_order =
+            home::check(source, &timebase, &guard, &mut axes, places, self.home_order)?;
         let (baud, spi) = (self.link.baud(source, &timebase)?, self.link.spi(source)?);
         Ok(Machine { timebase, chosen_tick, phase: self.phase, axes, guard, home_order, baud, spi })
     }
@@ -218,7 +229,8 @@ impl RawMachine {
         let given = self.tick_ns.as_ref().map(|v| (*v.as_ref(), None));
         // If the clock allows no tick, the tick of 1 ns makes the check below fail with the
         // matching error.
-        let (tick_ns, chosen) = given.or_else(|| default_tick(clock_hz, phases, axes)).unwrap_or((1, None));
+        let (tick_ns, chosen) =
+            given.or_else(|| default_tick(clock_hz, phases, axes)).unwrap_or((1, None));
         let timebase = Timebase::new(clock_hz, tick_ns, phases).map_err(|error| {
             let tick = self.tick_ns.as_ref().map(Spanned::span);
             let clock = self.clock_hz.as_ref().map(Spanned::span);

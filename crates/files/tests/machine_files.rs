@@ -5,7 +5,8 @@
 use carrystep_core::{AXES, PinTiming, StartPhase};
 use carrystep_files::{BigDecimal, Machine, Source};
 
-const AXIS: &str = "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n";
+const AXIS: &str =
+    "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n";
 
 /// A clock at which the drivers' times are no whole clocks; one axis has ticks of 1 us there.
 const AT_48: &str = "[machine]\nclock_hz = 48_000_000\n";
@@ -22,7 +23,10 @@ fn number(text: &str) -> BigDecimal {
 fn missing_keys_have_their_defaults() {
     let machine = machine(&format!("[machine]\n{AXIS}driver = \"a4988\"\n"));
     let timebase = machine.timebase;
-    assert_eq!((timebase.clock_hz(), timebase.tick_ns(), timebase.phases()), (80_000_000, 1000, 16));
+    assert_eq!(
+        (timebase.clock_hz(), timebase.tick_ns(), timebase.phases()),
+        (80_000_000, 1000, 16)
+    );
     assert_eq!((timebase.clocks_per_tick(), timebase.clocks_per_phase()), (80, 5));
     assert_eq!(machine.phase, StartPhase::Half);
     let axis = &machine.axes[0];
@@ -33,7 +37,8 @@ fn missing_keys_have_their_defaults() {
 #[test]
 fn given_values_replace_the_defaults() {
     let head = "[machine]\nclock_hz = 16_000_000\ntick_ns = 2000\nphases = 4\nphase = \"zero\"\n";
-    let machine = machine(&format!("{head}{AXIS}start_speed = 0.5\njerk_limit = 1e6\ndriver = \"a4988\"\n"));
+    let machine =
+        machine(&format!("{head}{AXIS}start_speed = 0.5\njerk_limit = 1e6\ndriver = \"a4988\"\n"));
     let timebase = machine.timebase;
     assert_eq!((timebase.clock_hz(), timebase.tick_ns(), timebase.phases()), (16_000_000, 2000, 4));
     assert_eq!(machine.phase, StartPhase::Zero);
@@ -67,7 +72,10 @@ fn pin_timings_are_rounded_up_to_clocks_and_never_none() {
 
 #[test]
 fn build_of_the_core_always_has_six_axes() {
-    let two = format!("[machine]\n{AXIS}driver = \"a4988\"\n{}driver = \"tmc2209\"\n", AXIS.replace("\"x\"", "\"y\""));
+    let two = format!(
+        "[machine]\n{AXIS}driver = \"a4988\"\n{}driver = \"tmc2209\"\n",
+        AXIS.replace("\"x\"", "\"y\"")
+    );
     let machine = machine(&two);
     assert_eq!((machine.axis_index("y"), machine.axis_index("q")), (Some(1), None));
     assert_eq!(machine.axis_names(), "x, y");
@@ -81,7 +89,9 @@ fn build_of_the_core_always_has_six_axes() {
 fn the_fastest_speed_that_the_driver_allows_is_allowed() {
     // 48 + 48 clocks and a phase of 3: 48 MHz / 99
     let axis = |speed: &str| format!("{AT_48}{AXIS}driver = \"a4988\"\n").replace("1000", speed);
-    let refused = |text: String| Machine::from_source(&Source { path: "m".into(), text: text.into() }).is_err();
+    let refused = |text: String| {
+        Machine::from_source(&Source { path: "m".into(), text: text.into() }).is_err()
+    };
     assert!(!refused(axis("96969.69")));
     assert!(refused(axis("96969.70")));
 }

@@ -16,7 +16,8 @@ fn file(moves: &str) -> MoveFile {
 
 /// A file of moves of the axis x alone, one for each distance.
 fn along_x(distances: &[&str]) -> MoveFile {
-    let to = |distance: &&str| format!("[[move]]\nprofile = \"ranade\"\nto = {{ x = {distance} }}\n");
+    let to =
+        |distance: &&str| format!("[[move]]\nprofile = \"ranade\"\nto = {{ x = {distance} }}\n");
     file(&distances.iter().map(to).collect::<String>())
 }
 
@@ -53,7 +54,10 @@ fn axis_without_a_distance_does_not_move() {
     assert_eq!(file.moves[1].steps, [0, 0]);
     assert_eq!(file.moves[0].time, Some("0.5".parse().unwrap()));
     assert_eq!(file.moves[1].time, None);
-    assert_eq!((file.moves[0].profile, file.moves[1].profile), (ProfileKind::Constant, ProfileKind::Trapezoid));
+    assert_eq!(
+        (file.moves[0].profile, file.moves[1].profile),
+        (ProfileKind::Constant, ProfileKind::Trapezoid)
+    );
 }
 
 #[test]

@@ -222,7 +222,9 @@ impl<const N: usize> Engine<N> {
             watch: Watch::new(&build.guard),
             pulser,
             axes: Parameter::new(N as u64),
-            clocks_per_tick_too_few_for_the_axes: Refusal::of(&clocks.whole().is_less(&Formula::number(least))),
+            clocks_per_tick_too_few_for_the_axes: Refusal::of(
+                &clocks.whole().is_less(&Formula::number(least)),
+            ),
             to_top: Parameter::new(N as u64 - 1),
             one_axis: Lanes::from_fn(|axis| Parameter::new(1 << axis)),
             rest_1: Register::new(true),

@@ -126,7 +126,11 @@ pub struct Link<const N: usize> {
 impl<const N: usize> Link<N> {
     /// Makes the link of this build.
     fn new(build: &EngineBuild, id: BuildId) -> Self {
-        Self { machine: Machine::new(&image()), facts: Facts::new(&formulas(build, id)), ..Self::default() }
+        Self {
+            machine: Machine::new(&image()),
+            facts: Facts::new(&formulas(build, id)),
+            ..Self::default()
+        }
     }
 }
 
@@ -213,7 +217,10 @@ mod tests {
         let mut build = EngineBuild::minimal(&build, 1);
         build.guard.watchdog = 4095;
         let id = Line::Spi.build_id(&build);
-        let values: Vec<_> = formulas(&build, id).iter().map(|(at, fact)| (*at, fact.value().value() as u32)).collect();
+        let values: Vec<_> = formulas(&build, id)
+            .iter()
+            .map(|(at, fact)| (*at, fact.value().value() as u32))
+            .collect();
         assert_eq!(values, facts(&build, id));
     }
 

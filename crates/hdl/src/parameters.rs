@@ -47,17 +47,26 @@ pub const CLOCKS_PER_TICK: Described = Described::new(
 pub const START_HALF: Described =
     Described::new("START_HALF", "0 or 1", "1: P starts at half a step; 0: P starts at zero");
 /// W.
-pub const STEP_HIGH: Described =
-    Described::per_axis("STEP_HIGH", "1 to 65536", "W, least time in clocks for which STEP is high");
+pub const STEP_HIGH: Described = Described::per_axis(
+    "STEP_HIGH",
+    "1 to 65536",
+    "W, least time in clocks for which STEP is high",
+);
 /// S.
 pub const STEP_LOW: Described =
     Described::per_axis("STEP_LOW", "1 to 65536", "S, least time in clocks for which STEP is low");
 /// D.
-pub const DIR_SETUP: Described =
-    Described::per_axis("DIR_SETUP", "1 to 65536", "D, least time in clocks from a change of DIR to a rise of STEP");
+pub const DIR_SETUP: Described = Described::per_axis(
+    "DIR_SETUP",
+    "1 to 65536",
+    "D, least time in clocks from a change of DIR to a rise of STEP",
+);
 /// H.
-pub const DIR_HOLD: Described =
-    Described::per_axis("DIR_HOLD", "1 to 65536", "H, least time in clocks from a rise of STEP to a change of DIR");
+pub const DIR_HOLD: Described = Described::per_axis(
+    "DIR_HOLD",
+    "1 to 65536",
+    "H, least time in clocks from a rise of STEP to a change of DIR",
+);
 /// The ramp of a controlled stop.
 pub const STOP_ACCEL: Described = Described::per_axis(
     "STOP_ACCEL",
@@ -83,17 +92,26 @@ pub const WATCHDOG_ROUNDS: Described = Described::new(
     "time in rounds without a valid request after which all axes stop; 0: there is no watchdog",
 );
 /// The drivers' time to wake up.
-pub const ENABLE_ROUNDS: Described =
-    Described::new("ENABLE_ROUNDS", "0 to 4095", "time in rounds from the rise of `enabled` to the first start");
+pub const ENABLE_ROUNDS: Described = Described::new(
+    "ENABLE_ROUNDS",
+    "0 to 4095",
+    "time in rounds from the rise of `enabled` to the first start",
+);
 /// Wiring of the limits.
-pub const LIMITS: Described =
-    Described::new("LIMITS", "0 to 3", "limit switches: 0 none, 1 two an axis, 2 one an axis, 3 one for all axes");
+pub const LIMITS: Described = Described::new(
+    "LIMITS",
+    "0 to 3",
+    "limit switches: 0 none, 1 two an axis, 2 one an axis, 3 one for all axes",
+);
 /// Level of the limits.
 pub const LIMITS_LOW: Described =
     Described::new("LIMITS_LOW", "0 or 1", "level at which a limit is reached: 0 high, 1 low");
 /// What a limit does.
-pub const LIMIT_FREEZES: Described =
-    Described::new("LIMIT_FREEZES", "0 or 1", "what a limit does: 0 all axes ramp down, 1 all axes freeze");
+pub const LIMIT_FREEZES: Described = Described::new(
+    "LIMIT_FREEZES",
+    "0 or 1",
+    "what a limit does: 0 all axes ramp down, 1 all axes freeze",
+);
 /// Level of the e-stop.
 pub const ESTOP_LOW: Described =
     Described::new("ESTOP_LOW", "0 or 1", "level at which the e-stop is pressed: 0 high, 1 low");
@@ -114,10 +132,14 @@ pub const BUILD_ID: Described = Described::new(
 pub const CLOCK_HZ: Described =
     Described::new("CLOCK_HZ", "1 to 10^9", "frequency of the clock in Hz, told to the host");
 /// The tick.
-pub const TICK_NS: Described = Described::new("TICK_NS", "1 to 2^32 - 1", "length of a tick in ns, told to the host");
+pub const TICK_NS: Described =
+    Described::new("TICK_NS", "1 to 2^32 - 1", "length of a tick in ns, told to the host");
 /// The UART's bit.
-pub const BIT_CLOCKS: Described =
-    Described::new("BIT_CLOCKS", "8 to 40000", "length of a bit of the UART in clocks: clock / baud rate");
+pub const BIT_CLOCKS: Described = Described::new(
+    "BIT_CLOCKS",
+    "8 to 40000",
+    "length of a bit of the UART in clocks: clock / baud rate",
+);
 
 /// All of them, in the order in which a module lists them.
 pub const PARAMETERS: [Described; 20] = [

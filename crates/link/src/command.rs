@@ -75,7 +75,9 @@ pub enum ProgramError {
     },
     /// A start while the drivers have no power. The gateware would refuse it as long as they have
     /// none.
-    #[error("the drivers have no power: write CONTROL = 1 and wait for `ready` before the first START")]
+    #[error(
+        "the drivers have no power: write CONTROL = 1 and wait for `ready` before the first START"
+    )]
     NoPower,
 }
 
@@ -181,7 +183,9 @@ mod from_core {
         /// not contain.
         pub fn of(command: &planned::Command) -> Option<Self> {
             match *command {
-                planned::Command::Segment { axis, segment } => Some(Self::Segment { axis, segment: segment.into() }),
+                planned::Command::Segment { axis, segment } => {
+                    Some(Self::Segment { axis, segment: segment.into() })
+                }
                 planned::Command::Start { mask } => Some(Self::Start { mask }),
                 planned::Command::Wait { .. } | planned::Command::Clear => None,
             }

@@ -66,7 +66,9 @@ impl Facts {
             return Err(Refusal::Protocol { found: self.protocol });
         }
         match wanted {
-            Some(wanted) if wanted != self.build => Err(Refusal::Build { found: self.build, wanted }),
+            Some(wanted) if wanted != self.build => {
+                Err(Refusal::Build { found: self.build, wanted })
+            }
             _ => Ok(()),
         }
     }

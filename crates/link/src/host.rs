@@ -56,7 +56,12 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// # Errors
     /// [`HostError::Silence`] if nothing answers, [`HostError::Noise`] if the bytes received are no
     /// frames, [`HostError::Refused`] if it is another gateware.
-    pub fn connect(line: L, clock: C, wanted: Option<u64>, patience: Patience) -> Result<Self, HostError<L::Error>> {
+    pub fn connect(
+        line: L,
+        clock: C,
+        wanted: Option<u64>,
+        patience: Patience,
+    ) -> Result<Self, HostError<L::Error>> {
         let mut host = Self {
             line,
             clock,
@@ -78,7 +83,16 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let rest = [map::CLOCK_HZ, map::TICK_NS, map::PHASES, map::WATCHDOG_TICKS];
             let [clock_hz, tick_ns, phases, watchdog_ticks] = host.registers(rest)?;
             let build = u64::from(high) << 32 | u64::from(low);
-            host.facts = Facts { identity, protocol, build, axes, clock_hz, tick_ns, phases, watchdog_ticks };
+            host.facts = Facts {
+                identity,
+                protocol,
+                build,
+                axes,
+                clock_hz,
+                tick_ns,
+                phases,
+                watchdog_ticks,
+            };
         }
         host.facts.check(wanted)?;
         let axes = host.facts.axes.min(MOST_AXES.into()) as u8;
@@ -121,7 +135,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         self.registers([address]).map(|[word]| word)
     }
 
-    fn registers<const K: usize>(&mut self, addresses: [u8; K]) -> Result<[u32; K], HostError<L::Error>> {
+    fn registers<const K: usize>(
+        &mut self,
+        addresses: [u8; K],
+    ) -> Result<[u32; K], HostError<L::Error>> {
         let mut words = [None; K];
         self.listen();
         for address in addresses {

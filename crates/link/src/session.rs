@@ -238,7 +238,8 @@ impl<const N: usize> Session<N> {
         self.window.answer(answer, now, |body| settle(body, under_way, starting))?;
         self.armed = answer.armed;
         if let Some(axis) = axis_of(answer.address).map(usize::from)
-            && let (Some(room), Some(under_way)) = (self.room.get_mut(axis), self.under_way.get(axis))
+            && let (Some(room), Some(under_way)) =
+                (self.room.get_mut(axis), self.under_way.get(axis))
         {
             *room = answer.free.saturating_sub(*under_way);
         }
@@ -250,7 +251,10 @@ impl<const N: usize> Session<N> {
 fn settle(body: &Body, under_way: &mut [u8], starting: &mut bool) {
     match *body {
         Body::Segment { axis, .. } => {
-            under_way.get_mut(usize::from(axis)).into_iter().for_each(|count| *count = count.saturating_sub(1));
+            under_way
+                .get_mut(usize::from(axis))
+                .into_iter()
+                .for_each(|count| *count = count.saturating_sub(1));
         }
         Body::Write { address: START, .. } => *starting = false,
         Body::Write { .. } | Body::Read { .. } => {}

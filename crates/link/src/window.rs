@@ -66,7 +66,17 @@ impl<const N: usize> Window<N> {
     pub fn new(first: u8) -> Self {
         let () = Self::FITS;
         let slots = [Body::Read { address: 0 }; N];
-        Self { slots, at: 0, length: 0, first, sent: 0, reached: 0, since: 0, refused: None, busy: false }
+        Self {
+            slots,
+            at: 0,
+            length: 0,
+            first,
+            sent: 0,
+            reached: 0,
+            since: 0,
+            refused: None,
+            busy: false,
+        }
     }
 
     /// Number of unacknowledged writes.
@@ -141,8 +151,13 @@ impl<const N: usize> Window<N> {
             return Ok(());
         }
         let slot = self.slots.get((self.at + usize::from(behind)) % N);
-        let sent = usize::from(behind) < self.reached && slot.is_some_and(|body| body.address() == answer.address);
-        if sent { Ok(()) } else { Err(Foreign { sequence: answer.sequence, address: answer.address }) }
+        let sent = usize::from(behind) < self.reached
+            && slot.is_some_and(|body| body.address() == answer.address);
+        if sent {
+            Ok(())
+        } else {
+            Err(Foreign { sequence: answer.sequence, address: answer.address })
+        }
     }
 
     /// Processes the acknowledgement in an answer: all writes before `next` were executed.
@@ -150,10 +165,19 @@ impl<const N: usize> Window<N> {
     ///
     /// # Errors
     /// [`OutOfStep`] if the answer acknowledges writes that were never sent.
-    pub fn answer(&mut self, answer: &Answer, now: u32, mut executed: impl FnMut(&Body)) -> Result<(), OutOfStep> {
+    pub fn answer(
+        &mut self,
+        answer: &Answer,
+        now: u32,
+        mut executed: impl FnMut(&Body),
+    ) -> Result<(), OutOfStep> {
         let advance = usize::from(answer.next.wrapping_sub(self.first));
         if advance > self.reached {
-            return Err(OutOfStep { next: answer.next, first: self.first, sent: self.reached as u8 });
+            return Err(OutOfStep {
+                next: answer.next,
+                first: self.first,
+                sent: self.reached as u8,
+            });
         }
         for _ in 0..advance {
             self.slots.get(self.at).into_iter().for_each(&mut executed);

@@ -16,7 +16,9 @@ mod told;
 
 use crate::parts::shaper;
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{COMMIT, Cause, EngineInputs, EngineOutputs, Limits, PUT_BEAT, Put, TURN};
+use carrystep_core::engine::{
+    COMMIT, Cause, EngineInputs, EngineOutputs, Limits, PUT_BEAT, Put, TURN,
+};
 use guard::{Stop, Watch, freezes};
 use lane::{Lane, Look, Segment, Tick};
 use std::sync::Arc;
@@ -82,7 +84,11 @@ impl Engine {
         let put_axis = usize::from(inputs.put.map_or(inputs.room_of, |put| put.axis));
         EngineOutputs {
             put_ready: free && self.takes(put_axis),
-            start_ready: free && strobe && self.armed.is_none() && inputs.enable && self.watch.is_warm(guard),
+            start_ready: free
+                && strobe
+                && self.armed.is_none()
+                && inputs.enable
+                && self.watch.is_warm(guard),
             step: bits(&self.lanes, |lane| lane.shaper.step),
             dir: bits(&self.lanes, |lane| lane.shaper.dir),
             enabled: self.watch.enabled,
@@ -92,8 +98,14 @@ impl Engine {
             armed: self.armed.is_some(),
             ready: inputs.enable && self.watch.is_warm(guard),
             homing: bits(&self.lanes, |lane| lane.homing.waits),
-            latch: self.turn_at(LATCH_BEAT).filter(|axis| self.lanes[*axis].homing.waits).map(|axis| axis as u8),
-            room: self.turn_at(PUT_BEAT).filter(|axis| *axis == put_axis).map(|axis| self.lanes[axis].room()),
+            latch: self
+                .turn_at(LATCH_BEAT)
+                .filter(|axis| self.lanes[*axis].homing.waits)
+                .map(|axis| axis as u8),
+            room: self
+                .turn_at(PUT_BEAT)
+                .filter(|axis| *axis == put_axis)
+                .map(|axis| self.lanes[axis].room()),
             started: strobe && matches!(self.decision(&self.ticked()), Decision::Go(_)),
         }
     }
@@ -163,9 +175,15 @@ impl Engine {
         let per_phase = self.build.timebase.clocks_per_phase();
         let (phase, sub) = (self.clock / per_phase, self.clock % per_phase);
         for (lane, pins) in self.lanes.iter_mut().zip(&self.build.pins) {
-            let request = lane.emitted.step.filter(|step| sub == 0 && step.phase == phase).map(|step| step.backward);
-            let input = shaper::Input { request, sign: lane.emitted.sign, frozen: self.stop.frozen };
-            lane.shaper = shaper::clock(shaper::State { overrun: false, ..lane.shaper }, input, *pins);
+            let request = lane
+                .emitted
+                .step
+                .filter(|step| sub == 0 && step.phase == phase)
+                .map(|step| step.backward);
+            let input =
+                shaper::Input { request, sign: lane.emitted.sign, frozen: self.stop.frozen };
+            lane.shaper =
+                shaper::clock(shaper::State { overrun: false, ..lane.shaper }, input, *pins);
         }
         bits(&self.lanes, |lane| lane.shaper.overrun)
     }
@@ -174,7 +192,9 @@ impl Engine {
     /// its queue has room. A word for an axis that does not exist is accepted at once (and is a
     /// protocol fault).
     fn takes(&self, axis: usize) -> bool {
-        self.lanes.get(axis).is_none_or(|lane| self.turn_at(PUT_BEAT) == Some(axis) && lane.room() > 0)
+        self.lanes
+            .get(axis)
+            .is_none_or(|lane| self.turn_at(PUT_BEAT) == Some(axis) && lane.room() > 0)
     }
 
     /// The axis whose turn it is, if this clock is the given beat of the turn.
@@ -227,7 +247,10 @@ impl Engine {
 
     /// In the last beat of its turn, an axis that waits for its limit may find it active.
     fn meet(&mut self) {
-        let Some(axis) = self.turn_at(TURN - 1).filter(|axis| self.lanes[*axis].homing.waits) else { return };
+        let Some(axis) = self.turn_at(TURN - 1).filter(|axis| self.lanes[*axis].homing.waits)
+        else {
+            return;
+        };
         if self.look_of(axis).is_some_and(|look| self.lanes[axis].hits(self.tick(), look)) {
             self.lanes[axis].homing.waits = false;
             self.lanes[axis].homing.meets = true;
@@ -253,7 +276,9 @@ impl Engine {
         // A start needs a segment that was in the queue before this tick.
         if mask & bits(&self.lanes, |lane| lane.queue.is_empty()) != 0 {
             Decision::Unfed
-        } else if mask & (bits(ticked, |lane| lane.running.is_some()) | bits(&self.lanes, |lane| lane.homing.slows))
+        } else if mask
+            & (bits(ticked, |lane| lane.running.is_some())
+                | bits(&self.lanes, |lane| lane.homing.slows))
             != 0
         {
             Decision::Wait
@@ -264,7 +289,13 @@ impl Engine {
 
     /// Executes the strobe: commits the results of the tick, and returns the state of the stop
     /// after it.
-    fn end_tick(&mut self, inputs: &EngineInputs, outputs: &EngineOutputs, mut stop: Stop, busy: bool) -> Stop {
+    fn end_tick(
+        &mut self,
+        inputs: &EngineInputs,
+        outputs: &EngineOutputs,
+        mut stop: Stop,
+        busy: bool,
+    ) -> Stop {
         let before = self.stop;
         let build = Arc::clone(&self.build);
         let guard = &build.guard;
@@ -282,7 +313,9 @@ impl Engine {
             Decision::Unfed => stop.call(Cause::Protocol, 0, guard),
             Decision::Go(mask) => {
                 self.armed = None;
-                for (axis, lane) in lanes.iter_mut().enumerate().filter(|(axis, _)| mask >> axis & 1 == 1) {
+                for (axis, lane) in
+                    lanes.iter_mut().enumerate().filter(|(axis, _)| mask >> axis & 1 == 1)
+                {
                     debug_assert!(lane.running.is_none(), "axis {axis} runs");
                     lane.running = lane.queue.pop_front();
                 }
@@ -301,7 +334,11 @@ impl Engine {
             ramp: before.fault.is_some() || !found.is_empty(),
             halted: before.frozen || freezes || (before.ramp && !ran),
             settled: before.halted,
-            clearing: inputs.clear && before.settled && !before.clearing && !busy && !self.watch.pressed(),
+            clearing: inputs.clear
+                && before.settled
+                && !before.clearing
+                && !busy
+                && !self.watch.pressed(),
             ..stop
         }
     }

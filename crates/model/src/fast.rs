@@ -81,10 +81,16 @@ impl Fast {
             clocks = if self.core.only_adds(inputs) { most.min(self.clocks_to_load()) } else { 0 };
             let mut lanes = self.core.lanes.map(|lane| lane.moving());
             let build = &self.core.build;
-            let from = passage::From { cycle: self.cycle, clock_of_tick: self.core.clock_of_tick() };
+            let from =
+                passage::From { cycle: self.cycle, clock_of_tick: self.core.clock_of_tick() };
             let strobes;
-            (clocks, strobes) = self.passages.pass(&mut lanes, from, clocks, &build.timebase, &build.pins, to);
-            self.core.lanes.iter_mut().zip(&lanes).for_each(|(lane, moved)| lane.moved(moved, strobes));
+            (clocks, strobes) =
+                self.passages.pass(&mut lanes, from, clocks, &build.timebase, &build.pins, to);
+            self.core
+                .lanes
+                .iter_mut()
+                .zip(&lanes)
+                .for_each(|(lane, moved)| lane.moved(moved, strobes));
         }
         self.cycle += clocks;
         self.core.pass(clocks);
@@ -93,8 +99,9 @@ impl Fast {
 
     /// Cycles before the strobe that ends the first of the running segments.
     fn clocks_to_load(&self) -> u64 {
-        let left =
-            |lane: &crate::parallel::six_axis::Lane| lane.axis.running.then_some(lane.axis.left.saturating_sub(1));
+        let left = |lane: &crate::parallel::six_axis::Lane| {
+            lane.axis.running.then_some(lane.axis.left.saturating_sub(1))
+        };
         let plain = self.core.lanes.iter().filter_map(left).min().unwrap_or(u32::MAX);
         let clocks = u64::from(self.core.build.timebase.clocks_per_tick());
         (u64::from(plain) + 1) * clocks - 1 - self.core.clock_of_tick()

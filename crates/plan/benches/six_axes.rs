@@ -24,7 +24,8 @@ fn six_axes(profile: &str) -> MoveFile {
     }
     let to = "to = { x = 20_000, y = -16_000, z = 500, a = 9_000, b = -12_000, c = 3_000 }";
     writeln!(text, "[[move]]\nprofile = \"{profile}\"\n{to}").expect("a string takes it");
-    MoveFile::from_source(Source { path: "bench.toml".into(), text: text.into() }).expect("a move file")
+    MoveFile::from_source(Source { path: "bench.toml".into(), text: text.into() })
+        .expect("a move file")
 }
 
 #[divan::bench(args = ["trapezoid", "scurve", "logistic", "sine"])]

@@ -34,12 +34,19 @@ impl Pins {
     /// The state after configuration: DIR is forward. No axis can start before the first strobe, so
     /// DIR has been stable since one latency and one tick before the origin.
     pub fn new(timebase: &Timebase) -> Self {
-        let configured = -i128::from(timebase.latency_clocks()) - i128::from(timebase.clocks_per_tick());
+        let configured =
+            -i128::from(timebase.latency_clocks()) - i128::from(timebase.clocks_per_tick());
         Self { backward: false, turned: configured, last_edge: None }
     }
 
     /// Ticks of rest that this axis needs before a move that would start at clock `begin`.
-    pub fn rest(&self, begin: i128, strokes: &Strokes, pins: &PinTiming, build: (&Timebase, StartPhase)) -> u64 {
+    pub fn rest(
+        &self,
+        begin: i128,
+        strokes: &Strokes,
+        pins: &PinTiming,
+        build: (&Timebase, StartPhase),
+    ) -> u64 {
         let clocks = i128::from(build.0.clocks_per_tick());
         let edge = begin + strokes.first_edge;
         let missing = |since: i128| {
@@ -69,7 +76,8 @@ impl Pins {
     ) {
         let motion = begin + i128::from(rest) * i128::from(timebase.clocks_per_tick());
         if self.turns(strokes) {
-            self.turned = self.turn(turned_in_rest.map_or(motion + strokes.motion, |early| begin + early), pins);
+            self.turned = self
+                .turn(turned_in_rest.map_or(motion + strokes.motion, |early| begin + early), pins);
             self.backward = strokes.backward;
         }
         self.last_edge = Some(motion + strokes.last_edge);
@@ -86,7 +94,8 @@ impl Pins {
 
     /// The clock at which the last pulse and the gap after it are over.
     fn ready(&self, pins: &PinTiming) -> i128 {
-        self.last_edge.map_or(i128::MIN, |last| last + i128::from(pins.width) + i128::from(pins.gap))
+        self.last_edge
+            .map_or(i128::MIN, |last| last + i128::from(pins.width) + i128::from(pins.gap))
     }
 }
 

@@ -145,7 +145,10 @@ fn refused(refusal: &Refusal, unit: &Unit, least_time: Option<f64>) -> String {
             let needs = if needs == has { format!("a little more than {needs}") } else { needs };
             format!("needs {needs}, over {limit} {has}; at least {least} s would do")
         }
-        Some(least) => format!("no {} would do, {limit} is {has}; at least {least} s would do", unit.per(seconds)),
+        Some(least) => format!(
+            "no {} would do, {limit} is {has}; at least {least} s would do",
+            unit.per(seconds)
+        ),
     }
 }
 
@@ -155,7 +158,8 @@ fn too_slow(broken: Broken, least_speed: &str, longest: Option<f64>) -> String {
             format!("so slow that it needs over 131072 segments; at most {longest} s would do")
         }
         (Broken::Segments, None) => {
-            "so slow that it needs over 131072 segments; raise the limits that make it slow".to_owned()
+            "so slow that it needs over 131072 segments; raise the limits that make it slow"
+                .to_owned()
         }
         (_, Some(longest)) => format!("too slow to place its edges; at most {longest} s would do"),
         (_, None) => format!(

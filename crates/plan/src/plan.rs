@@ -67,7 +67,9 @@ impl Plan {
         let per_second = 2_f64.powi(-64) / self.build.timebase.tick_seconds();
         for PlannedMove { path, axes, .. } in &self.moves {
             if *path == PathKind::Straight {
-                let part = |axis: &PlannedAxis| axis.peaks.speed as f64 * per_second / axis.steps.unsigned_abs() as f64;
+                let part = |axis: &PlannedAxis| {
+                    axis.peaks.speed as f64 * per_second / axis.steps.unsigned_abs() as f64
+                };
                 let moving = axes.iter().filter(|axis| axis.steps != 0);
                 lines.push(Line {
                     before: before.clone(),

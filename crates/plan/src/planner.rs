@@ -39,7 +39,9 @@ use std::sync::Arc;
 /// known, a value that would work.
 pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
     let mut planner = Planner::new::<F>(file)?;
-    let moves = (0..file.moves.len()).map(|index| planner.plan_move::<F>(index)).collect::<Result<_, _>>()?;
+    let moves = (0..file.moves.len())
+        .map(|index| planner.plan_move::<F>(index))
+        .collect::<Result<_, _>>()?;
     Ok(Plan { build: planner.build, moves })
 }
 
@@ -79,7 +81,9 @@ struct Draft<F: Real> {
 impl<'a> Planner<'a> {
     fn new<F: Real>(file: &'a MoveFile) -> Result<Self, PlanError> {
         let timebase = file.machine.timebase;
-        let exact = |axis: &Axis| ExactLimits::new::<F>(axis, &timebase).ok_or_else(|| broken(0, axis, Broken::Range));
+        let exact = |axis: &Axis| {
+            ExactLimits::new::<F>(axis, &timebase).ok_or_else(|| broken(0, axis, Broken::Range))
+        };
         Ok(Self {
             file,
             build: file.machine.build()?,
@@ -91,11 +95,13 @@ impl<'a> Planner<'a> {
 
     fn plan_move<F: Real>(&mut self, index: usize) -> Result<PlannedMove, PlanError> {
         let time = self.file.moves[index].time.as_ref();
-        let (clock, drafts) = self.drafts::<F>(index, time).map_err(|error| self.explained::<F>(index, error))?;
+        let (clock, drafts) =
+            self.drafts::<F>(index, time).map_err(|error| self.explained::<F>(index, error))?;
         let axes = &self.file.machine.axes;
         let rest = drafts.iter().map(|draft| draft.rest).max().unwrap_or(0);
         let planned = drafts.into_iter().enumerate().map(|(axis, draft)| {
-            self.finish(Place { index, axis }, draft, rest, &clock).map_err(|b| broken(index, &axes[axis], b))
+            self.finish(Place { index, axis }, draft, rest, &clock)
+                .map_err(|b| broken(index, &axes[axis], b))
         });
         let planned = planned.collect::<Result<Vec<_>, _>>()?;
         let start_tick = self.ticks + rest;
@@ -103,16 +109,29 @@ impl<'a> Planner<'a> {
         let seconds = clock.seconds.to_f64().unwrap_or(f64::NAN);
         let Move { profile, path, fit_ns, .. } = self.file.moves[index];
         let fit_seconds = if profile.is_fitted() { fit_ns as f64 * 1e-9 } else { 0.0 };
-        Ok(PlannedMove { start_tick, rest_ticks: rest, ticks: clock.ticks, seconds, fit_seconds, path, axes: planned })
+        Ok(PlannedMove {
+            start_tick,
+            rest_ticks: rest,
+            ticks: clock.ticks,
+            seconds,
+            fit_seconds,
+            path,
+            axes: planned,
+        })
     }
 
     /// Plans all axes of a move, in the given time in seconds, or without one as fast as the limits
     /// allow.
-    fn drafts<F: Real>(&self, index: usize, time: Option<&BigDecimal>) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
+    fn drafts<F: Real>(
+        &self,
+        index: usize,
+        time: Option<&BigDecimal>,
+    ) -> Result<(Clock<F>, Vec<Draft<F>>), PlanError> {
         let (clock, profiles) = demand::<F>(self.file, index, time)?;
         let axes = &self.file.machine.axes;
         let drafts = profiles.into_iter().enumerate().map(|(axis, profile)| {
-            self.draft(Place { index, axis }, profile, &clock).map_err(|b| broken(index, &axes[axis], b))
+            self.draft(Place { index, axis }, profile, &clock)
+                .map_err(|b| broken(index, &axes[axis], b))
         });
         Ok((clock, drafts.collect::<Result<_, _>>()?))
     }
@@ -120,37 +139,59 @@ impl<'a> Planner<'a> {
     /// Turns the error of a move that is too slow into [`PlanError::TooSlow`], which names the
     /// longest time that works. Every other error is returned unchanged.
     fn explained<F: Real>(&self, index: usize, error: PlanError) -> PlanError {
-        let PlanError::Broken { axis, broken: broken @ (Broken::Slow | Broken::Segments), .. } = error else {
+        let PlanError::Broken { axis, broken: broken @ (Broken::Slow | Broken::Segments), .. } =
+            error
+        else {
             return error;
         };
         let timebase = &self.build.timebase;
-        let shortest = self.drafts::<F>(index, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
+        let shortest =
+            self.drafts::<F>(index, None).ok().and_then(|(clock, _)| clock.seconds.to_f64());
         let given = self.file.moves[index].time.as_ref().and_then(BigDecimal::to_f64);
         let works = |time: &BigDecimal| self.drafts::<F>(index, Some(time)).is_ok();
-        let longest = shortest.zip(given).and_then(|(least, given)| longest_time(least, given, timebase, works));
+        let longest = shortest
+            .zip(given)
+            .and_then(|(least, given)| longest_time(least, given, timebase, works));
         let named = self.file.machine.axes.iter().find(|one| one.name == axis);
         let least = slow::least_speed(timebase);
-        let least_speed = named.map_or_else(|| format!("{least} steps/s"), |axis| axis.unit.both(least, 1));
+        let least_speed =
+            named.map_or_else(|| format!("{least} steps/s"), |axis| axis.unit.both(least, 1));
         PlanError::TooSlow { index, axis, broken, least_speed, longest }
     }
 
-    fn draft<F: Real>(&self, place: Place, profile: SharedProfile<F>, clock: &Clock<F>) -> Result<Draft<F>, Broken> {
+    fn draft<F: Real>(
+        &self,
+        place: Place,
+        profile: SharedProfile<F>,
+        clock: &Clock<F>,
+    ) -> Result<Draft<F>, Broken> {
         let Place { index, axis } = place;
         let steps = self.file.moves[index].steps[axis];
         if steps == 0 {
-            return Ok(Draft { steps, profile, segments: still(clock.ticks), strokes: None, rest: 0 });
+            return Ok(Draft {
+                steps,
+                profile,
+                segments: still(clock.ticks),
+                strokes: None,
+                rest: 0,
+            });
         }
         let segments = self.motion(place, steps, &*profile, clock, 0)?;
         let (timebase, phase) = (&self.build.timebase, self.build.phase);
         let backward = steps < 0;
-        let edge = |k| edges::edge(&segments, phase.start_value(), backward, k, timebase).ok_or(Broken::Landing);
+        let edge = |k| {
+            edges::edge(&segments, phase.start_value(), backward, k, timebase)
+                .ok_or(Broken::Landing)
+        };
         let strokes = Strokes {
             backward,
-            motion: i128::from(edges::first_motion(&segments)) * i128::from(timebase.clocks_per_tick()),
+            motion: i128::from(edges::first_motion(&segments))
+                * i128::from(timebase.clocks_per_tick()),
             first_edge: edge(1)?,
             last_edge: edge(steps.unsigned_abs())?,
         };
-        let rest = self.pins[axis].rest(self.now(), &strokes, &self.build.pins[axis], (timebase, phase));
+        let rest =
+            self.pins[axis].rest(self.now(), &strokes, &self.build.pins[axis], (timebase, phase));
         Ok(Draft { steps, profile, segments, strokes: Some(strokes), rest })
     }
 
@@ -168,8 +209,15 @@ impl<'a> Planner<'a> {
         let Move { profile: kind, fit_ns, .. } = self.file.moves[place.index];
         let limits = self.limits(place, profile);
         let (phase, backward) = (self.build.phase, steps < 0);
-        let mut writer =
-            Writer { profile, clock: *clock, limits: &limits, phase, backward, segments: Vec::new(), ahead: 0 };
+        let mut writer = Writer {
+            profile,
+            clock: *clock,
+            limits: &limits,
+            phase,
+            backward,
+            segments: Vec::new(),
+            ahead: 0,
+        };
         let tolerance = tolerance(fit_ns, clock, self.build.timebase.tick_ns());
         let breakpoints = if kind.is_fitted() {
             Breakpoints::Rounded(F::from(tolerance * ROUNDED).unwrap_or_else(F::zero))
@@ -194,12 +242,23 @@ impl<'a> Planner<'a> {
             } else if kind.is_fitted() && !is_straight(profile, clock, piece) {
                 let pulses = pulses.count;
                 let tolerance = tolerance.min(piece.ticks as f64 / LEAST_RATIO);
-                let [begin, end] = [piece.first, piece.first + piece.ticks].map(|tick| profile.speed(clock.at(tick)));
+                let [begin, end] = [piece.first, piece.first + piece.ticks]
+                    .map(|tick| profile.speed(clock.at(tick)));
                 let rises = begin <= end;
                 let bend = corridor::steps(limits.acceleration);
-                let corridor =
-                    Corridor { profile, clock: *clock, phase, backward, pulses, piece, rises, tolerance, bend };
-                let mut fitter = Fitter { corridor, limits: &limits, rows: std::mem::take(&mut rows) };
+                let corridor = Corridor {
+                    profile,
+                    clock: *clock,
+                    phase,
+                    backward,
+                    pulses,
+                    piece,
+                    rises,
+                    tolerance,
+                    bend,
+                };
+                let mut fitter =
+                    Fitter { corridor, limits: &limits, rows: std::mem::take(&mut rows) };
                 let segments = fitter.segments(writer.position(piece), &risen);
                 rows = fitter.rows;
                 writer.fitted(piece, &segments, last)?;
@@ -223,14 +282,19 @@ impl<'a> Planner<'a> {
     }
 
     /// The limits that the integers of one axis must keep in one move.
-    fn limits<F: Real>(&self, Place { index, axis }: Place, profile: &dyn Profile<F>) -> ExactLimits {
+    fn limits<F: Real>(
+        &self,
+        Place { index, axis }: Place,
+        profile: &dyn Profile<F>,
+    ) -> ExactLimits {
         let limits = self.limits[axis];
         if self.file.moves[index].profile != ProfileKind::Logistic || limits.start_speed > 0 {
             return limits;
         }
         // A logistic profile is never at rest. Without a start speed in the file, the speed of the
         // curve itself at time 0 is therefore the limit of the start speed.
-        let per_tick = profile.speed(F::zero()) * F::from(self.build.timebase.tick_seconds()).unwrap_or_else(F::nan);
+        let per_tick = profile.speed(F::zero())
+            * F::from(self.build.timebase.tick_seconds()).unwrap_or_else(F::nan);
         ExactLimits { start_speed: units::toward_zero(per_tick).unwrap_or(0), ..limits }
     }
 
@@ -258,7 +322,11 @@ impl<'a> Planner<'a> {
                 motion = self.motion(place, steps, &*profile, clock, borrowed)?;
             }
         }
-        let duty = Duty { backward, distance: i128::from(steps) * ONE_STEP - borrowed, ticks: clock.ticks };
+        let duty = Duty {
+            backward,
+            distance: i128::from(steps) * ONE_STEP - borrowed,
+            ticks: clock.ticks,
+        };
         let limits = self.limits(place, &*profile);
         let peaks = if steps == 0 { Peaks::default() } else { check(&motion, &duty, &limits)? };
         if before.iter().map(|s| edges::travel(s, s.ticks.into())).sum::<i128>() != borrowed {
@@ -266,7 +334,14 @@ impl<'a> Planner<'a> {
         }
         if let Some(strokes) = strokes {
             let now = self.now();
-            self.pins[axis].after(now, rest, early, &strokes, &self.build.pins[axis], &self.build.timebase);
+            self.pins[axis].after(
+                now,
+                rest,
+                early,
+                &strokes,
+                &self.build.pins[axis],
+                &self.build.timebase,
+            );
         }
         let mut segments = before;
         segments.append(&mut motion);
@@ -292,7 +367,8 @@ fn tolerance<F: Real>(fit_ns: u64, clock: &Clock<F>, tick_ns: u64) -> f64 {
 
 /// Whether a piece needs no fit, because it is one tick long or has constant speed.
 fn is_straight<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, piece: Piece) -> bool {
-    let middle = (clock.at(piece.first) + clock.at(piece.first + piece.ticks)) / (F::one() + F::one());
+    let middle =
+        (clock.at(piece.first) + clock.at(piece.first + piece.ticks)) / (F::one() + F::one());
     piece.ticks == 1 || (profile.acceleration(middle).is_zero() && profile.jerk(middle).is_zero())
 }
 

@@ -18,7 +18,11 @@ use crate::solve::smallest;
 ///
 /// # Errors
 /// A [`Refusal`] names the limit that `time` breaks and the least time.
-pub fn trapezoid_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<ScurveRamp<F>, Refusal> {
+pub fn trapezoid_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<ScurveRamp<F>, Refusal> {
     ranade_ramp(top, time, &Limits { start_speed: F::zero(), ..*limits })
 }
 
@@ -26,7 +30,11 @@ pub fn trapezoid_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> R
 ///
 /// # Errors
 /// A [`Refusal`] names the limit that `time` breaks and the least time.
-pub fn ranade_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<ScurveRamp<F>, Refusal> {
+pub fn ranade_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<ScurveRamp<F>, Refusal> {
     scurve_ramp(top, time, &Limits { jerk: F::infinity(), ..*limits })
 }
 
@@ -37,7 +45,11 @@ pub fn ranade_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Resu
 ///
 /// # Errors
 /// A [`Refusal`] names the limit that `time` breaks and the least time.
-pub fn scurve_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<ScurveRamp<F>, Refusal> {
+pub fn scurve_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<ScurveRamp<F>, Refusal> {
     let start = limits.start_speed;
     let ramp = |acceleration, jerk| ScurveRamp::steepest(start, top, acceleration, jerk);
     let lasting = |time: F| {
@@ -58,8 +70,17 @@ pub fn scurve_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Resu
 ///
 /// # Errors
 /// A [`Refusal`] names the limit that `time` breaks and the least time.
-pub fn sine_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<SineRamp<F>, Refusal> {
-    in_time(time, limits, |limits| SineRamp::within(limits, top), |time| SineRamp::lasting(top, time))
+pub fn sine_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<SineRamp<F>, Refusal> {
+    in_time(
+        time,
+        limits,
+        |limits| SineRamp::within(limits, top),
+        |time| SineRamp::lasting(top, time),
+    )
 }
 
 /// The logistic ramp with the asymptote `top`. As in its source, it ends at 99.5 % of the
@@ -69,7 +90,11 @@ pub fn sine_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result
 ///
 /// # Errors
 /// A [`Refusal`] names the limit that `time` breaks and the least time.
-pub fn logistic_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Result<LogisticRamp<F>, Refusal> {
+pub fn logistic_ramp<F: Real>(
+    top: F,
+    time: Option<F>,
+    limits: &Limits<F>,
+) -> Result<LogisticRamp<F>, Refusal> {
     let start = logistic::start_fraction(limits, top);
     let ramp = |steepness| LogisticRamp::between(top, steepness, start);
     // With a steepness of 1/s, the duration of the ramp is the product k T.
@@ -82,7 +107,11 @@ pub fn logistic_ramp<F: Real>(top: F, time: Option<F>, limits: &Limits<F>) -> Re
 ///
 /// # Errors
 /// A [`BadRamp`] if the centre is so early that the ramp would end before it starts.
-pub fn logistic_ramp_about<F: Real>(top: F, centre: F, limits: &Limits<F>) -> Result<LogisticRamp<F>, BadRamp> {
+pub fn logistic_ramp_about<F: Real>(
+    top: F,
+    centre: F,
+    limits: &Limits<F>,
+) -> Result<LogisticRamp<F>, BadRamp> {
     let acceleration = logistic::steepest(limits, top) * (top / real(4.0));
     LogisticRamp::new(top, acceleration, centre, real(SHORTFALL))
 }
@@ -103,7 +132,12 @@ fn in_time<F: Real, R: Curve<F>>(
     let free = Limits { jerk: F::infinity(), ..*limits };
     if free.acceleration.is_finite() && duration(&free) > time {
         let does = |acceleration| duration(&Limits { acceleration, ..free }) <= time;
-        return Err(Refusal::new(Limit::Acceleration, smallest(free.acceleration, does), free.acceleration, least));
+        return Err(Refusal::new(
+            Limit::Acceleration,
+            smallest(free.acceleration, does),
+            free.acceleration,
+            least,
+        ));
     }
     let does = |jerk| duration(&Limits { jerk, ..*limits }) <= time;
     Err(Refusal::new(Limit::Jerk, smallest(limits.jerk, does), limits.jerk, least))

@@ -76,7 +76,11 @@ impl<F: Real> Profile<F> for Constant<F> {
     }
 
     fn crossing(&self, x: F) -> F {
-        if x >= self.distance { self.duration } else { self.duration * (x.max(F::zero()) / self.distance) }
+        if x >= self.distance {
+            self.duration
+        } else {
+            self.duration * (x.max(F::zero()) / self.distance)
+        }
     }
 
     fn breakpoints(&self) -> &[F] {

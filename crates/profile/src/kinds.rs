@@ -13,7 +13,11 @@ pub type SharedCurve<F = f64> = Arc<dyn Curve<F>>;
 ///
 /// # Errors
 /// A [`Refusal`] names the limit that no time can keep.
-pub fn least_time<F: Real>(kind: ProfileKind, distance: F, limits: &Limits<F>) -> Result<F, Refusal> {
+pub fn least_time<F: Real>(
+    kind: ProfileKind,
+    distance: F,
+    limits: &Limits<F>,
+) -> Result<F, Refusal> {
     match kind {
         ProfileKind::Ranade => Ok(rule::ranade_least_time(distance, limits)),
         ProfileKind::Trapezoid => Ok(rule::trapezoid_least_time(distance, limits)),
@@ -28,7 +32,12 @@ pub fn least_time<F: Real>(kind: ProfileKind, distance: F, limits: &Limits<F>) -
 ///
 /// # Errors
 /// A [`Refusal`] names the limit that fails, and the least time.
-pub fn whole<F: Real>(kind: ProfileKind, distance: F, time: F, limits: &Limits<F>) -> Result<SharedCurve<F>, Refusal> {
+pub fn whole<F: Real>(
+    kind: ProfileKind,
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+) -> Result<SharedCurve<F>, Refusal> {
     match kind {
         ProfileKind::Ranade => rule::ranade(distance, time, limits),
         ProfileKind::Trapezoid => rule::trapezoid(distance, time, limits).map(shared),

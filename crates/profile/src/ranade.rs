@@ -17,7 +17,11 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// A [`Refusal`] names the limit that fails and the least time.
-pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<dyn Curve<F>>, Refusal> {
+pub fn ranade<F: Real>(
+    distance: F,
+    time: F,
+    limits: &Limits<F>,
+) -> Result<Arc<dyn Curve<F>>, Refusal> {
     let Limits { start_speed, speed, acceleration: limit, .. } = *limits;
     let average = distance / time;
     if average <= start_speed {
@@ -46,7 +50,14 @@ pub fn ranade<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Arc<d
         });
     }
     let acceleration = acceleration.min(limit);
-    Ok(Arc::new(Ramp::trapezoid(distance, time, start_speed, speed, acceleration, rise / acceleration)))
+    Ok(Arc::new(Ramp::trapezoid(
+        distance,
+        time,
+        start_speed,
+        speed,
+        acceleration,
+        rise / acceleration,
+    )))
 }
 
 /// Least time from the start speed back to it, seconds: 2 (v_l - v_s)/a + (N - (v_l^2 -
@@ -59,6 +70,7 @@ pub fn ranade_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
     if distance >= ramps {
         two * rise / acceleration + (distance - ramps) / speed
     } else {
-        two * distance / (start_speed + (start_speed * start_speed + acceleration * distance).sqrt())
+        two * distance
+            / (start_speed + (start_speed * start_speed + acceleration * distance).sqrt())
     }
 }

@@ -85,7 +85,12 @@ pub struct Refusal {
 impl Refusal {
     pub(crate) fn new<F: Real>(limit: Limit, wanted: F, available: F, least: F) -> Self {
         let float = |x: F| x.to_f64().unwrap_or(f64::NAN);
-        Self { limit, wanted: float(wanted), available: float(available), least_time: Some(float(least)) }
+        Self {
+            limit,
+            wanted: float(wanted),
+            available: float(available),
+            least_time: Some(float(least)),
+        }
     }
 
     pub(crate) fn never<F: Real>(limit: Limit, available: F) -> Self {
@@ -100,7 +105,10 @@ impl fmt::Display for Refusal {
         let unit = limit.unit();
         match least_time {
             Some(least) => {
-                write!(f, "needs {wanted:.6} {unit}, over {limit} {available}; at least {least:.9} s would do")
+                write!(
+                    f,
+                    "needs {wanted:.6} {unit}, over {limit} {available}; at least {least:.9} s would do"
+                )
             }
             None => write!(f, "needs a {limit} over {available} {unit}; no time would do without"),
         }

@@ -21,20 +21,33 @@ impl<F: Real, R: Curve<F>, S: Fn(&Limits<F>, F) -> (R, R)> Ramps<F, R> for S {}
 
 /// The top speed of the fastest move, steps/s: the speed limit, or the speed at which the two ramps
 /// meet.
-fn fastest_top<F: Real, R: Curve<F>>(distance: F, limits: &Limits<F>, ramps: &impl Ramps<F, R>) -> F {
+fn fastest_top<F: Real, R: Curve<F>>(
+    distance: F,
+    limits: &Limits<F>,
+    ramps: &impl Ramps<F, R>,
+) -> F {
     largest(F::zero(), limits.speed, |top| {
         let (up, down) = ramps(limits, top);
         up.distance() + down.distance() <= distance
     })
 }
 
-fn time_at<F: Real, R: Curve<F>>(distance: F, top: F, limits: &Limits<F>, ramps: &impl Ramps<F, R>) -> F {
+fn time_at<F: Real, R: Curve<F>>(
+    distance: F,
+    top: F,
+    limits: &Limits<F>,
+    ramps: &impl Ramps<F, R>,
+) -> F {
     let (up, down) = ramps(limits, top);
     time_with_cruise(distance, top, &up, &down)
 }
 
 /// Least time, seconds.
-pub(crate) fn least_time<F: Real, R: Curve<F>>(distance: F, limits: &Limits<F>, ramps: &impl Ramps<F, R>) -> F {
+pub(crate) fn least_time<F: Real, R: Curve<F>>(
+    distance: F,
+    limits: &Limits<F>,
+    ramps: &impl Ramps<F, R>,
+) -> F {
     if distance <= F::zero() {
         return F::zero();
     }
@@ -60,7 +73,8 @@ pub(crate) fn in_time<F: Real, R: Curve<F>>(
     let (mean, fastest) = (distance / time, fastest_top(distance, limits, ramps));
     // `mean` is at most `fastest`, rounding aside; where both are equal the move has constant
     // speed.
-    let top = largest(mean.min(fastest), fastest, |top| time_at(distance, top, limits, ramps) >= time);
+    let top =
+        largest(mean.min(fastest), fastest, |top| time_at(distance, top, limits, ramps) >= time);
     let (up, down) = ramps(limits, top);
     Ok(RampedMove::new(distance, time, top, up, down))
 }
@@ -78,7 +92,8 @@ fn refusal<F: Real, R: Curve<F>>(
     let infinity = F::infinity();
     let free = Limits { speed: infinity, jerk: infinity, ..*limits };
     if !does(&free) {
-        let wanted = smallest(limits.acceleration, |acceleration| does(&Limits { acceleration, ..free }));
+        let wanted =
+            smallest(limits.acceleration, |acceleration| does(&Limits { acceleration, ..free }));
         return Refusal::new(Limit::Acceleration, wanted, limits.acceleration, least);
     }
     let free = Limits { jerk: limits.jerk, ..free };

@@ -28,7 +28,14 @@ pub fn trapezoid<F: Real>(distance: F, time: F, limits: &Limits<F>) -> Result<Ra
         return Err(Refusal::new(Limit::Speed, top, limits.speed, least));
     }
     let top = top.min(limits.speed);
-    Ok(Ramp::trapezoid(distance, time, F::zero(), top, limits.acceleration, top / limits.acceleration))
+    Ok(Ramp::trapezoid(
+        distance,
+        time,
+        F::zero(),
+        top,
+        limits.acceleration,
+        top / limits.acceleration,
+    ))
 }
 
 /// Least time from rest to rest, seconds: v_l / a + N / v_l, or 2 sqrt(N / a) where the speed limit

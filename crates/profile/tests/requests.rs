@@ -12,7 +12,12 @@ use proptest::prelude::*;
 const DRIVE: Drive = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
 
 fn any_length() -> impl Strategy<Value = Length> {
-    prop_oneof![Just(Length::Step), Just(Length::Degree), Just(Length::Turn), Just(Length::Millimetre)]
+    prop_oneof![
+        Just(Length::Step),
+        Just(Length::Degree),
+        Just(Length::Turn),
+        Just(Length::Millimetre)
+    ]
 }
 
 /// Mostly a value that suits a motor, and sometimes any value.
@@ -30,14 +35,24 @@ fn any_request() -> impl Strategy<Value = Request> {
     let travel = prop_oneof![
         Just(Travel::Ramp),
         (1_u32..3000).prop_map(|steps| Travel::Move(Quantity::new(f64::from(steps), Length::Step))),
-        (prop::num::f64::ANY, any_length()).prop_map(|(value, unit)| Travel::Move(Quantity::new(value, unit))),
+        (prop::num::f64::ANY, any_length())
+            .prop_map(|(value, unit)| Travel::Move(Quantity::new(value, unit))),
     ];
     let time = prop::option::weighted(0.4, prop_oneof![9 => 1e-3..10.0, 1 => prop::num::f64::ANY]);
     let centre = prop::option::weighted(0.1, prop_oneof![9 => -1.0..2.0, 1 => prop::num::f64::ANY]);
     let values = (quantity(1.0..5e3), quantity(0.0..100.0), quantity(1.0..1e5), quantity(1.0..1e6));
-    (travel, time, centre, values).prop_map(|(travel, time, centre, (speed, start_speed, acceleration, jerk))| {
-        Request { drive: DRIVE, travel, time, speed, start_speed, acceleration, jerk, centre }
-    })
+    (travel, time, centre, values).prop_map(
+        |(travel, time, centre, (speed, start_speed, acceleration, jerk))| Request {
+            drive: DRIVE,
+            travel,
+            time,
+            speed,
+            start_speed,
+            acceleration,
+            jerk,
+            centre,
+        },
+    )
 }
 
 fn any_kind() -> impl Strategy<Value = ProfileKind> {
@@ -46,16 +61,25 @@ fn any_kind() -> impl Strategy<Value = ProfileKind> {
 
 /// Checks that no limit is exceeded. The speed limit of a ramp is its own top speed, and the jerk
 /// of a trapezoid consists of impulses that do not count.
-fn within(request: &Request, kind: ProfileKind, figures: &Figures<f64>) -> Result<(), TestCaseError> {
+fn within(
+    request: &Request,
+    kind: ProfileKind,
+    figures: &Figures<f64>,
+) -> Result<(), TestCaseError> {
     let limit = |quantity: Option<Quantity>| {
-        quantity.map_or(f64::INFINITY, |q| q.in_steps(&DRIVE).expect("a drive with a travel") * (1.0 + 1e-9))
+        quantity.map_or(f64::INFINITY, |q| {
+            q.in_steps(&DRIVE).expect("a drive with a travel") * (1.0 + 1e-9)
+        })
     };
     prop_assert!(figures.peak_acceleration <= limit(request.acceleration), "{figures:?}");
     prop_assert!(figures.top_speed <= limit(request.speed), "{figures:?}");
     prop_assert!(figures.peak_jerk <= limit(request.jerk), "{figures:?}");
     let jumps = [ProfileKind::Ranade, ProfileKind::Scurve, ProfileKind::Constant].contains(&kind);
     if jumps {
-        prop_assert!(figures.start_speed <= limit(request.start_speed.or(Some(Quantity::new(0.0, Length::Step)))));
+        prop_assert!(
+            figures.start_speed
+                <= limit(request.start_speed.or(Some(Quantity::new(0.0, Length::Step))))
+        );
     }
     Ok(())
 }
@@ -65,7 +89,8 @@ fn within(request: &Request, kind: ProfileKind, figures: &Figures<f64>) -> Resul
 /// limit may be named twice.
 fn raised(mut request: Request, kind: ProfileKind) -> Result<(), TestCaseError> {
     for _ in 0..6 {
-        let Err(ReferenceError::Refused { limit, wanted, unit, .. }) = request.reference(kind) else {
+        let Err(ReferenceError::Refused { limit, wanted, unit, .. }) = request.reference(kind)
+        else {
             prop_assert!(request.reference(kind).is_ok(), "{:?}", request.reference(kind));
             return Ok(());
         };
@@ -150,10 +175,15 @@ fn csv_of_a_profile_that_cannot_be_listed_stays_empty() {
         ..Request::new(DRIVE, Travel::Move(Quantity::new(1e9, Length::Step)))
     };
     let short = Request { travel: Travel::Move(Quantity::new(10.0, Length::Step)), ..long.clone() };
-    let both =
-        [short.reference(ProfileKind::Sine).expect("a sine"), long.reference(ProfileKind::Sine).expect("a sine")];
+    let both = [
+        short.reference(ProfileKind::Sine).expect("a sine"),
+        long.reference(ProfileKind::Sine).expect("a sine"),
+    ];
     let mut text = Vec::new();
     assert!(write_csv(&mut text, &both, &Listing::SOURCES).is_err());
-    assert!(write_csv(&mut text, &both[..1], &Listing { clock_hz: Some(f64::NAN), ..Listing::SOURCES }).is_err());
+    assert!(
+        write_csv(&mut text, &both[..1], &Listing { clock_hz: Some(f64::NAN), ..Listing::SOURCES })
+            .is_err()
+    );
     assert!(text.is_empty());
 }

@@ -49,7 +49,9 @@ impl<'a> Host<'a> {
             Some(Command::Segment { axis, segment }) if !fault => {
                 Inputs { segment: Some((axis, segment)), ..Inputs::default() }
             }
-            Some(Command::Start { mask }) if !fault => Inputs { start: Some(mask), ..Inputs::default() },
+            Some(Command::Start { mask }) if !fault => {
+                Inputs { start: Some(mask), ..Inputs::default() }
+            }
             Some(Command::Clear) => Inputs { clear: true, ..Inputs::default() },
             _ => Inputs::default(),
         }
@@ -116,7 +118,11 @@ pub(crate) fn first_start(core: &mut impl Core, job: &Job<'_>) -> Option<u64> {
 }
 
 /// Feeds a core until the program is over and the outputs no longer change.
-pub(crate) fn run(core: &mut impl Core, job: &Job<'_>, observer: &mut Observer<'_>) -> Result<Outcome, LevelError> {
+pub(crate) fn run(
+    core: &mut impl Core,
+    job: &Job<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Outcome, LevelError> {
     let mut host = Host::new(job.program);
     let mut before = None;
     let mut fault = false;

@@ -55,14 +55,24 @@ impl<'a, O: Shown> Replay<'a, O> {
     pub fn new(pins: &[PinTiming], observer: &'a mut (dyn FnMut(u64, &O) + '_)) -> Self {
         let mut width = [0; MAX_AXES];
         width.iter_mut().zip(pins).for_each(|(width, pins)| *width = pins.width.into());
-        Self { observer, width, falls: [NEVER; MAX_AXES], first_fall: NEVER, at: 0, now: O::default(), told: None }
+        Self {
+            observer,
+            width,
+            falls: [NEVER; MAX_AXES],
+            first_fall: NEVER,
+            at: 0,
+            now: O::default(),
+            told: None,
+        }
     }
 
     /// Reports everything before this cycle, which is now known completely.
     pub fn reach(&mut self, cycle: u64) {
         while self.first_fall <= cycle {
             self.settle(self.first_fall);
-            for (axis, fall) in self.falls.iter_mut().enumerate().filter(|(_, fall)| **fall == self.at) {
+            for (axis, fall) in
+                self.falls.iter_mut().enumerate().filter(|(_, fall)| **fall == self.at)
+            {
                 *self.now.pins().0 &= !(1 << axis);
                 *fall = NEVER;
             }

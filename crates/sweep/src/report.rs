@@ -150,10 +150,14 @@ impl Report {
     /// occurs twice.
     pub fn merge(reports: impl IntoIterator<Item = Self>) -> Result<Self, SweepError> {
         let mut reports = reports.into_iter();
-        let mut whole = reports.next().ok_or_else(|| SweepError::Merge("no report to merge".to_owned()))?;
+        let mut whole =
+            reports.next().ok_or_else(|| SweepError::Merge("no report to merge".to_owned()))?;
         for report in reports {
             if report.sweep != whole.sweep {
-                return Err(SweepError::Merge(format!("{} and {} are not one sweep", whole.sweep, report.sweep)));
+                return Err(SweepError::Merge(format!(
+                    "{} and {} are not one sweep",
+                    whole.sweep, report.sweep
+                )));
             }
             whole.shards.extend(&report.shards);
             whole = whole.with(report);
@@ -163,7 +167,10 @@ impl Report {
         let wanted: Vec<Shard> = (1..=count).map(|number| Shard { number, count }).collect();
         if whole.shards != wanted {
             let there: Vec<String> = whole.shards.iter().map(Shard::to_string).collect();
-            return Err(SweepError::Merge(format!("each shard is needed once; here are {}", there.join(", "))));
+            return Err(SweepError::Merge(format!(
+                "each shard is needed once; here are {}",
+                there.join(", ")
+            )));
         }
         whole.shards = vec![Shard::WHOLE];
         Ok(whole)
@@ -172,7 +179,8 @@ impl Report {
 
 /// The text `name = value` of each placeholder, separated by commas.
 fn filled(values: &Values) -> String {
-    let parts: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let parts: Vec<String> =
+        values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     parts.join(", ")
 }
 

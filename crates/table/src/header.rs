@@ -61,7 +61,8 @@ impl Table {
     pub fn header(&self, options: &Options) -> String {
         let request = self.request();
         let figures = self.figures();
-        let groups: Vec<(u16, u16)> = self.groups().iter().map(|group| (group.end, group.pulses)).collect();
+        let groups: Vec<(u16, u16)> =
+            self.groups().iter().map(|group| (group.end, group.pulses)).collect();
         let text = context! {
             name => options.name(),
             upper => options.name.to_ascii_uppercase(),
@@ -100,23 +101,32 @@ fn curve(request: &TableRequest) -> String {
     match request.kind {
         Kind::Logistic { entries, steepness, centre } => {
             let centre = centre.unwrap_or(f64::from(entries) / 2.0);
-            format!("frequency logistic in the entry: {entries} entries, steepness (Fle) {steepness}, centre {centre}")
+            format!(
+                "frequency logistic in the entry: {entries} entries, steepness (Fle) {steepness}, centre {centre}"
+            )
         }
         Kind::Avr446 { ramp_steps, arithmetic } => {
             let arithmetic = match arithmetic {
                 Arithmetic::Float => "float",
                 Arithmetic::Integer => "integer, remainder kept",
             };
-            format!("constant acceleration by the recurrence of Austin and AVR446 ({arithmetic}): {ramp_steps} steps")
+            format!(
+                "constant acceleration by the recurrence of Austin and AVR446 ({arithmetic}): {ramp_steps} steps"
+            )
         }
-        Kind::Sine { ramp_steps, .. } => format!("acceleration 1 - cos over time: {ramp_steps} steps"),
+        Kind::Sine { ramp_steps, .. } => {
+            format!("acceleration 1 - cos over time: {ramp_steps} steps")
+        }
     }
 }
 
 fn speeds(request: &TableRequest) -> String {
     let motor = request.motor;
     let rpm = match request.top_speed {
-        Speed::Rpm(rpm) => format!(" ({rpm} rpm at {} degrees, {} microsteps)", motor.step_angle_deg, motor.microsteps),
+        Speed::Rpm(rpm) => format!(
+            " ({rpm} rpm at {} degrees, {} microsteps)",
+            motor.step_angle_deg, motor.microsteps
+        ),
         Speed::StepsPerSecond(_) => String::new(),
     };
     format!("from {} to {} steps/s{rpm}", request.start_frequency, request.top_frequency())

@@ -151,7 +151,12 @@ impl Timer {
         if !fits(&self.prescaler).0 {
             let finest = available.first().copied().unwrap_or(1);
             let speed = clock / (f64::from(finest) * f64::from(self.least_counts_with(finest)));
-            return Err(TableError::TooFast { counts: shortest, least: self.least_counts(), prescaler, speed });
+            return Err(TableError::TooFast {
+                counts: shortest,
+                least: self.least_counts(),
+                prescaler,
+                speed,
+            });
         }
         let coarsest = available.iter().rfind(|p| fits(p).0).copied().unwrap_or(self.prescaler);
         let start = clock / (f64::from(coarsest) * f64::from(self.most_counts()));
@@ -197,7 +202,9 @@ mod tests {
     fn error_names_the_smallest_prescaler_that_works() {
         let timer = Timer::avr16(16_000_000, 1, Mode::Ctc);
         let advice = |shortest, longest| match timer.fit(shortest, longest) {
-            Err(TableError::TooSlow { prescaler, .. } | TableError::TooFast { prescaler, .. }) => prescaler,
+            Err(TableError::TooSlow { prescaler, .. } | TableError::TooFast { prescaler, .. }) => {
+                prescaler
+            }
             other => panic!("{other:?}"),
         };
         assert_eq!(timer.fit(1.0, 65_536.4), Ok(()));

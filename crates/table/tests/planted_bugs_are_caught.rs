@@ -9,17 +9,33 @@ use support::{Bench, Move, judge, lengths, source};
 /// Name of the bug, the right text (which occurs once in carrystep_player.c), and the wrong text.
 const BUGS: [(&str, &str, &str); 12] = [
     ("first entry skipped", "player->entry = 0;", "player->entry = 1;"),
-    ("short move overruns its middle", "player->left - 1 > player->at", "player->left > player->at"),
+    (
+        "short move overruns its middle",
+        "player->left - 1 > player->at",
+        "player->left > player->at",
+    ),
     ("way down begins late", "player->left <= player->at)", "player->left < player->at)"),
-    ("ramp walks past its end", "player->at < player->table->ramp", "player->at <= player->table->ramp"),
+    (
+        "ramp walks past its end",
+        "player->at < player->table->ramp",
+        "player->at <= player->table->ramp",
+    ),
     ("cruises at the first entry", "? table->cruise :", "? table->compare[0] :"),
     ("one pulse too many", "player->left <= 1", "player->left == 0"),
     ("one pulse too few", "player->left <= 1", "player->left <= 2"),
     ("entries last a pulse longer on the way up", "player->pulse == READ", "player->pulse > READ"),
     ("groups are not followed on the way up", "player->group++;", ""),
     ("groups are not followed on the way down", "player->group--;", ""),
-    ("way down is counted, not mirrored", "player->pulse = READ(groups[player->group].pulses);", "player->pulse = 1;"),
-    ("group boundary off by one", "player->entry == READ(groups", "player->entry + 1 == READ(groups"),
+    (
+        "way down is counted, not mirrored",
+        "player->pulse = READ(groups[player->group].pulses);",
+        "player->pulse = 1;",
+    ),
+    (
+        "group boundary off by one",
+        "player->entry == READ(groups",
+        "player->entry + 1 == READ(groups",
+    ),
 ];
 
 fn table(mode: Mode) -> Table {
@@ -31,7 +47,10 @@ fn verdict(table: &Table, bench: &Bench) -> Result<(), String> {
     let moves: Vec<Move> = lengths.iter().copied().map(Move::of).collect();
     bench.compile(&["timer_bench.c", "carrystep_player.c"]).expect("a bug that compiles");
     let played = bench.try_play(0, &moves)?;
-    lengths.into_iter().zip(played).try_for_each(|(steps, pulses)| judge(table, steps, &pulses, 0.5))
+    lengths
+        .into_iter()
+        .zip(played)
+        .try_for_each(|(steps, pulses)| judge(table, steps, &pulses, 0.5))
 }
 
 #[test]

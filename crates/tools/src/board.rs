@@ -60,7 +60,9 @@ pub fn build(job: &Job<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, Synthe
         stage(&format!("nextpnr-ice40, seed {seed}"));
         // If a part is nearly full, only some seeds lead to a placement.
         match netlist.place_on(job.part, job.pcf, job.clock_hz, seed) {
-            Ok(placed) if best.as_ref().is_none_or(|(_, best)| placed.mhz > best.mhz) => best = Some((seed, placed)),
+            Ok(placed) if best.as_ref().is_none_or(|(_, best)| placed.mhz > best.mhz) => {
+                best = Some((seed, placed))
+            }
             Ok(_) => {}
             Err(error @ SynthesisError::Tool { .. }) => failed = Some(error),
             Err(error) => return Err(error),
@@ -85,16 +87,25 @@ pub fn build(job: &Job<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, Synthe
     )?;
     stage("icepack");
     tool::run(&ICEPACK, folder.path(), &["top.asc", "top.bin"])?;
-    let bitstream = std::fs::read(folder.path().join("top.bin"))
-        .map_err(|source| SynthesisError::Io { context: "cannot read top.bin".to_owned(), source })?;
-    Ok(Built { size: placed.size, seed, mhz: placed.mhz, icetime_mhz: slowest_path(&said)?, bitstream })
+    let bitstream = std::fs::read(folder.path().join("top.bin")).map_err(|source| {
+        SynthesisError::Io { context: "cannot read top.bin".to_owned(), source }
+    })?;
+    Ok(Built {
+        size: placed.size,
+        seed,
+        mhz: placed.mhz,
+        icetime_mhz: slowest_path(&said)?,
+        bitstream,
+    })
 }
 
 /// Reads the line `Total path delay: 11.64 ns (85.92 MHz)`.
 fn slowest_path(said: &str) -> Result<f64, SynthesisError> {
-    let mhz =
-        said.lines().find_map(|line| line.strip_prefix("Total path delay:")?.split_once('(')?.1.strip_suffix(" MHz)"));
-    let unread = || SynthesisError::Unread { tool: ICETIME.name, what: "the slowest path".to_owned() };
+    let mhz = said.lines().find_map(|line| {
+        line.strip_prefix("Total path delay:")?.split_once('(')?.1.strip_suffix(" MHz)")
+    });
+    let unread =
+        || SynthesisError::Unread { tool: ICETIME.name, what: "the slowest path".to_owned() };
     mhz.and_then(|mhz| mhz.parse().ok()).ok_or_else(unread)
 }
 
@@ -104,8 +115,7 @@ mod tests {
 
     #[test]
     fn output_of_icetime_is_parsed() {
-        let said =
-            "// Reading input .asc file..\nTotal number of logic levels: 9\nTotal path delay: 11.64 ns (85.92 MHz)\n";
+        let said = "// Reading input .asc file..\nTotal number of logic levels: 9\nTotal path delay: 11.64 ns (85.92 MHz)\n";
         assert_eq!(slowest_path(said).unwrap(), 85.92);
         assert!(slowest_path("").is_err());
     }

@@ -32,7 +32,11 @@ pub struct Report {
 impl Report {
     /// Inspects this machine. With a board, it looks for what that board needs.
     pub fn of(host: &Host, board: Option<&Board>) -> Self {
-        Self { tools: tools(host, board), serial_ports: serial_ports(host), usb_devices: usb_devices(host) }
+        Self {
+            tools: tools(host, board),
+            serial_ports: serial_ports(host),
+            usb_devices: usb_devices(host),
+        }
     }
 
     /// Whether no tool is missing.
@@ -43,6 +47,8 @@ impl Report {
     /// Whether every port and device may be opened.
     pub fn has_all_access(&self) -> bool {
         let serial = self.serial_ports.iter().map(|port| &port.access);
-        serial.chain(self.usb_devices.iter().map(|device| &device.access)).all(|access| *access == Access::Granted)
+        serial
+            .chain(self.usb_devices.iter().map(|device| &device.access))
+            .all(|access| *access == Access::Granted)
     }
 }

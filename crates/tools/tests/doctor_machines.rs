@@ -20,15 +20,22 @@ impl Machine {
         machine.write("etc/group", &format!("root:x:77777:\ndialout:x:{gid}:ann,bob\n"));
         machine.write("dev/ttyUSB1", "");
         machine.write("dev/tty1", "");
-        for (name, text) in [("idVendor", "0403"), ("idProduct", "6010"), ("busnum", "1"), ("devnum", "4")] {
+        for (name, text) in
+            [("idVendor", "0403"), ("idProduct", "6010"), ("busnum", "1"), ("devnum", "4")]
+        {
             machine.write(&format!("sys/devices/usb1/1-2/{name}"), &format!("{text}\n"));
         }
         machine.write("sys/devices/usb1/1-2/1-2:1.1/x", "");
         machine.write("dev/bus/usb/001/004", "");
         fs::create_dir_all(machine.path("sys/class/tty/ttyUSB1")).unwrap();
         fs::create_dir_all(machine.path("sys/bus/usb/devices")).unwrap();
-        symlink(machine.path("sys/devices/usb1/1-2"), machine.path("sys/bus/usb/devices/1-2")).unwrap();
-        symlink(machine.path("sys/devices/usb1/1-2/1-2:1.1"), machine.path("sys/class/tty/ttyUSB1/device")).unwrap();
+        symlink(machine.path("sys/devices/usb1/1-2"), machine.path("sys/bus/usb/devices/1-2"))
+            .unwrap();
+        symlink(
+            machine.path("sys/devices/usb1/1-2/1-2:1.1"),
+            machine.path("sys/class/tty/ttyUSB1/device"),
+        )
+        .unwrap();
         machine
     }
 
@@ -59,7 +66,9 @@ fn usable_board_is_listed() {
     assert_eq!(report.serial_ports.len(), 1, "{report:?}");
     assert!(port.path.ends_with("dev/ttyUSB1"));
     assert_eq!((port.usb.as_deref(), &port.access), (Some("0403:6010"), &Access::Granted));
-    assert!(port.maybe.contains(&"icestick".to_owned()) && !port.maybe.contains(&"upduino3".to_owned()));
+    assert!(
+        port.maybe.contains(&"icestick".to_owned()) && !port.maybe.contains(&"upduino3".to_owned())
+    );
     assert!(report.usb_devices[0].path.ends_with("dev/bus/usb/001/004"));
     assert!(report.has_all_access());
 }
@@ -70,7 +79,9 @@ fn three_reasons_of_a_refusal_are_distinguished() {
     let gid = fs::metadata(machine.path("dev/ttyUSB1")).unwrap().gid();
     machine.mode("dev/ttyUSB1", 0o660);
     let group = || "dialout".to_owned();
-    let found = |name, groups: &[u32]| machine.seen_by(name, groups, |_| false).serial_ports.remove(0).access;
+    let found = |name, groups: &[u32]| {
+        machine.seen_by(name, groups, |_| false).serial_ports.remove(0).access
+    };
     assert_eq!(found("eve", &[]), Access::Refused(Refusal::NotInGroup { group: group() }));
     assert_eq!(found("bob", &[]), Access::Refused(Refusal::LogInAgain { group: group() }));
     assert_eq!(found("bob", &[gid]), Access::Refused(Refusal::NoRule));
@@ -117,5 +128,7 @@ fn empty_machine_does_not_panic() {
         may: |_| false,
     };
     let report = Report::of(&host, None);
-    assert!(report.serial_ports.is_empty() && report.usb_devices.is_empty() && !report.has_all_tools());
+    assert!(
+        report.serial_ports.is_empty() && report.usb_devices.is_empty() && !report.has_all_tools()
+    );
 }

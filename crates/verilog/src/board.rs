@@ -146,18 +146,25 @@ impl Design<'_> {
 
     /// The wire of a port. If a bus has one bit only, its port name has no number.
     fn wire(&self, port: &str) -> Result<&Wire, BoardError> {
-        self.board.wire(port).or_else(|error| self.board.wire(&format!("{port}[0]")).map_err(|_| error))
+        self.board
+            .wire(port)
+            .or_else(|error| self.board.wire(&format!("{port}[0]")).map_err(|_| error))
     }
 }
 
 /// Renders a template of `templates/board`. Lines of block tags leave no empty lines; a name that has
 /// no value is an error.
 fn rendered(template: &str, values: Value) -> Result<String, ExportError> {
-    #[allow(unused_qualifications, elided_lifetimes_in_paths, reason = "in the text of minijinja-embed")]
+    #[allow(
+        unused_qualifications,
+        elided_lifetimes_in_paths,
+        reason = "in the text of minijinja-embed"
+    )]
     static ENVIRONMENT: LazyLock<Environment<'static>> = LazyLock::new(|| {
         let mut environment = Environment::new();
         environment.set_undefined_behavior(UndefinedBehavior::Strict);
-        environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).build().unwrap_or_default());
+        environment
+            .set_syntax(SyntaxConfig::builder().trim_blocks(true).build().unwrap_or_default());
         minijinja_embed::load_templates!(environment);
         environment
     });

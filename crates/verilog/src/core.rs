@@ -34,22 +34,43 @@ const RUST_HDL: &str = "0.46.0";
 
 /// The purpose of each module, in one line.
 const PURPOSES: [(&str, &str); 33] = [
-    ("carrystep_tick", "The beat: a strobe in the last cycle of each tick, and the phases in between."),
+    (
+        "carrystep_tick",
+        "The beat: a strobe in the last cycle of each tick, and the phases in between.",
+    ),
     ("carrystep_sequencer", "The running and the waiting segment of an axis."),
-    ("carrystep_step_edge", "When in its tick a step is due: bisection, then the request to the shaper."),
-    ("carrystep_axis", "One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched."),
-    ("carrystep_shaper", "STEP and DIR with the width, gap, set-up and hold that the driver asks for."),
+    (
+        "carrystep_step_edge",
+        "When in its tick a step is due: bisection, then the request to the shaper.",
+    ),
+    (
+        "carrystep_axis",
+        "One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched.",
+    ),
+    (
+        "carrystep_shaper",
+        "STEP and DIR with the width, gap, set-up and hold that the driver asks for.",
+    ),
     (CORE_NAME, "Six axes on one tick, the door for segments and starts, and the freeze."),
     ("carrystep_turn", "Whose turn it is: one axis after the other, thirteen beats each."),
-    ("carrystep_adder", "The one adder: P + V, V + A, A + J, ticks - 1, positions, and the bisection."),
+    (
+        "carrystep_adder",
+        "The one adder: P + V, V + A, A + J, ticks - 1, positions, and the bisection.",
+    ),
     ("carrystep_control", "The control words of the axes."),
     ("carrystep_lasts", "Which segments are the last of their move."),
     ("carrystep_queue", "Which segment an axis runs, and which ones wait."),
-    ("carrystep_segments", "Segments, which are also registers, and what an axis keeps between moves."),
+    (
+        "carrystep_segments",
+        "Segments, which are also registers, and what an axis keeps between moves.",
+    ),
     ("carrystep_store", "Where everything is in the memory of the axes."),
     ("carrystep_rim", "What the pins do in each phase of four ticks."),
     ("carrystep_wheel", "Events on their way to the pins."),
-    ("carrystep_pulser", "STEP and DIR with the width, gap, set-up and hold that the driver asks for."),
+    (
+        "carrystep_pulser",
+        "STEP and DIR with the width, gap, set-up and hold that the driver asks for.",
+    ),
     ("carrystep_switches", "What is believed of each limit switch."),
     ("carrystep_limits", "The limit switches, one look in a turn."),
     ("carrystep_stops", "Who stops the axes, and how far the stop has come."),
@@ -94,10 +115,16 @@ pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, 
 ///
 /// # Errors
 /// [`ExportError`] if the link cannot be generated.
-pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Result<String, ExportError> {
+pub fn link_verilog(
+    build: &EngineBuild,
+    line: Line,
+    description: &str,
+) -> Result<String, ExportError> {
     let id = line.build_id(build);
-    let lines =
-        format!("// Clock        {} Hz\n// Line         {line}\n// Build id     {id}\n", build.timebase.clock_hz());
+    let lines = format!(
+        "// Clock        {} Hz\n// Line         {line}\n// Build id     {id}\n",
+        build.timebase.clock_hz()
+    );
     let facts = Facts { title: "the host link of an engine".to_owned(), lines };
     file_text(link(build, id)?.as_mut(), LINK_NAME, &facts, description)
 }
@@ -108,7 +135,10 @@ pub fn link_verilog(build: &EngineBuild, line: Line, description: &str) -> Resul
 /// # Errors
 /// [`ExportError`] if the module cannot be generated.
 pub fn line_verilog(line: Line, description: &str) -> Result<String, ExportError> {
-    let facts = Facts { title: "the line to the host".to_owned(), lines: format!("// Line         {line}\n") };
+    let facts = Facts {
+        title: "the line to the host".to_owned(),
+        lines: format!("// Line         {line}\n"),
+    };
     file_text(line_block(line).as_mut(), line_name(line), &facts, description)
 }
 
@@ -167,7 +197,12 @@ struct Facts {
     lines: String,
 }
 
-fn file_text(core: &mut dyn Block, name: &str, build: &Facts, description: &str) -> Result<String, ExportError> {
+fn file_text(
+    core: &mut dyn Block,
+    name: &str,
+    build: &Facts,
+    description: &str,
+) -> Result<String, ExportError> {
     core.connect_all();
     check_all(core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
     let mut top = netlist::read(core)?;
@@ -176,7 +211,10 @@ fn file_text(core: &mut dyn Block, name: &str, build: &Facts, description: &str)
     library.add(&top)?;
     let mut text = header(name, build, description);
     for Written { name, text: module, .. } in &library.modules {
-        let purpose = PURPOSES.iter().find(|(kind, _)| name.starts_with(kind)).map_or("", |(_, purpose)| purpose);
+        let purpose = PURPOSES
+            .iter()
+            .find(|(kind, _)| name.starts_with(kind))
+            .map_or("", |(_, purpose)| purpose);
         text.push_str(&format!("\n// {purpose}\n{module}"));
     }
     text.push_str("\n`default_nettype wire\n");
@@ -188,7 +226,11 @@ fn file_text(core: &mut dyn Block, name: &str, build: &Facts, description: &str)
 ///
 /// # Errors
 /// [`ExportError`] if the core cannot be generated or a file cannot be written.
-pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<PathBuf>, ExportError> {
+pub fn write_core(
+    dir: &Path,
+    build: &Build,
+    description: &str,
+) -> Result<Vec<PathBuf>, ExportError> {
     write(dir, &files(CORE_NAME, six_axis_verilog(build, description)?, CORE_WAIVERS))
 }
 
@@ -196,7 +238,11 @@ pub fn write_core(dir: &Path, build: &Build, description: &str) -> Result<Vec<Pa
 ///
 /// # Errors
 /// [`ExportError`] if the engine cannot be generated or a file cannot be written.
-pub fn write_engine(dir: &Path, build: &EngineBuild, description: &str) -> Result<Vec<PathBuf>, ExportError> {
+pub fn write_engine(
+    dir: &Path,
+    build: &EngineBuild,
+    description: &str,
+) -> Result<Vec<PathBuf>, ExportError> {
     write(dir, &files(ENGINE_NAME, engine_verilog(build, description)?, ENGINE_WAIVERS))
 }
 
@@ -222,7 +268,8 @@ struct Written {
 impl Library {
     /// Adds a module and its children, and returns the module's name.
     fn add(&mut self, module: &Module) -> Result<String, ExportError> {
-        let kinds = module.children.iter().map(|child| self.add(child)).collect::<Result<Vec<_>, _>>()?;
+        let kinds =
+            module.children.iter().map(|child| self.add(child)).collect::<Result<Vec<_>, _>>()?;
         let name = format!("carrystep_{}", split_index(&module.instance).0);
         let neutral = module_text(&module.without_values(), &name, &kinds)?;
         match self.modules.iter().find(|known| known.name == name) {
@@ -258,9 +305,12 @@ impl Facts {
             latency = time.latency_clocks(),
         );
         for (axis, PinTiming { width, gap, setup, hold }) in pins.iter().enumerate() {
-            lines.push_str(&format!("//   axis {axis}     W {width}, S {gap}, D {setup}, H {hold}\n"));
+            lines.push_str(&format!(
+                "//   axis {axis}     W {width}, S {gap}, D {setup}, H {hold}\n"
+            ));
         }
-        let count = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"].get(pins.len());
+        let count =
+            ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"].get(pins.len());
         let title = format!("step and direction for {} axes", count.unwrap_or(&"many"));
         Self { title, lines: lines + guard }
     }

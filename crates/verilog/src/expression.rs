@@ -8,7 +8,9 @@
 use crate::ExportError;
 use crate::names::{Names, slice};
 use crate::netlist::Number;
-use rust_hdl::prelude::ast::{VerilogExpression as Expression, VerilogOp as Op, VerilogOpUnary as Unary};
+use rust_hdl::prelude::ast::{
+    VerilogExpression as Expression, VerilogOp as Op, VerilogOpUnary as Unary,
+};
 
 /// Text and width of an expression, and its precedence.
 #[derive(Debug, Clone)]
@@ -42,7 +44,9 @@ impl Translator<'_> {
     pub(crate) fn flat(&self, signal: &str) -> String {
         let signal = signal.trim_end_matches("$next");
         match self.counter {
-            Some((variable, value)) => signal.replace(&format!("[{variable}]"), &format!("${value}")),
+            Some((variable, value)) => {
+                signal.replace(&format!("[{variable}]"), &format!("${value}"))
+            }
             None => signal.to_owned(),
         }
     }
@@ -65,10 +69,18 @@ impl Translator<'_> {
                 _ => self.unary(&Unary::Not, &self.expression(inner)?),
             },
             Expression::Unary(op, inner) => self.unary(op, &self.expression(inner)?),
-            Expression::Binary(left, op, right) => self.binary(&self.expression(left)?, op, &self.expression(right)?),
-            Expression::Index(signal, index) => self.part(&self.expression(signal)?, self.number(index)?, 1),
-            Expression::Slice(signal, width, low) => self.part(&self.expression(signal)?, self.number(low)?, *width),
-            Expression::Signed(_) | Expression::Unsigned(_) => Err(self.unsupported("signed arithmetic")),
+            Expression::Binary(left, op, right) => {
+                self.binary(&self.expression(left)?, op, &self.expression(right)?)
+            }
+            Expression::Index(signal, index) => {
+                self.part(&self.expression(signal)?, self.number(index)?, 1)
+            }
+            Expression::Slice(signal, width, low) => {
+                self.part(&self.expression(signal)?, self.number(low)?, *width)
+            }
+            Expression::Signed(_) | Expression::Unsigned(_) => {
+                Err(self.unsupported("signed arithmetic"))
+            }
             Expression::IndexReplace(..) => Err(self.unsupported("replace_bit")),
         }
     }
@@ -103,7 +115,11 @@ impl Translator<'_> {
     fn against_zero(&self, inner: &Expression, sign: &'static str) -> Result<Text, ExportError> {
         let inner = self.expression(inner)?;
         let zero = Number { width: inner.width, value: 0 };
-        Ok(Text { text: format!("{} {sign} {zero}", inner.closed()), width: 1, bond: Bond::Open(sign) })
+        Ok(Text {
+            text: format!("{} {sign} {zero}", inner.closed()),
+            width: 1,
+            bond: Bond::Open(sign),
+        })
     }
 
     fn unary(&self, op: &Unary, inner: &Text) -> Result<Text, ExportError> {

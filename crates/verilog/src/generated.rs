@@ -21,19 +21,24 @@ const SHIPPED_TEXT: &str = include_str!("../../../sim/six-axis.toml");
 /// # Errors
 /// [`ExportError`] if a file cannot be generated.
 pub fn generated_files() -> Result<Vec<TextFile>, ExportError> {
-    let mut files: Vec<_> = registers::files()?.into_iter().map(|(path, text)| TextFile::new(path, text)).collect();
+    let mut files: Vec<_> =
+        registers::files()?.into_iter().map(|(path, text)| TextFile::new(path, text)).collect();
     files.extend(board::pages()?);
     files.extend(core_files()?);
     for board in boards() {
         let made = Gateware::shipped(board, &board.parts[0])?.files_beside("../core")?.into_iter();
-        files.extend(made.map(|file| TextFile { name: format!("hdl-out/{}/{}", board.name, file.name), ..file }));
+        files.extend(made.map(|file| TextFile {
+            name: format!("hdl-out/{}/{}", board.name, file.name),
+            ..file
+        }));
     }
     Ok(files)
 }
 
 /// The modules of the host's link, each once, with the parameters of the shipped machine as defaults.
 fn core_files() -> Result<Vec<TextFile>, ExportError> {
-    let machine = Machine::from_source(&Source { path: SHIPPED.into(), text: SHIPPED_TEXT.into() })?;
+    let machine =
+        Machine::from_source(&Source { path: SHIPPED.into(), text: SHIPPED_TEXT.into() })?;
     let (build, line) = (machine.engine(), machine.line()?);
     let file = |name: &str, text| TextFile::new(format!("{CORE}/{name}.v"), text);
     let mut files = vec![file(LINK_NAME, link_verilog(&build, line, SHIPPED)?)];

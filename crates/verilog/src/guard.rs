@@ -8,12 +8,13 @@ use carrystep_core::engine::{Between, Limits};
 pub(crate) fn lines(build: &EngineBuild) -> String {
     let figures = build.guard_figures();
     let between = |time: Between, unit| format!("{} to {} {unit}", time.least, time.most);
-    let watchdog = figures
-        .watchdog_ms
-        .map_or("none".into(), |time| format!("{} without a sign of the host: ramp", between(time, "ms")));
-    let enable = figures.enable_ms.map_or("no time from ENABLE to the first start".into(), |time| {
-        format!("{} from ENABLE to the first start", between(time, "ms"))
+    let watchdog = figures.watchdog_ms.map_or("none".into(), |time| {
+        format!("{} without a sign of the host: ramp", between(time, "ms"))
     });
+    let enable =
+        figures.enable_ms.map_or("no time from ENABLE to the first start".into(), |time| {
+            format!("{} from ENABLE to the first start", between(time, "ms"))
+        });
     let wiring = match figures.limits {
         Limits::None => None,
         Limits::Pair => Some("two an axis"),

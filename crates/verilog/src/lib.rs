@@ -27,8 +27,8 @@ mod write;
 
 pub use crate::board::{CLOCK_NAME, Design, Gateware, shipped_machine};
 pub use crate::core::{
-    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, LINK_NAME, engine_verilog, line_name, line_verilog,
-    link_verilog, six_axis_verilog, write_core, write_engine,
+    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, LINK_NAME, engine_verilog, line_name,
+    line_verilog, link_verilog, six_axis_verilog, write_core, write_engine,
 };
 pub use crate::generated::{generated_files, write_generated_files};
 pub use crate::write::{TextFile, write};

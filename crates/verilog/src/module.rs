@@ -10,7 +10,11 @@ use carrystep_hdl::primitives::formula::ParameterValue;
 use rust_hdl::prelude::{AtomKind, Verilog};
 
 /// The text of `module` under the name `name`; `kinds` are the module names of its children.
-pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Result<String, ExportError> {
+pub(crate) fn module_text(
+    module: &Module,
+    name: &str,
+    kinds: &[String],
+) -> Result<String, ExportError> {
     let names = Names::new(module)?;
     if let Verilog::Custom(body) = &module.code {
         return primitive(module, &names, name, body);
@@ -41,7 +45,12 @@ pub(crate) fn module_text(module: &Module, name: &str, kinds: &[String]) -> Resu
 }
 
 /// A module that has its own body, such as a memory.
-fn primitive(module: &Module, names: &Names, name: &str, body: &str) -> Result<String, ExportError> {
+fn primitive(
+    module: &Module,
+    names: &Names,
+    name: &str,
+    body: &str,
+) -> Result<String, ExportError> {
     let mut page = Page::default();
     head(&mut page, module, names, name)?;
     ports(&mut page, names, &Kernel::default());
@@ -57,8 +66,9 @@ fn primitive(module: &Module, names: &Names, name: &str, body: &str) -> Result<S
 /// The beginning of a module, with its parameters if it has any.
 fn head(page: &mut Page, module: &Module, names: &Names, name: &str) -> Result<(), ExportError> {
     let parameters = parameters::of(module)?;
-    let is_twice =
-        |one: &&ParameterValue| names.constants.iter().any(|own| own.name == one.name && own.text != one.name);
+    let is_twice = |one: &&ParameterValue| {
+        names.constants.iter().any(|own| own.name == one.name && own.text != one.name)
+    };
     if let Some(one) = parameters.iter().find(is_twice) {
         let what = format!("a constant with the name of the parameter {}", one.name);
         return Err(ExportError::unsupported(&module.instance, what));
@@ -90,8 +100,13 @@ fn ports(page: &mut Page, names: &Names, kernel: &Kernel) {
 }
 
 fn constants(page: &mut Page, module: &Module, names: &Names) {
-    let initials = module.registers.iter().filter_map(|register| register.note.as_ref()).map(|note| note.text.as_str());
-    let texts: Vec<&str> = names.constants.iter().map(|constant| constant.text.as_str()).chain(initials).collect();
+    let initials = module
+        .registers
+        .iter()
+        .filter_map(|register| register.note.as_ref())
+        .map(|note| note.text.as_str());
+    let texts: Vec<&str> =
+        names.constants.iter().map(|constant| constant.text.as_str()).chain(initials).collect();
     for line in parameters::functions(&texts) {
         page.line(&line);
     }
@@ -118,10 +133,16 @@ fn refusals(page: &mut Page, names: &Names) {
 
 /// Declares the registers, the signals that combinational blocks write, and the outputs of children
 /// that the kernel reads.
-fn declarations(page: &mut Page, module: &Module, names: &Names, kernel: &Kernel) -> Result<(), ExportError> {
+fn declarations(
+    page: &mut Page,
+    module: &Module,
+    names: &Names,
+    kernel: &Kernel,
+) -> Result<(), ExportError> {
     page.gap();
     for register in &module.registers {
-        let initial = register.note.as_ref().map_or(register.initial.to_string(), |note| note.text.clone());
+        let initial =
+            register.note.as_ref().map_or(register.initial.to_string(), |note| note.text.clone());
         page.line(&format!("reg {}{} = {initial};", range(register.width), plain(&register.name)));
     }
     for target in kernel.block_targets() {
@@ -132,7 +153,8 @@ fn declarations(page: &mut Page, module: &Module, names: &Names, kernel: &Kernel
     page.gap();
     for child in &module.children {
         for output in child.atoms.iter().filter(|atom| atom.kind == AtomKind::OutputParameter) {
-            let name = names.get(&module.instance, &format!("{}${}", child.instance, output.name))?;
+            let name =
+                names.get(&module.instance, &format!("{}${}", child.instance, output.name))?;
             if kernel.reads(&name.text) {
                 page.line(&format!("wire {}{};", range(name.width), name.text));
             }
@@ -145,7 +167,8 @@ fn declarations(page: &mut Page, module: &Module, names: &Names, kernel: &Kernel
 fn wires(page: &mut Page, names: &Names, kernel: &Kernel) {
     let is_local = |text: &str| names.locals.iter().any(|local| local == text);
     let driven = kernel.wires.iter().filter(|(target, _)| target.role == Role::Driven);
-    let (locals, mut outputs): (Vec<_>, Vec<_>) = driven.partition(|(target, _)| is_local(&target.text));
+    let (locals, mut outputs): (Vec<_>, Vec<_>) =
+        driven.partition(|(target, _)| is_local(&target.text));
     page.gap();
     for (target, value) in locals {
         page.line(&format!("wire {}{} = {value};", range(target.width), target.text));
@@ -160,7 +183,13 @@ fn wires(page: &mut Page, names: &Names, kernel: &Kernel) {
     }
 }
 
-fn instance(page: &mut Page, names: &Names, kernel: &Kernel, child: &Module, kind: &str) -> Result<(), ExportError> {
+fn instance(
+    page: &mut Page,
+    names: &Names,
+    kernel: &Kernel,
+    child: &Module,
+    kind: &str,
+) -> Result<(), ExportError> {
     let given = parameters::of(child)?;
     if given.is_empty() {
         page.open(&format!("{kind} {} (", plain(&child.instance)));
@@ -168,7 +197,11 @@ fn instance(page: &mut Page, names: &Names, kernel: &Kernel, child: &Module, kin
         page.open(&format!("{kind} #("));
         for (place, one) in given.iter().enumerate() {
             let comma = if place + 1 < given.len() { "," } else { "" };
-            page.line(&format!(".{}({}){comma}", one.name, parameters::in_parent(&child.instance, &one.name)));
+            page.line(&format!(
+                ".{}({}){comma}",
+                one.name,
+                parameters::in_parent(&child.instance, &one.name)
+            ));
         }
         page.close(&format!(") {} (", plain(&child.instance)));
         page.indent += 1;
@@ -204,7 +237,8 @@ fn steps(page: &mut Page, list: &[Step], sign: &str) {
     for step in list {
         match step {
             Step::Assign { target, value } => {
-                let name = if sign == "<=" { target.text.trim_end_matches("_next") } else { &target.text };
+                let name =
+                    if sign == "<=" { target.text.trim_end_matches("_next") } else { &target.text };
                 page.line(&format!("{name} {sign} {value};"));
             }
             Step::If { .. } => conditional(page, step, "", sign),

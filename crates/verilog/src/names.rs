@@ -64,7 +64,8 @@ impl Names {
         let mut names = Self::default();
         for atom in &module.atoms {
             let (base, index) = split_index(&atom.name);
-            let elements = module.atoms.iter().filter(|other| split_index(&other.name).0 == base).count();
+            let elements =
+                module.atoms.iter().filter(|other| split_index(&other.name).0 == base).count();
             match atom.kind {
                 AtomKind::InputParameter | AtomKind::OutputParameter => {
                     let output = atom.kind == AtomKind::OutputParameter;
@@ -83,15 +84,28 @@ impl Names {
                 }
                 AtomKind::Constant => match &atom.note {
                     Some(note) if note.is_refusal && note.given.is_empty() => {}
-                    Some(note) if note.is_refusal => names.refusals.push((plain(&atom.name), note.text.clone())),
+                    Some(note) if note.is_refusal => {
+                        names.refusals.push((plain(&atom.name), note.text.clone()))
+                    }
                     note => {
                         let name = plain(&atom.name).to_uppercase();
-                        let text = note.as_ref().map_or_else(|| atom.value.to_string(), |note| note.text.clone());
-                        names.constants.push(Constant { name: name.clone(), width: atom.width, text });
+                        let text = note
+                            .as_ref()
+                            .map_or_else(|| atom.value.to_string(), |note| note.text.clone());
+                        names.constants.push(Constant {
+                            name: name.clone(),
+                            width: atom.width,
+                            text,
+                        });
                         names.add(&atom.name, name, atom.width, Role::Given);
                     }
                 },
-                _ => return Err(ExportError::unsupported(&module.instance, format!("signal {}", atom.name))),
+                _ => {
+                    return Err(ExportError::unsupported(
+                        &module.instance,
+                        format!("signal {}", atom.name),
+                    ));
+                }
             }
         }
         for register in &module.registers {
@@ -141,7 +155,8 @@ impl Names {
     /// Checks that no two things have the same name.
     fn check(&self, module: &str) -> Result<(), ExportError> {
         let mut seen = BTreeSet::new();
-        let signals = self.known.values().filter(|name| name.role != Role::Clock).map(|name| &name.text);
+        let signals =
+            self.known.values().filter(|name| name.role != Role::Clock).map(|name| &name.text);
         for text in signals {
             if !seen.insert(text) {
                 return Err(ExportError::unsupported(module, format!("two signals called {text}")));

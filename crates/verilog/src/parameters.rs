@@ -33,7 +33,10 @@ pub(crate) fn of(module: &Module) -> Result<Vec<ParameterValue>, ExportError> {
             None => all.push(one),
             Some(known) if *known == one => {}
             Some(known) => {
-                let what = format!("the parameter {} as {} and as {}", one.name, known.literal, one.literal);
+                let what = format!(
+                    "the parameter {} as {} and as {}",
+                    one.name, known.literal, one.literal
+                );
                 return Err(ExportError::unsupported(&module.instance, what));
             }
         }
@@ -57,7 +60,12 @@ pub(crate) fn head(parameters: &[ParameterValue]) -> Vec<String> {
     for (index, one) in parameters.iter().enumerate() {
         let known = described(&one.name).map(|(known, _)| known);
         if let Some(known) = known.filter(|known| before != Some(known)) {
-            lines.push(format!("// {}{}; {}", known.what[..1].to_uppercase(), &known.what[1..], known.range));
+            lines.push(format!(
+                "// {}{}; {}",
+                known.what[..1].to_uppercase(),
+                &known.what[1..],
+                known.range
+            ));
         }
         before = known;
         let range = if one.bits == 0 { String::new() } else { format!("[{}:0] ", one.bits - 1) };
@@ -78,7 +86,8 @@ pub(crate) fn overrides(parameters: &[ParameterValue]) -> String {
 
 /// Functions for the constants in a module whose texts these are.
 pub(crate) fn functions(texts: &[&str]) -> Vec<String> {
-    let is_used = |width: &usize| texts.iter().any(|text| text.contains(&format!("used_bits_{width}(")));
+    let is_used =
+        |width: &usize| texts.iter().any(|text| text.contains(&format!("used_bits_{width}(")));
     (1..=64).filter(is_used).flat_map(used_bits).collect()
 }
 
@@ -101,7 +110,9 @@ fn used_bits(width: usize) -> Vec<String> {
 /// Where a parameter stands in a list: its place in the table, and its axis.
 fn place(name: &str) -> (usize, Option<usize>) {
     match described(name) {
-        Some((known, axis)) => (PARAMETERS.iter().position(|other| other == known).unwrap_or(PARAMETERS.len()), axis),
+        Some((known, axis)) => {
+            (PARAMETERS.iter().position(|other| other == known).unwrap_or(PARAMETERS.len()), axis)
+        }
         None => (PARAMETERS.len(), None),
     }
 }

@@ -7,8 +7,8 @@ use carrystep_core::ports::{Direction, SIX_AXIS_PORTS};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_verilog::{
-    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, engine_verilog, generated_files,
-    six_axis_verilog, write_core, write_engine,
+    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, engine_verilog,
+    generated_files, six_axis_verilog, write_core, write_engine,
 };
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -59,7 +59,8 @@ fn pins() -> [PinTiming; AXES] {
 /// An engine whose guard watches something of every kind.
 fn guarded(build: &Build) -> EngineBuild {
     let engine = EngineBuild::minimal(build, 1 << 40);
-    let guard = Guard { watchdog: 100, enable: 5, debounce: 3, limits: Limits::Pair, ..engine.guard };
+    let guard =
+        Guard { watchdog: 100, enable: 5, debounce: 3, limits: Limits::Pair, ..engine.guard };
     EngineBuild { guard, ..engine }
 }
 
@@ -80,7 +81,8 @@ fn build(clock_hz: u64, phases: u32) -> Build {
 /// Runs a tool in a directory with the core. Returns whether it succeeded, and its output.
 fn run(tool: &str, arguments: &[String], folder: &Path) -> (bool, String) {
     let output = Command::new(tool).args(arguments).current_dir(folder).output();
-    let output = output.unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
+    let output = output
+        .unwrap_or_else(|_| panic!("{tool} is not installed: `cargo xtask tools` installs it"));
     let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
     (output.status.success(), said.into_owned())
 }
@@ -109,11 +111,14 @@ fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &
 #[test]
 fn core_has_the_ports_of_the_table() {
     let text = six_axis_verilog(&build(48_000_000, 16), "a test").unwrap();
-    let found: Vec<String> =
-        ports_of(&text, CORE_NAME).lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+    let found: Vec<String> = ports_of(&text, CORE_NAME)
+        .lines()
+        .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
+        .collect();
     let expected = SIX_AXIS_PORTS.map(|port| {
         let way = if port.direction == Direction::Input { "input" } else { "output" };
-        let range = if port.width == 1 { String::new() } else { format!("[{}:0] ", port.width - 1) };
+        let range =
+            if port.width == 1 { String::new() } else { format!("[{}:0] ", port.width - 1) };
         format!("{way} wire {range}{},", port.name)
     });
     let mut expected = expected.to_vec();
@@ -127,8 +132,12 @@ fn engine_has_the_axes_of_its_build() {
         let text = engine_verilog(&engine_of(axes), "a test").unwrap();
         let top = ports_of(&text, ENGINE_NAME);
         let range = if axes == 1 { String::new() } else { format!("[{}:0] ", axes - 1) };
-        let ports =
-            ["input wire {}start_mask", "input wire {}limit_max", "output wire {}step", "output wire {}culprits"];
+        let ports = [
+            "input wire {}start_mask",
+            "input wire {}limit_max",
+            "output wire {}step",
+            "output wire {}culprits",
+        ];
         let top = top.split_whitespace().collect::<Vec<_>>().join(" ");
         for port in ports.map(|port| port.replace("{}", &range)) {
             assert!(top.contains(&port), "{axes} axes: {port}");
@@ -165,7 +174,8 @@ fn timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
 #[test]
 fn engine_whose_turns_do_not_fit_is_refused_with_the_arithmetic() {
     let folder = tempfile::tempdir().unwrap();
-    let error = write_engine(folder.path(), &guarded(&build(48_000_000, 16)), "a test").unwrap_err();
+    let error =
+        write_engine(folder.path(), &guarded(&build(48_000_000, 16)), "a test").unwrap_err();
     assert_eq!(
         error.to_string(),
         "6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz has 48: \
@@ -191,7 +201,10 @@ fn engine_with_invalid_parameters_is_refused_by_name() {
         (|build| build.guard.stop.truncate(4), "4 stop accelerations for 6 axes"),
         (phase_of_one_clock, "16 phases in the 16 clocks of a tick"),
         (|build| build.pins[5].width = 0, "axis 5: width is 0 clocks"),
-        (|build| build.pins[1].setup = 65_537, "axis 1: setup is 65537 clocks: from 1 to 65536 can be counted"),
+        (
+            |build| build.pins[1].setup = 65_537,
+            "axis 1: setup is 65537 clocks: from 1 to 65536 can be counted",
+        ),
     ];
     for (spoil, says) in refusals {
         let mut build = engine_of(6);
@@ -209,8 +222,16 @@ fn engine_with_invalid_parameters_is_refused_by_name() {
 fn a_machine_that_no_engine_can_drive_is_refused_by_name() {
     let text = std::fs::read_to_string(Path::new(ROOT).join("sim/six-axis.toml")).unwrap();
     let refusals = [
-        ("driver = \"tmc2209\"", "step_ns = 15000\ngap_ns = 15000\nsetup_ns = 20\nhold_ns = 20", "width and gap"),
-        ("tick_ns = 1000", "tick_ns = 1050", "84 clocks per tick do not divide into 16 equal phases"),
+        (
+            "driver = \"tmc2209\"",
+            "step_ns = 15000\ngap_ns = 15000\nsetup_ns = 20\nhold_ns = 20",
+            "width and gap",
+        ),
+        (
+            "tick_ns = 1000",
+            "tick_ns = 1050",
+            "84 clocks per tick do not divide into 16 equal phases",
+        ),
     ];
     for (was, becomes, says) in refusals {
         let folder = tempfile::tempdir().unwrap();
@@ -225,7 +246,14 @@ fn a_machine_that_no_engine_can_drive_is_refused_by_name() {
 #[test]
 fn verilator_lint_reports_no_warning() {
     let arguments = |name: &str| {
-        let words = ["--lint-only", "-Wall", "--top-module", name, &format!("{name}.vlt"), &format!("{name}.v")];
+        let words = [
+            "--lint-only",
+            "-Wall",
+            "--top-module",
+            name,
+            &format!("{name}.vlt"),
+            &format!("{name}.v"),
+        ];
         words.map(String::from).to_vec()
     };
     on_each_core("verilator", arguments, |ok, said| ok && said.is_empty());
@@ -247,11 +275,16 @@ fn committed_cores_are_up_to_date() {
     for core in &CORES {
         let machine = Machine::load(&Path::new(ROOT).join(core.machine)).unwrap();
         let read = |extension| {
-            let path = Path::new(ROOT).join("hdl-out/core").join(core.name).with_extension(extension);
+            let path =
+                Path::new(ROOT).join("hdl-out/core").join(core.name).with_extension(extension);
             std::fs::read_to_string(path).unwrap()
         };
         let how = "run `cargo xtask generate`";
-        assert!(read("v") == (core.of_machine)(&machine, core.machine).unwrap(), "{}: {how}", core.name);
+        assert!(
+            read("v") == (core.of_machine)(&machine, core.machine).unwrap(),
+            "{}: {how}",
+            core.name
+        );
         assert!(read("vlt") == core.waivers, "{}: {how}", core.name);
     }
 }
@@ -259,7 +292,8 @@ fn committed_cores_are_up_to_date() {
 #[test]
 fn files_generated_from_tables_are_up_to_date() {
     for file in generated_files().unwrap() {
-        let committed = std::fs::read_to_string(Path::new(ROOT).join(&file.name)).unwrap_or_default();
+        let committed =
+            std::fs::read_to_string(Path::new(ROOT).join(&file.name)).unwrap_or_default();
         assert!(committed == file.text, "{}: run `cargo xtask generate`", file.name);
     }
 }

@@ -143,7 +143,8 @@ impl Board {
         let mut cycle = self.cycle();
         while cycle < end && self.link.is_alone() {
             let Driven { rx, spi, stays } = self.wire.drive(cycle);
-            let quiet = if spi == SPI_RESTS { self.link.quiet(rx).min(stays).min(end - cycle) } else { 0 };
+            let quiet =
+                if spi == SPI_RESTS { self.link.quiet(rx).min(stays).min(end - cycle) } else { 0 };
             if quiet == 0 {
                 self.link.clock_alone(rx, spi);
             } else {
@@ -205,7 +206,8 @@ impl Board {
 
     fn told(&self, asks: &LinkOutputs, says: &EngineOutputs) -> LinkInputs {
         let core = self.engine.core();
-        let (axis, item) = says.latch.map_or((asks.get_axis, asks.get_item), |axis| (axis, POSITION));
+        let (axis, item) =
+            says.latch.map_or((asks.get_axis, asks.get_item), |axis| (axis, POSITION));
         LinkInputs {
             engine: *says,
             get_data: core.item(axis, item),

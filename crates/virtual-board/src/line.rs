@@ -108,7 +108,8 @@ impl Ear {
 
     /// The line had its previous level up to this clock, and has this level from here on.
     pub fn hear(&mut self, cycle: u64, level: bool) {
-        while let Some((look, bits)) = self.byte.filter(|(look, _)| self.bits.clock(*look) < cycle) {
+        while let Some((look, bits)) = self.byte.filter(|(look, _)| self.bits.clock(*look) < cycle)
+        {
             self.byte = if bits & 1 == 1 {
                 // The sample of the stop bit: if it is low, no byte was received.
                 self.heard.extend(self.level.then_some((bits >> 1) as u8));
@@ -150,7 +151,9 @@ mod tests {
 
     #[test]
     fn bytes_arrive_at_any_baud_rate_and_clock() {
-        for (clock_hz, baud) in [(48_000_000, 3_000_000), (48_000_000, 921_600), (12_000_000, 115_200)] {
+        for (clock_hz, baud) in
+            [(48_000_000, 3_000_000), (48_000_000, 921_600), (12_000_000, 115_200)]
+        {
             let uart = Uart::new(clock_hz, baud).unwrap();
             let (mut speaker, mut ear) = (Speaker::new(clock_hz, uart), Ear::new(clock_hz, uart));
             let bytes = [0, 0xff, 0x55, 0xc0, 0xdb, 1, 0x80];

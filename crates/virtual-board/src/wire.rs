@@ -69,7 +69,9 @@ impl Wire {
     /// Levels in a clock. Calls must not go back in time.
     pub(crate) fn drive(&mut self, cycle: u64) -> Driven {
         match self {
-            Self::Uart(speaker, _) => Driven { rx: speaker.level(cycle), spi: SPI_RESTS, stays: speaker.stays(cycle) },
+            Self::Uart(speaker, _) => {
+                Driven { rx: speaker.level(cycle), spi: SPI_RESTS, stays: speaker.stays(cycle) }
+            }
             Self::Spi(master) => {
                 let [sck, select_n, mosi] = master.pins(cycle);
                 Driven { rx: mosi, spi: [sck, select_n], stays: master.stays(cycle) }

@@ -25,7 +25,11 @@ fn moves<B: Kind>(sck_hz: u64, flip: u32) -> (Vec<Edge>, u64) {
     assert_eq!(ended, Ok(Ended::Done));
     let wired = bus.0.borrow();
     for axis in 0..AXES {
-        assert_eq!(host.status().positions[axis], wired.board.position(axis), "the position of axis {axis}");
+        assert_eq!(
+            host.status().positions[axis],
+            wired.board.position(axis),
+            "the position of axis {axis}"
+        );
     }
     (wired.edges_since(wired.board.loads()[0]), wired.harmed())
 }

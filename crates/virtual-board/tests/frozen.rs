@@ -18,7 +18,8 @@ use support::wire::Faults;
 use support::{CLOCK_HZ, End, Kind, MS, TICK, waves};
 
 fn rises(edges: &[Edge], axis: u8, before: u64) -> u32 {
-    let counts = |edge: &&Edge| edge.axis == axis && edge.change == Change::Rise && edge.clock < before;
+    let counts =
+        |edge: &&Edge| edge.axis == axis && edge.change == Change::Rise && edge.clock < before;
     edges.iter().filter(counts).count() as u32
 }
 
@@ -64,7 +65,8 @@ fn freezes<B: Kind>(seeds: Range<u64>, within: u64, faults: Faults) -> (u32, u32
         let after = (20 + random.below(within)) * MS + random.below(MS);
         let ended = host.stream(program(), |_| {
             let mut world = end.0.borrow_mut();
-            let due = world.board.loads().first().is_some_and(|load| world.board.cycle() > load + after);
+            let due =
+                world.board.loads().first().is_some_and(|load| world.board.cycle() > load + after);
             if due {
                 world.board.press(Switches { estop: true, ..Switches::default() });
             }
@@ -72,7 +74,8 @@ fn freezes<B: Kind>(seeds: Range<u64>, within: u64, faults: Faults) -> (u32, u32
         });
         let Err(HostError::Fault { cause, .. }) = ended else { panic!("{ended:?}") };
         end.wait(20);
-        let (load, (stop, called)) = (end.0.borrow().board.loads()[0], end.0.borrow().board.stops()[0]);
+        let (load, (stop, called)) =
+            (end.0.borrow().board.loads()[0], end.0.borrow().board.stops()[0]);
         assert_eq!(cause, called as u8);
         if called != Cause::EStop {
             continue;

@@ -70,7 +70,8 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
         stage = now;
         Wish::GoOn
     });
-    let homed = homed.unwrap_or_else(|error| panic!("{what}: {error}, while it {stage}; {machine:?}"));
+    let homed =
+        homed.unwrap_or_else(|error| panic!("{what}: {error}, while it {stage}; {machine:?}"));
     let Homed::At(edges) = homed else { panic!("{what}: stopped") };
     let answer = host.look().unwrap().answer;
     assert!(answer.idle && !answer.fault && answer.homing == 0, "{what}: {answer:?}");
@@ -81,14 +82,20 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
         let switch = bench.edge(number);
         // The limit is accepted behind the place where it closes, at most by the distance at the
         // slow speed until then.
-        let ticks = u128::from(guard.debounce) * u128::from(guard.round) + 4 + u128::from(bench.slice_ticks());
+        let ticks = u128::from(guard.debounce) * u128::from(guard.round)
+            + 4
+            + u128::from(bench.slice_ticks());
         let late = ((u128::from(home.slow) * ticks) >> 64) as i32;
         let beyond = (edge - switch) * sign;
         assert!(
             (0..=late + 1).contains(&beyond),
             "{what}: axis {number} at {edge}, its switch at {switch}, {late} late"
         );
-        assert_eq!(host.status().positions[number], edge - sign * home.pull_off as i32, "{what}: axis {number}");
+        assert_eq!(
+            host.status().positions[number],
+            edge - sign * home.pull_off as i32,
+            "{what}: axis {number}"
+        );
         // No pulse went deeper into the switch than the search overruns it, or than the axis stood
         // at the start.
         let ran = overrun(home.seek, axis.stop, guard)
@@ -145,9 +152,11 @@ fn random_machine(random: &mut Random, limits: &str) -> Machine {
             let mut between = |least: u64, most: u64| least + random.below(most - least + 1);
             let (unit, speed) = (between(1, 40), between(500, 6000));
             let (accel, stop) = (between(4000, 100_000), between(6000, 200_000));
-            let (toward, position) = if between(0, 1) == 0 { ("min", 0) } else { ("max", 400 / unit) };
+            let (toward, position) =
+                if between(0, 1) == 0 { ("min", 0) } else { ("max", 400 / unit) };
             let [speed_, seek, slow, start] =
-                [speed, between(300, speed), between(50, 300), between(0, 200)].map(|steps| steps as f64 / unit as f64);
+                [speed, between(300, speed), between(50, 300), between(0, 200)]
+                    .map(|steps| steps as f64 / unit as f64);
             let [accel_, stop_] = [accel, stop].map(|steps| steps as f64 / unit as f64);
             let pull_off = between(3, 40) as f64 / unit as f64;
             format!(
@@ -175,11 +184,13 @@ fn random_machine(random: &mut Random, limits: &str) -> Machine {
 /// Runs the random machines whose number modulo the number of wirings is `rest`, so that the
 /// wirings run in parallel.
 fn random_machines(limits: &str, rest: u64) {
-    let machines = std::env::var("CARRYSTEP_HOMING_MACHINES").map_or(300, |text| text.parse().unwrap());
+    let machines =
+        std::env::var("CARRYSTEP_HOMING_MACHINES").map_or(300, |text| text.parse().unwrap());
     for seed in (rest..machines).step_by(3) {
         let mut random = Random::new(seed);
         let machine = random_machine(&mut random, limits);
-        let starts: Vec<Start> = machine.axes.iter().map(|_| STARTS[random.below(3) as usize]).collect();
+        let starts: Vec<Start> =
+            machine.axes.iter().map(|_| STARTS[random.below(3) as usize]).collect();
         twice::<Board>(&machine, &starts, seed);
     }
 }
@@ -256,7 +267,11 @@ fn estop_and_stop_request_end_homing() {
         let mut host = bench.connect(&machine);
         host.enable().unwrap();
         let homing = homing_of(&machine);
-        let stopped = host.home(&homing.as_homing(), |_, now, _| if now == stage { Wish::Stop } else { Wish::GoOn });
+        let stopped =
+            host.home(
+                &homing.as_homing(),
+                |_, now, _| if now == stage { Wish::Stop } else { Wish::GoOn },
+            );
         assert_eq!(stopped, Ok(Homed::Stopped), "{stage}");
         let answer = host.look().unwrap().answer;
         assert_eq!((answer.cause_name(), answer.homing), (Some("stop"), 0), "{stage}");
@@ -267,7 +282,11 @@ fn estop_and_stop_request_end_homing() {
             }
             Wish::GoOn
         });
-        assert_eq!(pressed, Err(HostError::Fault { cause: Cause::EStop as u8, culprits: 0 }), "{stage}");
+        assert_eq!(
+            pressed,
+            Err(HostError::Fault { cause: Cause::EStop as u8, culprits: 0 }),
+            "{stage}"
+        );
         assert_eq!(host.look().unwrap().answer.homing, 0, "{stage}");
         bench.press_estop(false);
         host.clear().unwrap();
@@ -289,6 +308,9 @@ fn homing_that_cannot_succeed_is_refused_before_any_motion() {
     let mut slow = homing.as_homing();
     slow.axes[0] = slow.axes[0].map(|axis| AxisHoming { slow: 1, ..axis });
     let error = host.home(&slow, |_, _, _| Wish::GoOn).unwrap_err();
-    assert!(matches!(error, HostError::Homing { axes: 1, why: HomingFault::TooLong(_) }), "{error}");
+    assert!(
+        matches!(error, HostError::Homing { axes: 1, why: HomingFault::TooLong(_) }),
+        "{error}"
+    );
     assert!(bench.board().loads().is_empty());
 }

@@ -37,7 +37,8 @@ impl<B: Kind> Talk<B> {
 
     fn write(&mut self, address: u8, words: &[u32]) {
         let head = [self.next, WRITE | address];
-        let content: Vec<u8> = head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
+        let content: Vec<u8> =
+            head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect();
         self.send(&on_the_line(&content));
         self.next = self.next.wrapping_add(1);
         assert_eq!(self.answer()[2], self.next);

@@ -1,5 +1,9 @@
 //! The number of segments per second that a line delivers to a board without an empty queue.
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "clippy.toml's allowance reaches unit tests only")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "clippy.toml's allowance reaches unit tests only"
+)]
 
 mod support;
 
@@ -48,7 +52,11 @@ fn spi_at_10_mhz_carries_500_segments_per_second_for_six_axes() {
     let mut host = bus.connect();
     host.enable().unwrap();
     let per_second = 500;
-    let commands = waves(&mut Random::new(7), per_second * 3 / 2, (1_000_000_000 / TICK_NS) as u32 / per_second);
+    let commands = waves(
+        &mut Random::new(7),
+        per_second * 3 / 2,
+        (1_000_000_000 / TICK_NS) as u32 / per_second,
+    );
     let begun = bus.0.borrow().board.cycle();
     let ended = host.stream(Program::new(&commands, 6).unwrap(), |progress| {
         bus.0.borrow_mut().handed_over = progress.handed_over;

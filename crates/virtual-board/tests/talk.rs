@@ -4,7 +4,9 @@
 mod support;
 
 use carrystep_core::link::Uart;
-use carrystep_link::{Clock, Command, Ended, Exchanged, Host, HostError, Line, Patience, Program, Segment, Wish};
+use carrystep_link::{
+    Clock, Command, Ended, Exchanged, Host, HostError, Line, Patience, Program, Segment, Wish,
+};
 use carrystep_model::fast::Edge;
 use carrystep_virtual_board::{Board, Switches, VerilatedBoard};
 use std::cell::RefCell;
@@ -55,8 +57,13 @@ fn connected<B: Kind>(baud: u32) -> (End<B>, Host<End<B>, End<B>>) {
     let uart = Uart::new(CLOCK_HZ, baud).unwrap();
     let end = End::new(uart);
     let id = uart.build_id(&build());
-    let host =
-        Host::connect(end.clone(), end.clone(), Some(id.0), Patience { change: 50, ..Patience::default() }).unwrap();
+    let host = Host::connect(
+        end.clone(),
+        end.clone(),
+        Some(id.0),
+        Patience { change: 50, ..Patience::default() },
+    )
+    .unwrap();
     (end, host)
 }
 
@@ -78,7 +85,10 @@ fn commands(pieces: u32) -> Vec<Command> {
 /// The edges of a move from its load on.
 fn moves<B: Kind>(baud: u32) -> Vec<Edge> {
     let (end, mut host) = connected::<B>(baud);
-    assert_eq!((host.facts().axes, host.facts().tick_ns, host.facts().watchdog_ticks), (6, 2000, 50_176));
+    assert_eq!(
+        (host.facts().axes, host.facts().tick_ns, host.facts().watchdog_ticks),
+        (6, 2000, 50_176)
+    );
     host.enable().unwrap();
     let commands = commands(41);
     let ended = host.stream(Program::new(&commands, 6).unwrap(), |_| Wish::GoOn).unwrap();

@@ -38,7 +38,8 @@ fn served<B: Kind>(host: impl FnOnce(&str)) -> Vec<Edge> {
     std::thread::scope(|scope| {
         let board = scope.spawn(move || {
             // A quarter of the watchdog's time.
-            let mut desk = Desk::new(B::new(uart()), terminal, Pace::fast(CLOCK_HZ, 25 * MS), CLOCK_HZ);
+            let mut desk =
+                Desk::new(B::new(uart()), terminal, Pace::fast(CLOCK_HZ, 25 * MS), CLOCK_HZ);
             let mut seen = Seen::default();
             while !is_over.load(Ordering::Relaxed) {
                 desk.step(&mut seen).unwrap();
@@ -65,12 +66,17 @@ impl Drop for Over<'_> {
 fn in_rust(port: &str) {
     let line = SerialLine::open(port, uart().baud()).unwrap();
     // A simulated board may be slow.
-    let patience = Patience { silence: 60_000, lost: 60_000, change: 60_000, ..Patience::default() };
+    let patience =
+        Patience { silence: 60_000, lost: 60_000, change: 60_000, ..Patience::default() };
     let id = uart().build_id(&build()).0;
-    let mut host: Host<_, _> = Host::connect(line, SystemClock::default(), Some(id), patience).unwrap();
+    let mut host: Host<_, _> =
+        Host::connect(line, SystemClock::default(), Some(id), patience).unwrap();
     host.enable().unwrap();
     let commands = commands();
-    assert_eq!(host.stream(Program::new(&commands, AXES as u8).unwrap(), |_| Wish::GoOn).unwrap(), Ended::Done);
+    assert_eq!(
+        host.stream(Program::new(&commands, AXES as u8).unwrap(), |_| Wish::GoOn).unwrap(),
+        Ended::Done
+    );
 }
 
 fn in_c(port: &str) {

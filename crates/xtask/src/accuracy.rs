@@ -11,9 +11,12 @@ const END: &str = "<!-- ... to here -->";
 
 /// Fails if the page differs from the current measurements of the checker.
 pub fn check() -> Done {
-    let page = fs::read_to_string(shell::root().join(PAGE)).map_err(|error| format!("{PAGE}: {error}"))?;
+    let page =
+        fs::read_to_string(shell::root().join(PAGE)).map_err(|error| format!("{PAGE}: {error}"))?;
     if !page.contains(&block(&table()?)) {
-        return Err(format!("the table in {PAGE} is not what is measured: run `cargo xtask accuracy`"));
+        return Err(format!(
+            "the table in {PAGE} is not what is measured: run `cargo xtask accuracy`"
+        ));
     }
     shell::say("accuracy: true");
     Ok(())

@@ -272,7 +272,8 @@ mod tests {
             ("src/slow/care.rs", "pub struct Care; fn f() { assert!(crate::fast::ONE) }"),
         ]);
         assert_eq!(found.len(), 1, "{found:?}");
-        let begin = "src: fast -> slow -> fast: src/fast/leap.rs names crate::Care; src/slow/care.rs";
+        let begin =
+            "src: fast -> slow -> fast: src/fast/leap.rs names crate::Care; src/slow/care.rs";
         assert!(found[0].starts_with(begin), "{found:?}");
     }
 

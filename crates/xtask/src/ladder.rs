@@ -19,7 +19,8 @@ pub fn climb() -> Done {
 /// Rung 7 by itself, with its table.
 pub fn prove() -> Done {
     tools::install()?;
-    let rung = ["test", "--release", "-p", "carrystep-tests", "--test", "rung_7_promises_are_proved"];
+    let rung =
+        ["test", "--release", "-p", "carrystep-tests", "--test", "rung_7_promises_are_proved"];
     shell::run("cargo", &[&rung[..], &["--", "--nocapture"]].concat())
 }
 
@@ -28,7 +29,8 @@ const BARE: &str = "thumbv6m-none-eabi";
 
 /// The link's core on a bare microcontroller; where its target cannot be had, on this machine without `std`.
 pub fn bare() -> Done {
-    let check = ["check", "--quiet", "-p", "carrystep-link", "--no-default-features", "--features", "spi"];
+    let check =
+        ["check", "--quiet", "-p", "carrystep-link", "--no-default-features", "--features", "spi"];
     let there = shell::is_there("rustup") && shell::run("rustup", &["target", "add", BARE]).is_ok();
     if !there {
         shell::say(&format!("no target {BARE}: checked for this machine, without std"));
@@ -40,14 +42,18 @@ pub fn bare() -> Done {
 /// Formatting and lints.
 pub fn lint() -> Done {
     shell::run("cargo", &["fmt", "--all", "--check"])?;
-    shell::run("cargo", &["clippy", "--quiet", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])
+    shell::run(
+        "cargo",
+        &["clippy", "--quiet", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"],
+    )
 }
 
 /// The long lock-step: what a test run does in part, it does whole.
 pub fn lockstep() -> Done {
     tools::install()?;
     let run = |test| {
-        let arguments = ["test", "--release", "-p", "carrystep-tests", "--test", test, "--", "--nocapture"];
+        let arguments =
+            ["test", "--release", "-p", "carrystep-tests", "--test", test, "--", "--nocapture"];
         shell::run_with(&[("CARRYSTEP_CLOCKS", "10000000")], "cargo", &arguments)
     };
     run("rung_4_model_equals_rust_hdl")?;
@@ -58,7 +64,15 @@ pub fn lockstep() -> Done {
 /// All mutants of the engine, where a test run takes a few.
 pub fn mutants(write: bool) -> Done {
     tools::install()?;
-    let test =
-        ["test", "--release", "-p", "carrystep-tests", "--test", "rung_8_mutants_are_caught", "--", "--nocapture"];
+    let test = [
+        "test",
+        "--release",
+        "-p",
+        "carrystep-tests",
+        "--test",
+        "rung_8_mutants_are_caught",
+        "--",
+        "--nocapture",
+    ];
     shell::run_with(&[("CARRYSTEP_MUTANTS", if write { "write" } else { "all" })], "cargo", &test)
 }

@@ -77,7 +77,8 @@ enum Chore {
 /// Times everything; what is printed is the bench's own.
 fn bench(json: bool) -> shell::Done {
     tools::install()?;
-    let arguments = ["bench", "--quiet", "-p", "carrystep-xtask", "--bench", "levels", "--", "--json"];
+    let arguments =
+        ["bench", "--quiet", "-p", "carrystep-xtask", "--bench", "levels", "--", "--json"];
     shell::run("cargo", &arguments[..arguments.len() - usize::from(!json)])
 }
 

@@ -50,9 +50,12 @@ const LINK_OUTPUTS: &[(&str, u32)] = &[
 ];
 
 const UART_INPUTS: &[(&str, u32)] = &[("rx", 1), ("answer_valid", 1), ("answer", 8)];
-const SPI_INPUTS: &[(&str, u32)] = &[("sck", 1), ("select_n", 1), ("mosi", 1), ("answer_valid", 1), ("answer", 8)];
-const UART_OUTPUTS: &[(&str, u32)] = &[("received_valid", 1), ("received", 8), ("answer_take", 1), ("tx", 1)];
-const SPI_OUTPUTS: &[(&str, u32)] = &[("received_valid", 1), ("received", 8), ("answer_take", 1), ("miso", 1)];
+const SPI_INPUTS: &[(&str, u32)] =
+    &[("sck", 1), ("select_n", 1), ("mosi", 1), ("answer_valid", 1), ("answer", 8)];
+const UART_OUTPUTS: &[(&str, u32)] =
+    &[("received_valid", 1), ("received", 8), ("answer_take", 1), ("tx", 1)];
+const SPI_OUTPUTS: &[(&str, u32)] =
+    &[("received_valid", 1), ("received", 8), ("answer_take", 1), ("miso", 1)];
 
 /// An empty recording of a link.
 pub const fn link() -> Vectors {
@@ -72,7 +75,8 @@ pub const fn spi() -> Vectors {
 pub(super) fn link_inputs(seen: &LinkInputs, line: LineOutputs) -> Bits {
     let engine = &seen.engine;
     let number = |value: Option<u8>| u64::from(value.unwrap_or(0));
-    let (cause, culprits) = engine.fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
+    let (cause, culprits) =
+        engine.fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
     Bits::default()
         .and(1, u64::from(line.received.is_some()))
         .and(8, number(line.received))

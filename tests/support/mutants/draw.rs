@@ -54,11 +54,18 @@ pub struct Sample {
 /// # Panics If yosys is missing or fails.
 pub fn sample(verilog: &str, top: &str, count: usize) -> Sample {
     let folder = tempfile::tempdir().expect("a folder");
-    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("what yosys has written");
+    let read = |name: &str| {
+        std::fs::read_to_string(folder.path().join(name)).expect("what yosys has written")
+    };
     std::fs::write(folder.path().join("core.v"), verilog).expect("a file");
     // The number is greater than that of all mutants, so yosys lists all of them.
     let list = format!("mutate -list 1000000 -seed {SEED} -o list");
-    yosys(folder.path(), &format!("read_verilog core.v; hierarchy -check -top {top}; {PREPARE}; write_rtlil core.il"));
+    yosys(
+        folder.path(),
+        &format!(
+            "read_verilog core.v; hierarchy -check -top {top}; {PREPARE}; write_rtlil core.il"
+        ),
+    );
     let netlist = named_by_instance(&read("core.il"));
     std::fs::write(folder.path().join("core.il"), &netlist).expect("a file");
     yosys(folder.path(), &format!("read_rtlil core.il; {PURGE}; {list}"));
@@ -82,7 +89,8 @@ impl Sample {
     pub fn alone(&self, mutant: Option<&Mutant>) -> String {
         let folder = tempfile::tempdir().expect("a folder");
         std::fs::write(folder.path().join("core.il"), &self.netlist).expect("a file");
-        let change = mutant.map(|mutant| format!("mutate {}\n", mutant.command)).unwrap_or_default();
+        let change =
+            mutant.map(|mutant| format!("mutate {}\n", mutant.command)).unwrap_or_default();
         let script = format!("read_rtlil core.il\n{change}write_verilog -noattr alone.v\n");
         std::fs::write(folder.path().join("alone.ys"), script).expect("a file");
         yosys(folder.path(), "script alone.ys");
@@ -98,13 +106,19 @@ fn named_by_instance(netlist: &str) -> String {
     for line in netlist.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
         let ["cell", part, instance] = words[..] else { continue };
-        let Some((_, kind)) = part.strip_prefix("$paramod").and_then(|rest| rest.split_once("\\carrystep_")) else {
+        let Some((_, kind)) =
+            part.strip_prefix("$paramod").and_then(|rest| rest.split_once("\\carrystep_"))
+        else {
             continue;
         };
         let kind = kind.split('\\').next().unwrap_or(kind);
         let instance = instance.trim_start_matches('\\');
-        let index = instance.strip_prefix(kind).filter(|rest| rest.strip_prefix('_').is_some_and(is_number));
-        names.entry(part).or_insert_with(|| format!("\\carrystep_{kind}{}", index.unwrap_or_default()));
+        let index = instance
+            .strip_prefix(kind)
+            .filter(|rest| rest.strip_prefix('_').is_some_and(is_number));
+        names
+            .entry(part)
+            .or_insert_with(|| format!("\\carrystep_{kind}{}", index.unwrap_or_default()));
     }
     let word = |word: &str| names.get(word).map_or(word, String::as_str).to_owned();
     let line = |line: &str| line.split(' ').map(word).collect::<Vec<_>>().join(" ") + "\n";
@@ -143,7 +157,9 @@ fn candidates(list: &str, verilog: &str) -> Vec<Candidate> {
     let mut seen: HashMap<String, u32> = HashMap::new();
     let mutants = list.lines().filter_map(|line| {
         let command = line.strip_prefix("mutate ")?;
-        let option = |name: &str| command.split(&format!("-{name} ")).nth(1).and_then(|rest| rest.split(' ').next());
+        let option = |name: &str| {
+            command.split(&format!("-{name} ")).nth(1).and_then(|rest| rest.split(' ').next())
+        };
         let (module, port) = (option("module")?.trim_start_matches("carrystep_"), option("port")?);
         if CLOCKS.contains(&port) {
             return None;
@@ -156,18 +172,27 @@ fn candidates(list: &str, verilog: &str) -> Vec<Candidate> {
             "cnot0" => format!("inverted where bit {} is 0", bit("ctrlbit")),
             _ => format!("inverted where bit {} is 1", bit("ctrlbit")),
         };
-        let wire = option("wire").map(|wire| format!(" ({wire}[{}])", bit("wirebit"))).unwrap_or_default();
-        let source = command.rsplit("-src ").next().and_then(|place| place.split(':').nth(1)?.split('.').next());
-        let source = source.and_then(|number| lines.get(number.parse::<usize>().ok()?.checked_sub(1)?));
+        let wire =
+            option("wire").map(|wire| format!(" ({wire}[{}])", bit("wirebit"))).unwrap_or_default();
+        let source = command
+            .rsplit("-src ")
+            .next()
+            .and_then(|place| place.split(':').nth(1)?.split('.').next());
+        let source =
+            source.and_then(|number| lines.get(number.parse::<usize>().ok()?.checked_sub(1)?));
         let source = source.map_or("", |text| text.trim());
         let cell = option("cell").map(kind)?;
-        let mut name = format!("{module}: {cell} {port}[{}]{wire} {what}: {source}", bit("portbit"));
+        let mut name =
+            format!("{module}: {cell} {port}[{}]{wire} {what}: {source}", bit("portbit"));
         let twins = seen.entry(name.clone()).or_default();
         *twins += 1;
         if *twins > 1 {
             let _ = write!(name, " #{twins}");
         }
-        Some((Mutant { name, module: module.to_owned(), command: command.to_owned() }, format!("{module}: {source}")))
+        Some((
+            Mutant { name, module: module.to_owned(), command: command.to_owned() },
+            format!("{module}: {source}"),
+        ))
     });
     mutants.collect()
 }

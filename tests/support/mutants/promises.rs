@@ -26,14 +26,20 @@ pub fn broken(sample: &Sample, mutant: &Mutant) -> Option<&'static str> {
         let mut cases = proof.cases.iter().filter(|case| is_own(case) && case.verilog == built.1);
         let verilog = sample.alone(mutant);
         cases.any(|case| {
-            // The netlist has no parameters.
-            let (dut, parameters) = (dut.clone(), Vec::new());
-            let case = Case { verilog: verilog.as_str().into(), dut, parameters, ..case.clone() };
+            // The mutant's netlist has no parameters.
+            let case = Case {
+                verilog: verilog.as_str().into(),
+                dut: dut.clone(),
+                parameters: Vec::new(),
+                ..case.clone()
+            };
             match proofs::ask(&proof.promises, &case, Question::Broken(proof.reach)) {
                 Ok(()) => true,
                 Err(ProofError::Refuted(_)) => false,
                 // A promise may refer to an internal wire that the mutant's netlist no longer has.
-                Err(ProofError::Tool { said, .. }) if said.contains("Failed to parse set rhs") => false,
+                Err(ProofError::Tool { said, .. }) if said.contains("Failed to parse set rhs") => {
+                    false
+                }
                 Err(error) => panic!("{dut}: {error}"),
             }
         })

@@ -52,8 +52,17 @@ pub fn all(build: &EngineBuild) -> Vec<Stimulus> {
 }
 
 impl Stimulus {
-    fn new(build: &EngineBuild, name: impl Into<String>, program: &Program, events: &Events) -> Self {
-        Self { name: name.into(), recording: Recording::new(build, program, events, MOST_CLOCKS), modules: &[] }
+    fn new(
+        build: &EngineBuild,
+        name: impl Into<String>,
+        program: &Program,
+        events: &Events,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            recording: Recording::new(build, program, events, MOST_CLOCKS),
+            modules: &[],
+        }
     }
 
     fn only_for(self, modules: &'static [&'static str]) -> Self {
@@ -68,7 +77,8 @@ impl Stimulus {
 
 /// Draws `count` programs with the fixed seed.
 fn drawn<T>(strategy: &impl Strategy<Value = T>, count: usize) -> Vec<T> {
-    let config = Config { rng_seed: RngSeed::Fixed(SEED), failure_persistence: None, ..Config::default() };
+    let config =
+        Config { rng_seed: RngSeed::Fixed(SEED), failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new(config);
     (0..count).map(|_| strategy.new_tree(&mut runner).expect("a program").current()).collect()
 }

@@ -45,15 +45,22 @@ pub type BuiltEngine = (EngineBuild, Arc<str>);
 /// The shipped engine: its build, and the Verilog in `hdl-out/` as it is committed.
 pub fn shipped_engine() -> BuiltEngine {
     let root = moves::root();
-    let text = std::fs::read_to_string(root.join("hdl-out/core/carrystep_engine.v")).expect("the committed Verilog");
+    let text = std::fs::read_to_string(root.join("hdl-out/core/carrystep_engine.v"))
+        .expect("the committed Verilog");
     let machine = Machine::load(&root.join("sim/six-axis.toml")).expect("the engine's machine");
     (machine.engine(), text.into())
 }
 
 /// An engine with this many axes and clocks per tick, with extreme pin timings and a guard with
 /// small figures.
-pub fn small_engine(axes: usize, clocks: u32, phases: u32, limits: Limits) -> (EngineBuild, Arc<str>) {
-    let timebase = Timebase::new(u64::from(clocks) * 1_000_000, 1000, phases).expect("a fine timebase");
+pub fn small_engine(
+    axes: usize,
+    clocks: u32,
+    phases: u32,
+    limits: Limits,
+) -> (EngineBuild, Arc<str>) {
+    let timebase =
+        Timebase::new(u64::from(clocks) * 1_000_000, 1000, phases).expect("a fine timebase");
     let mut minimal = EngineBuild::minimal(&Build { timebase, ..small(phases).0 }, 1 << 40);
     minimal.pins.resize(axes, PinTiming::SHORTEST);
     minimal.guard.stop.resize(axes, 1 << 40);
@@ -96,7 +103,8 @@ pub fn pin_cases(kind: &str, builds: &[(Vec<PinTiming>, Arc<str>)]) -> Vec<Case>
         for pins in pins {
             let name = format!("w{}_s{}_d{}_h{}", pins.width, pins.gap, pins.setup, pins.hold);
             let numbers = [("W", pins.width), ("S", pins.gap), ("D", pins.setup), ("H", pins.hold)];
-            let numbers = numbers.into_iter().map(|(name, clocks)| (name, clocks.to_string())).collect();
+            let numbers =
+                numbers.into_iter().map(|(name, clocks)| (name, clocks.to_string())).collect();
             if cases.iter().all(|case| case.name != name) {
                 let (dut, parameters) = (kind.to_owned(), pin_parameters(pins));
                 cases.push(Case { name, dut, parameters, verilog: verilog.clone(), numbers });
@@ -109,5 +117,10 @@ pub fn pin_cases(kind: &str, builds: &[(Vec<PinTiming>, Arc<str>)]) -> Vec<Case>
 /// The parameters of a pulser or shaper with this timing.
 pub fn pin_parameters(pins: &PinTiming) -> Vec<(&'static str, u32)> {
     let &PinTiming { width, gap, setup, hold } = pins;
-    vec![(STEP_HIGH.name, width), (STEP_LOW.name, gap), (DIR_SETUP.name, setup), (DIR_HOLD.name, hold)]
+    vec![
+        (STEP_HIGH.name, width),
+        (STEP_LOW.name, gap),
+        (DIR_SETUP.name, setup),
+        (DIR_HOLD.name, hold),
+    ]
 }

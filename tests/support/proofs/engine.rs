@@ -15,8 +15,16 @@ const BUGS: &[Bug] = &[
         text: "turn_beat[7] & (turn_axis",
         becomes: "turn_beat[6] & (turn_axis",
     },
-    Bug { breaks: "promise_6_nothing_taken_in_a_fault", text: "put_ready = !stops_fault &", becomes: "put_ready =" },
-    Bug { breaks: "promise_6_no_such_axis_is_told", text: "((put_valid & nobody) | broken)", becomes: "broken" },
+    Bug {
+        breaks: "promise_6_nothing_taken_in_a_fault",
+        text: "put_ready = !stops_fault &",
+        becomes: "put_ready =",
+    },
+    Bug {
+        breaks: "promise_6_no_such_axis_is_told",
+        text: "((put_valid & nobody) | broken)",
+        becomes: "broken",
+    },
     Bug {
         breaks: "promise_6_something_to_start",
         text: "unfed <= unfed | (masked & queue_empty);",
@@ -27,15 +35,31 @@ const BUGS: &[Bug] = &[
         text: "if (go | stops_fault) begin",
         becomes: "if (turn_beat[3]) begin",
     },
-    Bug { breaks: "promise_8_idle", text: "rest_2 & !waits & !pins_busy", becomes: "rest_2 & !pins_busy" },
-    Bug { breaks: "promise_8_idle_is_empty", text: "rest_2 <= !active & rest_1;", becomes: "rest_2 <= 1'b1;" },
+    Bug {
+        breaks: "promise_8_idle",
+        text: "rest_2 & !waits & !pins_busy",
+        becomes: "rest_2 & !pins_busy",
+    },
+    Bug {
+        breaks: "promise_8_idle_is_empty",
+        text: "rest_2 <= !active & rest_1;",
+        becomes: "rest_2 <= 1'b1;",
+    },
     Bug {
         breaks: "promise_12_own_requests",
         text: ".request(wheel_events & wheel_phase_start)",
         becomes: ".request(wheel_events)",
     },
-    Bug { breaks: "promise_12_starts_who_is_asked_to", text: ".starts(going & masked)", becomes: ".starts(going)" },
-    Bug { breaks: "promise_12_a_limit_slows_its_own_axis", text: "stops_ramp | homes_slows", becomes: "stops_ramp" },
+    Bug {
+        breaks: "promise_12_starts_who_is_asked_to",
+        text: ".starts(going & masked)",
+        becomes: ".starts(going)",
+    },
+    Bug {
+        breaks: "promise_12_a_limit_slows_its_own_axis",
+        text: "stops_ramp | homes_slows",
+        becomes: "stops_ramp",
+    },
     Bug {
         breaks: "promise_12_a_limit_waited_for_stops_no_other",
         text: "limits_hit & !homes_waits & !homes_slows",
@@ -47,7 +71,8 @@ const BUGS: &[Bug] = &[
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let sizes = [(1, 16, 4), (6, 96, 16)];
-    let builds = sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, Limits::Pair));
+    let builds =
+        sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, Limits::Pair));
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes, {}", build.axes(), beat_name(&build.timebase)),
         dut: "carrystep_engine".into(),

@@ -5,16 +5,41 @@ use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, Limits};
 
 const BUGS: &[Bug] = &[
-    Bug { breaks: "promise_12_waits_as_asked", text: "waiting <= waiting & ~lane;", becomes: "waiting <= waiting;" },
-    Bug { breaks: "promise_12_waits_in_its_turn", text: "mine = (waiting & lane)", becomes: "mine = (waiting)" },
-    Bug { breaks: "promise_12_slows_after_its_own_hit", text: "caught = hit & mine;", becomes: "caught = hit;" },
-    Bug { breaks: "promise_12_slows_after_its_own_hit", text: "if (!goes_on) begin", becomes: "if (goes_on) begin" },
-    Bug { breaks: "promise_12_slows_after_its_own_hit", text: "(slowing & lane_next)", becomes: "(slowing & lane)" },
-    Bug { breaks: "promise_13_inactive", text: "mine_slows = 1'b0;", becomes: "mine_slows = 1'b1;" },
+    Bug {
+        breaks: "promise_12_waits_as_asked",
+        text: "waiting <= waiting & ~lane;",
+        becomes: "waiting <= waiting;",
+    },
+    Bug {
+        breaks: "promise_12_waits_in_its_turn",
+        text: "mine = (waiting & lane)",
+        becomes: "mine = (waiting)",
+    },
+    Bug {
+        breaks: "promise_12_slows_after_its_own_hit",
+        text: "caught = hit & mine;",
+        becomes: "caught = hit;",
+    },
+    Bug {
+        breaks: "promise_12_slows_after_its_own_hit",
+        text: "if (!goes_on) begin",
+        becomes: "if (goes_on) begin",
+    },
+    Bug {
+        breaks: "promise_12_slows_after_its_own_hit",
+        text: "(slowing & lane_next)",
+        becomes: "(slowing & lane)",
+    },
+    Bug {
+        breaks: "promise_13_inactive",
+        text: "mine_slows = 1'b0;",
+        becomes: "mine_slows = 1'b1;",
+    },
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
-    let builds = [small_engine(6, 80, 4, Limits::Pair), small_engine(1, 16, 4, Limits::Pair), built.clone()];
+    let builds =
+        [small_engine(6, 80, 4, Limits::Pair), small_engine(1, 16, 4, Limits::Pair), built.clone()];
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes at {} Hz", build.axes(), build.timebase.clock_hz()),
         dut: "carrystep_homes".into(),
@@ -24,7 +49,9 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     };
     Proof {
         module: "homes",
-        promises: Promises { text: include_str!("../../../crates/hdl/src/engine/homes/promises.sv") },
+        promises: Promises {
+            text: include_str!("../../../crates/hdl/src/engine/homes/promises.sv"),
+        },
         cases: builds.map(case).into(),
         depth: 1,
         reach: 40,

@@ -5,16 +5,33 @@ use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, Limits};
 
 const BUGS: &[Bug] = &[
-    Bug { breaks: "promise_10_hits_only_where_it_looks", text: "turn_ends & (tick_0 | max)", becomes: "turn_ends" },
+    Bug {
+        breaks: "promise_10_hits_only_where_it_looks",
+        text: "turn_ends & (tick_0 | max)",
+        becomes: "turn_ends",
+    },
     Bug { breaks: "promise_10_stops_by_direction", text: "back ^ max", becomes: "back" },
-    Bug { breaks: "promise_10_stops_by_direction", text: "word[6:0] == LAST_LOOK", becomes: "word[6:0] != LAST_LOOK" },
-    Bug { breaks: "promise_10_stops_by_direction", text: "if (differs & !flips) begin", becomes: "if (!flips) begin" },
-    Bug { breaks: "promise_12_own_switch_only", text: "(looks & (EXIST", becomes: "((looks | goes) & (EXIST" },
+    Bug {
+        breaks: "promise_10_stops_by_direction",
+        text: "word[6:0] == LAST_LOOK",
+        becomes: "word[6:0] != LAST_LOOK",
+    },
+    Bug {
+        breaks: "promise_10_stops_by_direction",
+        text: "if (differs & !flips) begin",
+        becomes: "if (!flips) begin",
+    },
+    Bug {
+        breaks: "promise_12_own_switch_only",
+        text: "(looks & (EXIST",
+        becomes: "((looks | goes) & (EXIST",
+    },
     Bug { breaks: "promise_13_inactive", text: "hit = looks &", becomes: "hit = 1'b1 |" },
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
-    let wirings = [Limits::Pair, Limits::None, Limits::Each, Limits::One].map(|limits| small_engine(6, 80, 4, limits));
+    let wirings = [Limits::Pair, Limits::None, Limits::Each, Limits::One]
+        .map(|limits| small_engine(6, 80, 4, limits));
     let case = |(build, verilog): (EngineBuild, _)| {
         let guard = &build.guard;
         let wiring = match guard.limits {
@@ -38,7 +55,9 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     };
     Proof {
         module: "limits",
-        promises: Promises { text: include_str!("../../../crates/hdl/src/engine/limits/promises.sv") },
+        promises: Promises {
+            text: include_str!("../../../crates/hdl/src/engine/limits/promises.sv"),
+        },
         cases: wirings.into_iter().chain([built.clone()]).map(case).collect(),
         depth: 1,
         reach: 16,

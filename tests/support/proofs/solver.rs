@@ -75,7 +75,11 @@ pub enum Question {
 /// Fails if a tool is missing.
 pub fn tools() -> Result<(), ProofError> {
     for tool in [YOSYS, YOSYS_SMTBMC, YOSYS_ABC, Z3] {
-        let started = Command::new(tool.name).arg("--help").stdout(Stdio::null()).stderr(Stdio::null()).status();
+        let started = Command::new(tool.name)
+            .arg("--help")
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .status();
         started.map_err(|_| ProofError::Missing(tool))?;
     }
     Ok(())
@@ -98,7 +102,9 @@ pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), P
     }
     let (wanted, said) = match question {
         Question::Base(clocks) => holds(promises, dir.path(), &["-t", &clocks.to_string()])?,
-        Question::Induction(depth) => holds(promises, dir.path(), &["-i", "-t", &depth.to_string()])?,
+        Question::Induction(depth) => {
+            holds(promises, dir.path(), &["-i", "-t", &depth.to_string()])?
+        }
         Question::Covers(clocks) => reached(dir.path(), clocks, promises.covers().len())?,
         Question::Fails(_, clocks) => reached(dir.path(), clocks, 1)?,
         Question::Broken(clocks) => any_reached(dir.path(), clocks)?,
@@ -126,7 +132,9 @@ fn holds(promises: &Promises, dir: &Path, question: &[&str]) -> Result<(bool, St
 /// tool.
 pub(super) fn reached(dir: &Path, clocks: u32, count: usize) -> Result<(bool, String), ProofError> {
     // They are asked one after the other: asked for all at once, bmc3 of ABC 1.01 may crash.
-    let ask = |output| format!("read_aiger promises.aig; fold; cone -s -O {output}; bmc3 -F {clocks} -T {LIMIT}");
+    let ask = |output| {
+        format!("read_aiger promises.aig; fold; cone -s -O {output}; bmc3 -F {clocks} -T {LIMIT}")
+    };
     let commands: Vec<String> = (0..count).map(ask).collect();
     let all = |said: &str| count > 0 && said.matches("was asserted in frame").count() == count;
     let (fine, said) = run_until(dir, YOSYS_ABC, &["-c", &commands.join("; ")], all)?;
@@ -176,10 +184,14 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
     text.push_str(&match question {
         Question::Covers(_) => "delete t:$assert c:cover_* %d\n".to_owned(),
         Question::Fails(label, _) => format!("delete t:$cover\ndelete t:$assert c:{label} %d\n"),
-        Question::Base(_) | Question::Induction(_) | Question::Broken(_) => "delete t:$cover\n".to_owned(),
+        Question::Base(_) | Question::Induction(_) | Question::Broken(_) => {
+            "delete t:$cover\n".to_owned()
+        }
     });
     text.push_str(match question {
-        Question::Base(_) | Question::Induction(_) => "opt_clean -purge\nwrite_smt2 promises.smt2\n",
+        Question::Base(_) | Question::Induction(_) => {
+            "opt_clean -purge\nwrite_smt2 promises.smt2\n"
+        }
         Question::Covers(_) | Question::Fails(..) | Question::Broken(_) => TO_GATES,
     });
     text
@@ -188,7 +200,9 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
 /// Checks that every label of the file is in the transition system.
 fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
     let there = |label: &&str| {
-        system.lines().any(|line| line.starts_with("; yosys-smt2-assert ") && line.ends_with(&format!(" {label}")))
+        system.lines().any(|line| {
+            line.starts_with("; yosys-smt2-assert ") && line.ends_with(&format!(" {label}"))
+        })
     };
     match promises.labels().into_iter().find(|label| !there(label)) {
         Some(label) => Err(ProofError::Lost(label)),
@@ -197,7 +211,11 @@ fn nothing_lost(promises: &Promises, system: &str) -> Result<(), ProofError> {
 }
 
 /// Runs a tool; returns whether it succeeded, and its output.
-pub(super) fn run(dir: &Path, tool: Tool, arguments: &[&str]) -> Result<(bool, String), ProofError> {
+pub(super) fn run(
+    dir: &Path,
+    tool: Tool,
+    arguments: &[&str],
+) -> Result<(bool, String), ProofError> {
     run_until(dir, tool, arguments, |_| true)
 }
 

@@ -5,11 +5,31 @@ use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, Limits};
 
 const BUGS: &[Bug] = &[
-    Bug { breaks: "promise_11_every_axis_once_a_tick", text: "strobe | (beats[12]", becomes: "strobe | (beats[11]" },
-    Bug { breaks: "promise_11_tail", text: "beats <= shifted;", becomes: "beats <= shifted & 17'h1ffff >> 1;" },
-    Bug { breaks: "promise_12_whose_turn", text: "number + ONE_AXIS", becomes: "number + ONE_AXIS + ONE_AXIS" },
-    Bug { breaks: "promise_12_lane_is_the_axis", text: "(lanes << BY_ONE) | (lanes >> TO_TOP)", becomes: "lanes" },
-    Bug { breaks: "promise_12_one_after_the_other", text: "axis_next = axis_to_come;", becomes: "axis_next = number;" },
+    Bug {
+        breaks: "promise_11_every_axis_once_a_tick",
+        text: "strobe | (beats[12]",
+        becomes: "strobe | (beats[11]",
+    },
+    Bug {
+        breaks: "promise_11_tail",
+        text: "beats <= shifted;",
+        becomes: "beats <= shifted & 17'h1ffff >> 1;",
+    },
+    Bug {
+        breaks: "promise_12_whose_turn",
+        text: "number + ONE_AXIS",
+        becomes: "number + ONE_AXIS + ONE_AXIS",
+    },
+    Bug {
+        breaks: "promise_12_lane_is_the_axis",
+        text: "(lanes << BY_ONE) | (lanes >> TO_TOP)",
+        becomes: "lanes",
+    },
+    Bug {
+        breaks: "promise_12_one_after_the_other",
+        text: "axis_next = axis_to_come;",
+        becomes: "axis_next = number;",
+    },
     Bug { breaks: "promise_13_inactive", text: "beats = 17'd0;", becomes: "beats = 17'd1;" },
 ];
 
@@ -23,8 +43,13 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     };
     Proof {
         module: "turn",
-        promises: Promises { text: include_str!("../../../crates/hdl/src/engine/turn/promises.sv") },
-        cases: [small_engine(6, 96, 16, Limits::Pair), built.clone()].into_iter().map(case).collect(),
+        promises: Promises {
+            text: include_str!("../../../crates/hdl/src/engine/turn/promises.sv"),
+        },
+        cases: [small_engine(6, 96, 16, Limits::Pair), built.clone()]
+            .into_iter()
+            .map(case)
+            .collect(),
         depth: 1,
         reach: 24,
         bugs: BUGS,

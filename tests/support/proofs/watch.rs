@@ -5,17 +5,37 @@ use super::{Bug, Case, Promises, Proof};
 use carrystep_core::engine::{EngineBuild, Limits};
 
 const BUGS: &[Bug] = &[
-    Bug { breaks: "promise_5_pressed_for_a_whole_tick", text: "now & (held | strobe)", becomes: "now & (held | now)" },
-    Bug { breaks: "promise_5_pressed_for_a_whole_tick", text: "PRESSED_LOW != 1'b0", becomes: "PRESSED_LOW == 1'b0" },
-    Bug { breaks: "promise_10_not_before_its_time", text: "silence <= NO_ROUND;", becomes: "silence <= ONE_ROUND;" },
-    Bug { breaks: "promise_10_missed_in_time", text: "round_over & !silent", becomes: "round_over & !silent & idle" },
+    Bug {
+        breaks: "promise_5_pressed_for_a_whole_tick",
+        text: "now & (held | strobe)",
+        becomes: "now & (held | now)",
+    },
+    Bug {
+        breaks: "promise_5_pressed_for_a_whole_tick",
+        text: "PRESSED_LOW != 1'b0",
+        becomes: "PRESSED_LOW == 1'b0",
+    },
+    Bug {
+        breaks: "promise_10_not_before_its_time",
+        text: "silence <= NO_ROUND;",
+        becomes: "silence <= ONE_ROUND;",
+    },
+    Bug {
+        breaks: "promise_10_missed_in_time",
+        text: "round_over & !silent",
+        becomes: "round_over & !silent & idle",
+    },
     Bug {
         breaks: "promise_12_one_round_for_all",
         text: "(round + ONE_TICK) & ROUND_BITS",
         becomes: "round ^ ROUND_BITS & {10{idle}}",
     },
     Bug { breaks: "promise_13_inactive", text: "power = 1'b0;", becomes: "power = 1'b1;" },
-    Bug { breaks: "promise_14_not_before_the_host", text: "enable | (power", becomes: "kick | enable | (power" },
+    Bug {
+        breaks: "promise_14_not_before_the_host",
+        text: "enable | (power",
+        becomes: "kick | enable | (power",
+    },
     Bug { breaks: "promise_14_powered_until_idle", text: "power & !idle", becomes: "power & idle" },
     Bug {
         breaks: "promise_14_warm_not_before_its_time",
@@ -44,8 +64,13 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     };
     Proof {
         module: "watch",
-        promises: Promises { text: include_str!("../../../crates/hdl/src/engine/watch/promises.sv") },
-        cases: [small_engine(6, 80, 16, Limits::Pair), built.clone()].into_iter().map(case).collect(),
+        promises: Promises {
+            text: include_str!("../../../crates/hdl/src/engine/watch/promises.sv"),
+        },
+        cases: [small_engine(6, 80, 16, Limits::Pair), built.clone()]
+            .into_iter()
+            .map(case)
+            .collect(),
         depth: 1,
         reach: 20,
         bugs: BUGS,

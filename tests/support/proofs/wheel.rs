@@ -10,10 +10,22 @@ const BUGS: &[Bug] = &[
         text: "step_due <= crosses;",
         becomes: "step_due <= crosses & has_sign;",
     },
-    Bug { breaks: "promise_11_at_its_phase", text: "when <= read[6:5] + ONE_TICK;", becomes: "when <= read[6:5];" },
-    Bug { breaks: "promise_11_sign_before_its_tick", text: "SIGN_KIND | LAST_PHASE;", becomes: "SIGN_KIND;" },
+    Bug {
+        breaks: "promise_11_at_its_phase",
+        text: "when <= read[6:5] + ONE_TICK;",
+        becomes: "when <= read[6:5];",
+    },
+    Bug {
+        breaks: "promise_11_sign_before_its_tick",
+        text: "SIGN_KIND | LAST_PHASE;",
+        becomes: "SIGN_KIND;",
+    },
     Bug { breaks: "promise_11_direction", text: "data = FORWARD;", becomes: "data = ALL;" },
-    Bug { breaks: "promise_11_one_beat", text: "turned <= tick_strobe;", becomes: "turned <= tick_phase_start;" },
+    Bug {
+        breaks: "promise_11_one_beat",
+        text: "turned <= tick_strobe;",
+        becomes: "turned <= tick_phase_start;",
+    },
     Bug {
         breaks: "promise_12_of_its_own_axis",
         text: "!sign_due & step_due & step_known",
@@ -29,7 +41,8 @@ const BUGS: &[Bug] = &[
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let sizes = [(1, 16, 4), (2, 32, 16), (6, 96, 16)];
-    let builds = sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, Limits::Pair));
+    let builds =
+        sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, Limits::Pair));
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes, {}", build.axes(), beat_name(&build.timebase)),
         dut: "carrystep_wheel".into(),
@@ -39,7 +52,9 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
     };
     Proof {
         module: "wheel",
-        promises: Promises { text: include_str!("../../../crates/hdl/src/engine/wheel/promises.sv") },
+        promises: Promises {
+            text: include_str!("../../../crates/hdl/src/engine/wheel/promises.sv"),
+        },
         cases: builds.into_iter().chain([built.clone()]).map(case).collect(),
         depth: 1,
         reach: 56,

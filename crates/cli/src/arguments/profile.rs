@@ -138,7 +138,9 @@ struct Acceleration {
 /// The jerk limit.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
-#[command(next_help_heading = "Jerk: the limit, of all curves but trapezoid and ranade; needed by scurve")]
+#[command(
+    next_help_heading = "Jerk: the limit, of all curves but trapezoid and ranade; needed by scurve"
+)]
 struct Jerk {
     /// Steps/s^3.
     #[arg(long, value_name = "J", allow_negative_numbers = true)]
@@ -193,17 +195,23 @@ impl Profile {
     pub fn request(&self) -> Request {
         use Length::{Degree, Millimetre, Step, Turn};
         let Self { distance, speed, start, acceleration, jerk, motor, .. } = self;
-        let per_minute = |value: Option<f64>, length| Some(Quantity::new(value?, length).per_minute());
-        let distance = given([(distance.steps, Step), (distance.mm, Millimetre), (distance.deg, Degree)]);
+        let per_minute =
+            |value: Option<f64>, length| Some(Quantity::new(value?, length).per_minute());
+        let distance =
+            given([(distance.steps, Step), (distance.mm, Millimetre), (distance.deg, Degree)]);
         let drive = Drive {
             step_angle_deg: motor.step_angle,
             microsteps: motor.microsteps,
             travel_per_rev_mm: motor.travel_per_rev,
         };
         let minutes = per_minute(speed.rpm, Turn).or(per_minute(speed.speed_mm_min, Millimetre));
-        let seconds = [(speed.speed, Step), (speed.speed_mm_s, Millimetre), (speed.speed_deg_s, Degree)];
-        let acceleration =
-            [(acceleration.accel, Step), (acceleration.accel_mm_s2, Millimetre), (acceleration.accel_deg_s2, Degree)];
+        let seconds =
+            [(speed.speed, Step), (speed.speed_mm_s, Millimetre), (speed.speed_deg_s, Degree)];
+        let acceleration = [
+            (acceleration.accel, Step),
+            (acceleration.accel_mm_s2, Millimetre),
+            (acceleration.accel_deg_s2, Degree),
+        ];
         Request {
             time: self.time,
             centre: self.ti,
@@ -211,7 +219,11 @@ impl Profile {
             start_speed: per_minute(start.start_rpm, Turn)
                 .or(given([(start.start_speed, Step), (start.start_mm_s, Millimetre)])),
             acceleration: given(acceleration),
-            jerk: given([(jerk.jerk, Step), (jerk.jerk_mm_s3, Millimetre), (jerk.jerk_deg_s3, Degree)]),
+            jerk: given([
+                (jerk.jerk, Step),
+                (jerk.jerk_mm_s3, Millimetre),
+                (jerk.jerk_deg_s3, Degree),
+            ]),
             ..Request::new(drive, distance.map_or(Travel::Ramp, Travel::Move))
         }
     }

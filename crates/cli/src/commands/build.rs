@@ -54,7 +54,8 @@ pub fn run(arguments: &Build) -> Result<(), Failure> {
     }
     // Whoever builds a bitstream expects the tools to be run.
     kept::never();
-    let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
+    let gateware =
+        boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
     let files = gateware.files()?;
     carrystep_verilog::write(&out, &files)?;
@@ -93,7 +94,11 @@ fn bitstream(
     out: &Path,
 ) -> Result<(), Failure> {
     let texts = |extension: &str| {
-        files.iter().filter(|file| file.name.ends_with(extension)).map(|file| file.text.as_str()).collect::<String>()
+        files
+            .iter()
+            .filter(|file| file.name.ends_with(extension))
+            .map(|file| file.text.as_str())
+            .collect::<String>()
     };
     let (part, top) = (gateware.part(), gateware.top());
     let clock_hz = gateware.build().timebase.clock_hz();
@@ -159,6 +164,8 @@ fn told(report: &Report, built: &Built, proposed: &str) -> String {
             file.display(),
             report.load
         ),
-        None => format!("{head}THE CLOCK IS NOT REACHED: no bitstream. The board is proposed to run at {proposed}.\n"),
+        None => format!(
+            "{head}THE CLOCK IS NOT REACHED: no bitstream. The board is proposed to run at {proposed}.\n"
+        ),
     }
 }

@@ -51,22 +51,39 @@ struct AxisReport {
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: build {}", self.port, self.build)?;
-        writeln!(f, "{:<6}  {:>11}  {:>11}  {:>11}  {:>12}", "axis", "before", "switch at", "position", "machine")?;
+        writeln!(
+            f,
+            "{:<6}  {:>11}  {:>11}  {:>11}  {:>12}",
+            "axis", "before", "switch at", "position", "machine"
+        )?;
         for AxisReport { axis, before, edge, position, machine, unit, .. } in &self.axes {
             let edge = edge.map_or_else(|| "-".to_owned(), |edge| edge.to_string());
-            let machine = machine.map_or_else(|| "-".to_owned(), |machine| format!("{machine:.4} {unit}"));
+            let machine =
+                machine.map_or_else(|| "-".to_owned(), |machine| format!("{machine:.4} {unit}"));
             writeln!(f, "{axis:<6}  {before:>11}  {edge:>11}  {position:>11}  {machine:>12}")?;
         }
         match self.ended {
             How::Done => f.write_str("HOMED\n"),
             How::Stopped => {
-                let by = if self.stopped_by == Some(StoppedBy::Stop) { "`carrystep stop`" } else { "Ctrl-C" };
+                let by = if self.stopped_by == Some(StoppedBy::Stop) {
+                    "`carrystep stop`"
+                } else {
+                    "Ctrl-C"
+                };
                 writeln!(f, "STOPPED by {by}; these axes are not homed")
             }
             How::Fault => {
                 let names: Vec<&str> = self.culprits.iter().map(|culprit| &*culprit.axis).collect();
-                let from = if names.is_empty() { String::new() } else { format!(", from {}", names.join(", ")) };
-                writeln!(f, "STOPPED by the machine: {}{from}; these axes are not homed", self.cause.unwrap_or("?"))?;
+                let from = if names.is_empty() {
+                    String::new()
+                } else {
+                    format!(", from {}", names.join(", "))
+                };
+                writeln!(
+                    f,
+                    "STOPPED by the machine: {}{from}; these axes are not homed",
+                    self.cause.unwrap_or("?")
+                )?;
                 self.remedy.map_or(Ok(()), |remedy| writeln!(f, "to do: {remedy}"))
             }
         }
@@ -78,9 +95,9 @@ pub fn run(arguments: &Home) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
     let groups = homing::groups(&machine, &arguments.axes)?;
     let mut homing = homing::of(&machine, &groups);
-    homing
-        .check()
-        .map_err(|(axis, why)| Failure::input(format!("axis {}: {why}", machine.axes[usize::from(axis)].name)))?;
+    homing.check().map_err(|(axis, why)| {
+        Failure::input(format!("axis {}: {why}", machine.axes[usize::from(axis)].name))
+    })?;
     let connection = connection::to_machine(&arguments.port, &machine, &arguments.machine, "home")?;
     let mut memory = Memory::recall(&connection);
     homing.others = homing::others(&machine, homing.mask(), connection.board.status(), &memory);
@@ -131,8 +148,11 @@ fn drive(
     let mut edges = None;
     let ended = match outcome {
         Ok(Homed::At(places)) => {
-            for (number, home) in
-                machine.axes.iter().enumerate().filter_map(|(number, axis)| Some((number, axis.home?)))
+            for (number, home) in machine
+                .axes
+                .iter()
+                .enumerate()
+                .filter_map(|(number, axis)| Some((number, axis.home?)))
             {
                 if homing.mask() >> number & 1 == 1 {
                     memory.set_offset(number, Some(home.position - i64::from(places[number])));
@@ -154,7 +174,9 @@ fn drive(
         }
         Err(HostError::Homing { axes: mask, why }) => {
             let positions = board.status().positions;
-            for number in (0..axes.len()).filter(|number| why == HomingFault::Closed && mask >> number & 1 == 1) {
+            for number in (0..axes.len())
+                .filter(|number| why == HomingFault::Closed && mask >> number & 1 == 1)
+            {
                 memory.set_limit(number, closed(machine, number, last.1, positions[number]));
             }
             // If the file cannot be written, the old one no longer matches the board and is
@@ -177,7 +199,9 @@ fn drive(
         ended,
         stopped_by: control.stopped_by().filter(|_| ended == How::Stopped),
         cause: answer.cause_name().filter(|_| ended == How::Fault),
-        culprits: culprits.map(|number| Culprit { axis: axes[number].clone(), direction: 0 }).collect(),
+        culprits: culprits
+            .map(|number| Culprit { axis: axes[number].clone(), direction: 0 })
+            .collect(),
         remedy: cause.map(Cause::remedy),
         run_s: begun.elapsed().as_secs_f64(),
         axes: (0..axes.len())

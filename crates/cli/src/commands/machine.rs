@@ -57,9 +57,16 @@ fn new(arguments: &MachineNew) -> Result<(), Failure> {
     let path = &arguments.file;
     if path.exists() && !arguments.force {
         let message = format!("{} is there already", path.display());
-        return Err(Failure::Input(InputError::new(message).help("take another name, or replace it with --force")));
+        return Err(Failure::Input(
+            InputError::new(message).help("take another name, or replace it with --force"),
+        ));
     }
-    let board = arguments.board.as_deref().map(boards::find).transpose()?.map(|board| Clock::Board(Box::new(board)));
+    let board = arguments
+        .board
+        .as_deref()
+        .map(boards::find)
+        .transpose()?
+        .map(|board| Clock::Board(Box::new(board)));
     let mut wishes = Wishes {
         clock: board.or(arguments.clock_hz.map(Clock::Hz)),
         limits: arguments.limits.clone(),
@@ -69,7 +76,11 @@ fn new(arguments: &MachineNew) -> Result<(), Failure> {
     if !missing.is_empty() {
         if !std::io::stdin().is_terminal() {
             let help = "give them as options, or run it on a terminal, where it asks; --help has an example";
-            let message = format!("to write {} these are missing:\n  {}", path.display(), missing.join("\n  "));
+            let message = format!(
+                "to write {} these are missing:\n  {}",
+                path.display(),
+                missing.join("\n  ")
+            );
             return Err(Failure::Input(InputError::new(message).help(help)));
         }
         ask::complete(&mut wishes)?;
@@ -95,7 +106,9 @@ fn new(arguments: &MachineNew) -> Result<(), Failure> {
     let Written { clock_hz, tick_ns, phases, axes, build_id, .. } = &written;
     let shown = path.display();
     let next = match &wishes.clock {
-        Some(Clock::Board(board)) => format!("carrystep build --board {} --machine {shown}", board.name),
+        Some(Clock::Board(board)) => {
+            format!("carrystep build --board {} --machine {shown}", board.name)
+        }
         _ => format!("carrystep verilog --machine {shown}"),
     };
     output::print(&format!(
@@ -121,7 +134,11 @@ impl Wishes {
             missing.push("--axis NAME,KEY=VALUE,... for each axis".to_owned());
         }
         for axis in &self.axes {
-            missing.extend(axis.missing().into_iter().map(|(_, ways)| format!("of axis {}: {ways}", axis.name)));
+            missing.extend(
+                axis.missing()
+                    .into_iter()
+                    .map(|(_, ways)| format!("of axis {}: {ways}", axis.name)),
+            );
         }
         missing
     }
@@ -135,8 +152,11 @@ impl Wishes {
         };
         let link = match &self.clock {
             Some(Clock::Board(board)) => {
-                let baud = board.uart(clock_hz).map_err(|error| Failure::input(error.to_string()))?.baud();
-                format!("\n[machine.link]\nbaud = {baud:<21} # the fastest that board and clock make exactly enough\n")
+                let baud =
+                    board.uart(clock_hz).map_err(|error| Failure::input(error.to_string()))?.baud();
+                format!(
+                    "\n[machine.link]\nbaud = {baud:<21} # the fastest that board and clock make exactly enough\n"
+                )
             }
             _ => String::new(),
         };
@@ -169,7 +189,9 @@ impl Wishes {
     /// Clock (Hz), tick (ns), number of phases, and the reason for this tick.
     fn time(&self) -> Result<(u64, u64, u32, String), Failure> {
         let axes = self.axes.len();
-        let no_tick = |hz: u64| Failure::input(format!("no tick at {} MHz holds the turns of {axes} axes", mhz(hz)));
+        let no_tick = |hz: u64| {
+            Failure::input(format!("no tick at {} MHz holds the turns of {axes} axes", mhz(hz)))
+        };
         match self.clock.as_ref() {
             Some(Clock::Board(board)) => {
                 let clocking = &board.clocks[0];
@@ -186,9 +208,12 @@ impl Wishes {
                 let chosen = ChosenTick::new(hz, 16, axes).ok_or_else(|| no_tick(hz))?;
                 let why = "the shortest that these axes take".to_owned();
                 match chosen.fewer_phases_ns {
-                    Some(shorter) => {
-                        Ok((hz, shorter, 4, format!("{why}; in 16 phases it would be {}", chosen.tick_ns)))
-                    }
+                    Some(shorter) => Ok((
+                        hz,
+                        shorter,
+                        4,
+                        format!("{why}; in 16 phases it would be {}", chosen.tick_ns),
+                    )),
                     None => Ok((hz, chosen.tick_ns, 16, why)),
                 }
             }

@@ -113,10 +113,15 @@ fn text(file: &MoveFile, plan: &Plan, segments: bool) -> String {
         let _ = table::columns(&mut text, head, cells, |column| column == 0 || column == 3);
         for ((planned, axis), rounding) in rows {
             text.push_str(&rounded(axis, *rounding));
-            for (index, Segment { ticks, v, a, j, last }) in planned.segments.iter().filter(|_| segments).enumerate() {
+            for (index, Segment { ticks, v, a, j, last }) in
+                planned.segments.iter().filter(|_| segments).enumerate()
+            {
                 let name = if index == 0 { axis.name.as_str() } else { "" };
                 let mark = if *last { "  last" } else { "" };
-                let _ = writeln!(text, "{name:<4}  {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}");
+                let _ = writeln!(
+                    text,
+                    "{name:<4}  {ticks:>7} ticks  V {v:>19}  A {a:>19}  J {j}{mark}"
+                );
             }
         }
     }

@@ -27,7 +27,9 @@ pub fn status(arguments: &Status) -> Result<(), Failure> {
             Ok(connection) => return tell(&look(connection)?, arguments.json),
             // A command that has just begun will listen; one that has just ended will release the
             // port.
-            Err(refused) if refused.busy && begin.elapsed() < ANSWER => std::thread::sleep(Duration::from_millis(5)),
+            Err(refused) if refused.busy && begin.elapsed() < ANSWER => {
+                std::thread::sleep(Duration::from_millis(5))
+            }
             Err(refused) => return Err(refused.failure),
         }
     }
@@ -40,10 +42,12 @@ fn asked(port: &str) -> Result<Option<Found>, Failure> {
     match caller.ask(Request::Status, ANSWER) {
         Reply::Line(line) if line.is_empty() => Ok(None),
         Reply::Ended => Ok(None),
-        Reply::Silent => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Status, "answer"))),
-        Reply::Line(line) => serde_json::from_str(&line)
-            .map(Some)
-            .map_err(|error| Failure::Run(format!("{} answers with {line:?}: {error}", caller.holder))),
+        Reply::Silent => {
+            Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Status, "answer")))
+        }
+        Reply::Line(line) => serde_json::from_str(&line).map(Some).map_err(|error| {
+            Failure::Run(format!("{} answers with {line:?}: {error}", caller.holder))
+        }),
     }
 }
 

@@ -31,7 +31,9 @@ pub fn stop(arguments: &Stop) -> Result<(), Failure> {
     }
     if arguments.clear {
         board.clear().map_err(|error| match error {
-            HostError::StillPressed => Failure::Run(format!("{error}; then `carrystep stop --clear` again")),
+            HostError::StillPressed => {
+                Failure::Run(format!("{error}; then `carrystep stop --clear` again"))
+            }
             _ => failed(error),
         })?;
     }
@@ -70,14 +72,16 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
                 std::thread::sleep(Duration::from_millis(5));
             }
             Err(refused) if refused.busy && cfg!(not(unix)) => {
-                let help = "press Ctrl-C in its terminal: on this system `stop` reaches no other command";
+                let help =
+                    "press Ctrl-C in its terminal: on this system `stop` reaches no other command";
                 return Err(Failure::Run(format!("{}; {help}", refused.failure.message())));
             }
             Err(refused) => {
                 return Err(match stopped {
-                    Some(holder) => {
-                        Failure::Run(format!("{holder} was stopped; but then {}", refused.failure.message()))
-                    }
+                    Some(holder) => Failure::Run(format!(
+                        "{holder} was stopped; but then {}",
+                        refused.failure.message()
+                    )),
                     None => refused.failure,
                 });
             }
@@ -89,8 +93,12 @@ fn reach(arguments: &Stop) -> Result<(Connection, Option<Holder>), Failure> {
 fn ask(port: &str, caller: &mut Caller) -> Result<bool, Failure> {
     match caller.ask(Request::Stop, TAKEN) {
         Reply::Line(_) if caller.ends(ENDED) => Ok(true),
-        Reply::Line(_) => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Stop, "end"))),
-        Reply::Silent => Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Stop, "answer"))),
+        Reply::Line(_) => {
+            Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Stop, "end")))
+        }
+        Reply::Silent => {
+            Err(Failure::Run(connection::hangs(port, &caller.holder, Request::Stop, "answer")))
+        }
         Reply::Ended => Ok(false),
     }
 }

@@ -15,13 +15,17 @@ use std::path::Path;
 
 /// Runs a shard, or merges reports, and prints the report.
 pub fn run(arguments: &Sweep) -> Result<(), Failure> {
-    let name = arguments.file.as_ref().map_or("sweep".to_owned(), |file| format!("sweep {}", file.display()));
+    let name = arguments
+        .file
+        .as_ref()
+        .map_or("sweep".to_owned(), |file| format!("sweep {}", file.display()));
     let junit = JunitFile::begin(arguments.junit.as_deref(), name)?;
     let report = match &arguments.file {
         Some(file) => {
             let sweep = SweepFile::load(file, arguments.sample, arguments.seed)?;
             let cases = arguments.shard.cases(sweep.cases()).count() as u64;
-            let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr_with_hz(10));
+            let bar =
+                ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr_with_hz(10));
             let report = carrystep_sweep::run(
                 &sweep,
                 arguments.shard,
@@ -34,7 +38,9 @@ pub fn run(arguments: &Sweep) -> Result<(), Failure> {
             interrupt::check()?;
             report
         }
-        None => Report::merge(arguments.merge.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?)?,
+        None => Report::merge(
+            arguments.merge.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?,
+        )?,
     };
     if let Some(junit) = junit {
         cases(junit, &report)?;
@@ -58,14 +64,18 @@ fn cases(mut junit: JunitFile, report: &Report) -> Result<(), Failure> {
     let wrong = if *passed == Some(true) { Vec::new() } else { vec![counts] };
     junit.case("all cases", &wrong);
     for failed in &report.failures {
-        junit.case(format!("case {}", failed.case), &[format!("{}: {}", failed.filled(), failed.message)]);
+        junit.case(
+            format!("case {}", failed.case),
+            &[format!("{}: {}", failed.filled(), failed.message)],
+        );
     }
     junit.keep()
 }
 
 fn read(path: &Path) -> Result<Report, Failure> {
     let wrong = |error: String| Failure::input(format!("{}: {error}", path.display()));
-    let text = carrystep_files::read_text(path).map_err(|error| Failure::input(error.to_string()))?;
+    let text =
+        carrystep_files::read_text(path).map_err(|error| Failure::input(error.to_string()))?;
     serde_json::from_slice(&text).map_err(|error| wrong(format!("no report of a sweep: {error}")))
 }
 
@@ -109,7 +119,10 @@ fn figures(done: &job::Done) -> BTreeMap<&'static str, f64> {
     }
     for limits in &done.limits.axes {
         add("speed", Some(limits.speed_steps_per_s / limits.speed_limit_steps_per_s));
-        add("acceleration", Some(limits.acceleration_steps_per_s2 / limits.acceleration_limit_steps_per_s2));
+        add(
+            "acceleration",
+            Some(limits.acceleration_steps_per_s2 / limits.acceleration_limit_steps_per_s2),
+        );
     }
     worst
 }

@@ -33,7 +33,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if output.json {
         return json(&table, files);
     }
-    let wrote: Vec<String> = files.iter().map(|file| format!("wrote {}\n", file.display())).collect();
+    let wrote: Vec<String> =
+        files.iter().map(|file| format!("wrote {}\n", file.display())).collect();
     output::print(&format!("{}{}", figures(table.figures()), wrote.concat()))
 }
 

@@ -73,7 +73,8 @@ pub struct WrittenForBoard<'a> {
 /// Writes all files of a board's folder.
 fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
     let board = boards::find(board)?;
-    let gateware = boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
+    let gateware =
+        boards::gateware(&board, arguments.part.as_deref(), arguments.machine.as_deref())?;
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("sim/out").join(&board.name));
     let files = carrystep_verilog::write(&out, &gateware.files()?)?;
     let tick_note = gateware.chosen_tick().map(|chosen| chosen.to_string());
@@ -100,10 +101,12 @@ pub fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Wr
         ExportError::Io { .. } => Failure::input(error.to_string()),
         _ => Failure::input(format!("{name}: {error}")),
     };
-    let (tick_ns, tick_note) = (machine.timebase.tick_ns(), machine.chosen_tick.map(|chosen| chosen.to_string()));
+    let (tick_ns, tick_note) =
+        (machine.timebase.tick_ns(), machine.chosen_tick.map(|chosen| chosen.to_string()));
     match core {
         Core::Parallel => {
-            let build = machine.build().map_err(|error| Failure::input(format!("{name}: {error}")))?;
+            let build =
+                machine.build().map_err(|error| Failure::input(format!("{name}: {error}")))?;
             let files = carrystep_verilog::write_core(out, &build, name).map_err(refused)?;
             Ok(Written { passed: true, top: CORE_NAME, tick_ns, tick_note, guard: None, files })
         }

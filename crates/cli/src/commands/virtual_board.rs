@@ -61,7 +61,8 @@ fn serve(board: impl Gateware, machine: &Machine, arguments: &VirtualBoard) -> R
     let (uart, id) = connection::wanted(machine, &arguments.machine)?;
     let panel = Panel::new(machine, &arguments.min, &arguments.max)?;
     let mut vcd = arguments.vcd.as_deref().map(OutputFile::create).transpose()?;
-    let terminal = Terminal::new().map_err(|error| Failure::Run(format!("no pseudo-terminal: {error}")))?;
+    let terminal =
+        Terminal::new().map_err(|error| Failure::Run(format!("no pseudo-terminal: {error}")))?;
     let told = format!("{}: {} baud, build {}\n", terminal.name(), uart.baud(), id);
     if arguments.json {
         // If this write fails, there is no channel left to report it.
@@ -70,7 +71,8 @@ fn serve(board: impl Gateware, machine: &Machine, arguments: &VirtualBoard) -> R
         output::print(&told)?;
     }
     let clock_hz = build.timebase.clock_hz();
-    let pace = if arguments.fast { Pace::fast(clock_hz, ahead(&build)) } else { Pace::real(clock_hz) };
+    let pace =
+        if arguments.fast { Pace::fast(clock_hz, ahead(&build)) } else { Pace::real(clock_hz) };
     let mut manned = Manned { desk: Desk::new(board, terminal, pace, clock_hz), panel };
     match &mut vcd {
         None => while manned.step(&mut ())? {},
@@ -104,7 +106,8 @@ fn capture(
     let names = machine.axes.iter().map(|axis| axis.name.as_str());
     let mut vcd = PinsVcd::new(out, OwnCapture { origin_ps, timebase: time }, names)?;
     let mut feed = PinFeed::new(time, machine.axes.len(), &mut vcd);
-    let mut tell = |cycle: u64, outputs: &EngineOutputs| feed.pins(cycle, outputs.step, outputs.dir);
+    let mut tell =
+        |cycle: u64, outputs: &EngineOutputs| feed.pins(cycle, outputs.step, outputs.dir);
     let mut replay = Replay::new(&build.pins, &mut tell);
     while goes_on && manned.step(&mut replay)? {
         replay.reach(manned.desk.board.cycle());
@@ -137,7 +140,9 @@ fn tell(served: &Served, json: bool) -> Result<(), Failure> {
     let mut text = format!("{:.3} s of the board's time\n", served.seconds);
     // Writing to a string cannot fail.
     for AxisServed { axis, position, discarded } in &served.axes {
-        let lost = discarded.filter(|&count| count > 0).map_or(String::new(), |count| format!(", {count} discarded"));
+        let lost = discarded
+            .filter(|&count| count > 0)
+            .map_or(String::new(), |count| format!(", {count} discarded"));
         let _ = writeln!(text, "{axis} at {position}{lost}");
     }
     if let Some(fault) = &served.fault {

@@ -30,7 +30,8 @@ pub enum Reply {
 pub fn call(port: &str) -> Option<Caller> {
     let holder = claim::holder(port).filter(|holder| holder.listens)?;
     let name = claim::device(port)?;
-    let sockets = folder::all().into_iter().map(|folder| folder.join(&name).with_extension("socket"));
+    let sockets =
+        folder::all().into_iter().map(|folder| folder.join(&name).with_extension("socket"));
     let stream = sockets.into_iter().find_map(|path| UnixStream::connect(path).ok())?;
     Some(Caller { stream: BufReader::new(stream), holder })
 }
@@ -66,7 +67,11 @@ impl Caller {
         }
         match self.stream.read_line(&mut line) {
             Ok(1..) => Reply::Line(line.trim_end().to_owned()),
-            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => Reply::Silent,
+            Err(error)
+                if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) =>
+            {
+                Reply::Silent
+            }
             Ok(0) | Err(_) => Reply::Ended,
         }
     }

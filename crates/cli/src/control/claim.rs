@@ -21,20 +21,36 @@ pub struct Claim {
 /// holds it.
 ///
 /// # Errors The system refuses the folder or the lock file.
-pub fn claim(port: &str, baud: u32, command: &'static str, listens: bool) -> io::Result<Option<Claim>> {
+pub fn claim(
+    port: &str,
+    baud: u32,
+    command: &'static str,
+    listens: bool,
+) -> io::Result<Option<Claim>> {
     claim_in(
         folder::folder,
         port,
-        Holder { pid: std::process::id(), command: command.to_owned(), baud, listens, watchdog: None },
+        Holder {
+            pid: std::process::id(),
+            command: command.to_owned(),
+            baud,
+            listens,
+            watchdog: None,
+        },
     )
 }
 
-fn claim_in(folder: impl Fn() -> io::Result<PathBuf>, port: &str, holder: Holder) -> io::Result<Option<Claim>> {
+fn claim_in(
+    folder: impl Fn() -> io::Result<PathBuf>,
+    port: &str,
+    holder: Holder,
+) -> io::Result<Option<Claim>> {
     let Some(name) = device(port) else { return Ok(Some(Claim { lock: None, holder })) };
     let path = folder()?.join(name).with_extension("lock");
     loop {
         let mut options = OpenOptions::new();
-        let file = options.read(true).write(true).create(true).truncate(false).mode(0o600).open(&path)?;
+        let file =
+            options.read(true).write(true).create(true).truncate(false).mode(0o600).open(&path)?;
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => return Ok(None),
             Err(TryLockError::Error(error)) => return Err(error),
@@ -42,7 +58,10 @@ fn claim_in(folder: impl Fn() -> io::Result<PathBuf>, port: &str, holder: Holder
         }
         // The previous holder may have removed the file after it was opened and before it was
         // locked.
-        if path.metadata().is_ok_and(|there| file.metadata().is_ok_and(|own| own.ino() == there.ino())) {
+        if path
+            .metadata()
+            .is_ok_and(|there| file.metadata().is_ok_and(|own| own.ino() == there.ino()))
+        {
             let mut claim = Claim { lock: Some((file, path)), holder };
             claim.tell();
             return Ok(Some(claim));
@@ -73,7 +92,10 @@ impl Claim {
         if let Some((file, _)) = &mut self.lock
             && let Ok(text) = serde_json::to_string(&self.holder)
         {
-            let _ = file.set_len(0).and_then(|()| file.rewind()).and_then(|()| file.write_all(text.as_bytes()));
+            let _ = file
+                .set_len(0)
+                .and_then(|()| file.rewind())
+                .and_then(|()| file.write_all(text.as_bytes()));
         }
     }
 }
@@ -133,9 +155,15 @@ mod tests {
     #[test]
     fn a_port_has_one_holder_at_a_time() {
         let folder = tempfile::tempdir().unwrap();
-        let who =
-            |command: &str| Holder { pid: 7, command: command.to_owned(), baud: 9600, listens: true, watchdog: None };
-        let take = |command| claim_in(|| Ok(folder.path().to_owned()), "/dev/null", who(command)).unwrap();
+        let who = |command: &str| Holder {
+            pid: 7,
+            command: command.to_owned(),
+            baud: 9600,
+            listens: true,
+            watchdog: None,
+        };
+        let take =
+            |command| claim_in(|| Ok(folder.path().to_owned()), "/dev/null", who(command)).unwrap();
         let mut first = take("run").expect("nobody has it");
         let path = first.lock.as_ref().unwrap().1.clone();
         assert!(take("jog").is_none());

@@ -74,12 +74,15 @@ impl Caller {
                 self.line.extend(bytes.iter().take(count));
                 true
             }
-            Err(error) => matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted),
+            Err(error) => {
+                matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted)
+            }
         };
         let mut requests = Vec::new();
         while let Some(end) = self.line.iter().position(|&byte| byte == b'\n') {
             let line: Vec<u8> = self.line.drain(..=end).collect();
-            let asked = |request: &Request| line.strip_suffix(b"\n") == Some(request.word().as_bytes());
+            let asked =
+                |request: &Request| line.strip_suffix(b"\n") == Some(request.word().as_bytes());
             requests.extend([Request::Status, Request::Stop].into_iter().find(asked));
         }
         (requests, stays && self.line.len() < LONGEST)
@@ -103,7 +106,8 @@ mod tests {
         let path = folder.path().join("door");
         let mut door = Door::open(path.clone()).unwrap();
         let mut answer = |_: Request| "yes".to_owned();
-        let idle: Vec<UnixStream> = (0..3 * CALLERS).map(|_| UnixStream::connect(&path).unwrap()).collect();
+        let idle: Vec<UnixStream> =
+            (0..3 * CALLERS).map(|_| UnixStream::connect(&path).unwrap()).collect();
         assert!(!door.poll(&mut answer));
         let mut caller = UnixStream::connect(&path).unwrap();
         caller.write_all(b"stop\n").unwrap();

@@ -15,7 +15,13 @@ pub struct Claim {
 ///
 /// # Errors None.
 pub fn claim(_: &str, baud: u32, command: &'static str, _: bool) -> io::Result<Option<Claim>> {
-    let holder = Holder { pid: std::process::id(), command: command.to_owned(), baud, listens: false, watchdog: None };
+    let holder = Holder {
+        pid: std::process::id(),
+        command: command.to_owned(),
+        baud,
+        listens: false,
+        watchdog: None,
+    };
     Ok(Some(Claim { holder }))
 }
 

@@ -18,7 +18,8 @@ fn plotted_errors_stay_within_the_plotted_bounds() {
         assert_eq!(folder.run("simulate move.toml --plot move.svg").status, 0);
         let svg = std::fs::read_to_string(folder.path("move.svg")).unwrap();
         let line = svg.lines().find(|line| line.contains("jitter ")).unwrap();
-        let numbers: Vec<f64> = line.split([' ', '\n']).filter_map(|word| word.parse().ok()).collect();
+        let numbers: Vec<f64> =
+            line.split([' ', '\n']).filter_map(|word| word.parse().ok()).collect();
         let [jitter, jitter_most, ripple, ripple_most] = numbers[..] else { panic!("{line}") };
         assert!(0.0 < jitter && jitter <= jitter_most, "{profile}: {line}");
         assert!(0.0 < ripple && ripple <= ripple_most, "{profile}: {line}");

@@ -152,13 +152,23 @@ mod tests {
         assert!(refusal(|build| build.pins.clear()).starts_with("0 axes"));
         let said = refusal(|build| build.pins[3].gap = 0);
         assert_eq!(said, "axis 3: gap is 0 clocks: from 1 to 65536 can be counted");
-        assert!(refusal(|build| build.pins[5].hold = 65_537).starts_with("axis 5: hold is 65537 clocks"));
+        assert!(
+            refusal(|build| build.pins[5].hold = 65_537)
+                .starts_with("axis 5: hold is 65537 clocks")
+        );
         assert!(refusal(|build| build.guard.round = 3).starts_with("a round of 3 ticks"));
-        assert!(refusal(|build| build.guard.watchdog = 5000).starts_with("watchdog of 5000 rounds"));
+        assert!(
+            refusal(|build| build.guard.watchdog = 5000).starts_with("watchdog of 5000 rounds")
+        );
         assert!(refusal(|build| build.guard.enable = 5000).starts_with("enable of 5000 rounds"));
         assert!(refusal(|build| build.guard.debounce = 0).starts_with("a debounce of 0 looks"));
-        assert!(refusal(|build| build.guard.stop[3] = 0).starts_with("the stop acceleration of axis 3"));
-        assert!(refusal(|build| build.guard.stop.push(1)).starts_with("7 stop accelerations for 6 axes"));
+        assert!(
+            refusal(|build| build.guard.stop[3] = 0).starts_with("the stop acceleration of axis 3")
+        );
+        assert!(
+            refusal(|build| build.guard.stop.push(1))
+                .starts_with("7 stop accelerations for 6 axes")
+        );
     }
 
     #[test]
@@ -169,6 +179,9 @@ mod tests {
             build.timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
         };
         let said = refusal(seven);
-        assert!(said.starts_with("8 axes need 13 clocks each and one to close the tick, 105 in all"), "{said}");
+        assert!(
+            said.starts_with("8 axes need 13 clocks each and one to close the tick, 105 in all"),
+            "{said}"
+        );
     }
 }

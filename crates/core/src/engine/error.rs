@@ -64,7 +64,9 @@ pub enum EngineError {
     #[error("a round of {0} ticks: a power of two from 2 to {MAX_ROUND} is needed")]
     Round(u32),
     /// A time of the guard is greater than its counter.
-    #[error("{name} of {rounds} rounds: at most {MAX_ROUNDS} can be counted; a longer round would do")]
+    #[error(
+        "{name} of {rounds} rounds: at most {MAX_ROUNDS} can be counted; a longer round would do"
+    )]
     Rounds {
         /// Name of the time: watchdog or enable.
         name: &'static str,
@@ -72,11 +74,15 @@ pub enum EngineError {
         rounds: u32,
     },
     /// The number of samples for the debounce is out of its range.
-    #[error("a debounce of {0} looks: from 1 to {MAX_LOOKS} can be counted; a longer round would do")]
+    #[error(
+        "a debounce of {0} looks: from 1 to {MAX_LOOKS} can be counted; a longer round would do"
+    )]
     Debounce(u32),
     /// A stop acceleration is 0 or greater than 2^62, above which the ramp could pass any speed in
     /// one tick.
-    #[error("the stop acceleration of axis {axis} is {units} x 2^-64 steps per tick^2: from 1 to 2^62 is needed")]
+    #[error(
+        "the stop acceleration of axis {axis} is {units} x 2^-64 steps per tick^2: from 1 to 2^62 is needed"
+    )]
     StopAcceleration {
         /// Number of the axis.
         axis: usize,

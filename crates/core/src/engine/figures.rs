@@ -52,7 +52,8 @@ impl EngineBuild {
         let between = |rounds: u32, ns_of_unit: f64| {
             let rounds = u64::from(rounds);
             let (least, most) = (round * rounds.saturating_sub(1), round * rounds + 1);
-            (rounds > 0).then(|| Between { least: ns(least) / ns_of_unit, most: ns(most) / ns_of_unit })
+            (rounds > 0)
+                .then(|| Between { least: ns(least) / ns_of_unit, most: ns(most) / ns_of_unit })
         };
         GuardFigures {
             round_us: ns(round) / 1e3,
@@ -63,7 +64,11 @@ impl EngineBuild {
             limits: guard.limits,
             limit_level: level(guard.limits_low),
             limit_stop: if guard.limit_freezes { "freeze" } else { "ramp" },
-            stop_accel_steps_per_s2: guard.stop.iter().map(|&units| self.timebase.steps_per_s2(units)).collect(),
+            stop_accel_steps_per_s2: guard
+                .stop
+                .iter()
+                .map(|&units| self.timebase.steps_per_s2(units))
+                .collect(),
         }
     }
 }

@@ -1,7 +1,9 @@
 //! Assembles a program with labels and named constants into the contents of the link machine's
 //! memories.
 
-use super::machine::{ACTS, Code, Condition, GOES, INDEXED, INX, JUMPS, SETS, STORES, Source, TAX, UNLESS, WAIT, XOR};
+use super::machine::{
+    ACTS, Code, Condition, GOES, INDEXED, INX, JUMPS, SETS, STORES, Source, TAX, UNLESS, WAIT, XOR,
+};
 use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;

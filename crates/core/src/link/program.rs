@@ -14,13 +14,15 @@
 use super::assembler::{Assembler, Image};
 use super::machine::Condition::{Fault, Nothing, Special, Startable, X6, X7, Zero};
 use super::machine::{
-    BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, FOR_ROOM, HOMING, INX, KICK, PUTS, REQUEST,
-    REQUEST_END, ROOM, STARTS, STATE, Source, TAX, WAIT, WORDS,
+    BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, FOR_ROOM, HOMING, INX,
+    KICK, PUTS, REQUEST, REQUEST_END, ROOM, STARTS, STATE, Source, TAX, WAIT, WORDS,
 };
-use super::registers::{AXES_AT, CLEAR, CONTROL as CONTROL_REGISTER, HOME, POSITION, SEGMENT, START};
+use super::registers::{
+    AXES_AT, CLEAR, CONTROL as CONTROL_REGISTER, HOME, POSITION, SEGMENT, START,
+};
 use super::{
-    ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, CRC_RESIDUE, END, ESC, ESC_END, ESC_ESC, LONGEST_REQUEST, REQUEST_HEAD,
-    SEGMENT_FRAME_WORDS, WRITE,
+    ANSWER_BYTES, ANSWER_DATA, CRC_BYTES, CRC_RESIDUE, END, ESC, ESC_END, ESC_ESC, LONGEST_REQUEST,
+    REQUEST_HEAD, SEGMENT_FRAME_WORDS, WRITE,
 };
 
 const SEQUENCE: u8 = REQUEST;
@@ -176,7 +178,9 @@ fn execute(a: &mut Assembler) {
     a.load(ADDRESS);
     a.acts(TAX);
     a.jump_if(X6, "segment");
-    for (register, label) in [(CONTROL_REGISTER, "control"), (START, "start"), (CLEAR, "clear"), (HOME, "home")] {
+    for (register, label) in
+        [(CONTROL_REGISTER, "control"), (START, "start"), (CLEAR, "clear"), (HOME, "home")]
+    {
         a.load(ADDRESS);
         a.xor_number(WRITE | register);
         a.jump_if(Zero, label);
@@ -337,11 +341,16 @@ fn send(a: &mut Assembler) {
     a.jump("begin");
 }
 
-const _: () = assert!(SEGMENT == AXES_AT && AXES_AT == 0x40, "bit 6 of an address says that it is an axis'");
 const _: () =
-    assert!(WORDS as usize + 4 * SEGMENT_FRAME_WORDS == 0x40, "bit 6 of X says that a segment's words are over");
-const _: () =
-    assert!(REQUEST as usize + LONGEST_REQUEST < ANSWER as usize, "no request that is whole reaches the answer");
+    assert!(SEGMENT == AXES_AT && AXES_AT == 0x40, "bit 6 of an address says that it is an axis'");
+const _: () = assert!(
+    WORDS as usize + 4 * SEGMENT_FRAME_WORDS == 0x40,
+    "bit 6 of X says that a segment's words are over"
+);
+const _: () = assert!(
+    REQUEST as usize + LONGEST_REQUEST < ANSWER as usize,
+    "no request that is whole reaches the answer"
+);
 
 #[cfg(test)]
 mod tests {

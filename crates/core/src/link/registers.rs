@@ -103,7 +103,12 @@ mod tests {
         for (index, one) in REGISTERS.iter().enumerate() {
             for other in &REGISTERS[..index] {
                 let reads = |register: &Register| register.access == Access::Read;
-                assert!(one.address != other.address || reads(one) != reads(other), "{} {}", one.name, other.name);
+                assert!(
+                    one.address != other.address || reads(one) != reads(other),
+                    "{} {}",
+                    one.name,
+                    other.name
+                );
             }
         }
     }

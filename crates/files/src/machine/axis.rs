@@ -46,10 +46,18 @@ impl RawAxis {
     }
 
     /// Checks the axis. `table` is the place of its table in the file.
-    pub(super) fn check(self, source: &Source, table: Range<usize>, timebase: &Timebase) -> Result<Axis, InputError> {
+    pub(super) fn check(
+        self,
+        source: &Source,
+        table: Range<usize>,
+        timebase: &Timebase,
+    ) -> Result<Axis, InputError> {
         let name = self.name.as_ref().clone();
         let fit = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(fit) || name.len() > 32 {
+        if !name.starts_with(|c: char| c.is_ascii_alphabetic())
+            || !name.chars().all(fit)
+            || name.len() > 32
+        {
             return Err(InputError::at(source, self.name.span(), format!("{:?} cannot name an axis", quoted(&name))).help(
                 "a name starts with a letter and has letters, digits and _ only, 32 at most: it becomes a signal name",
             ));
@@ -98,14 +106,25 @@ impl RawAxis {
 
     /// STEP width, gap, set-up and hold, from the driver's preset and the values that override it;
     /// in ns and in clocks.
-    fn pins(&self, source: &Source, timebase: &Timebase) -> Result<([u64; 4], PinTiming), InputError> {
+    fn pins(
+        &self,
+        source: &Source,
+        timebase: &Timebase,
+    ) -> Result<([u64; 4], PinTiming), InputError> {
         let preset = match &self.driver {
             None => None,
             Some(name) => Some(drivers().get(name.as_ref().as_str()).ok_or_else(|| {
                 let known: Vec<&str> = drivers().keys().map(String::as_str).collect();
                 let meant = did_you_mean(name.as_ref(), known.iter().copied());
-                InputError::at(source, name.span(), format!("no driver is called '{}'{meant}", quoted(name.as_ref())))
-                    .help(format!("known: {}; or give step_ns, gap_ns, setup_ns and hold_ns", known.join(", ")))
+                InputError::at(
+                    source,
+                    name.span(),
+                    format!("no driver is called '{}'{meant}", quoted(name.as_ref())),
+                )
+                .help(format!(
+                    "known: {}; or give step_ns, gap_ns, setup_ns and hold_ns",
+                    known.join(", ")
+                ))
             })?),
         };
         let mut ns = [0; 4];
@@ -128,13 +147,17 @@ impl RawAxis {
             ns[slot] = value;
             let span = given.as_ref().map_or_else(|| self.name.span(), Spanned::span);
             let exact = timebase.clocks_for_ns(value);
-            clocks[slot] = u32::try_from(exact).ok().filter(|&c| c < MAX_CLOCKS).ok_or_else(|| {
-                InputError::at(
-                    source,
-                    span,
-                    format!("{key} = {value} ns is {exact} clocks: the timers count to {}", MAX_CLOCKS - 1),
-                )
-            })?;
+            clocks[slot] =
+                u32::try_from(exact).ok().filter(|&c| c < MAX_CLOCKS).ok_or_else(|| {
+                    InputError::at(
+                        source,
+                        span,
+                        format!(
+                            "{key} = {value} ns is {exact} clocks: the timers count to {}",
+                            MAX_CLOCKS - 1
+                        ),
+                    )
+                })?;
         }
         Ok((ns, PinTiming { width: clocks[0], gap: clocks[1], setup: clocks[2], hold: clocks[3] }))
     }
@@ -162,13 +185,22 @@ fn not_too_slow(
 impl Axis {
     /// Checks the speed limit: below half a step per tick, and with a step period that the driver's
     /// width and gap allow.
-    fn check_speed(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
+    fn check_speed(
+        &self,
+        source: &Source,
+        span: Range<usize>,
+        timebase: &Timebase,
+    ) -> Result<(), InputError> {
         let limit = self.unit.both(decimal::to_f64(&self.speed_limit), 1);
         let doubled = &self.speed_limit * BigDecimal::from(2 * timebase.tick_ns());
         if doubled >= 1_000_000_000 {
             let half = self.unit.at_most(0.5e9 / timebase.tick_ns() as f64, 1);
-            return Err(InputError::at(source, span, format!("speed_limit is {limit}: half a step per tick or more"))
-                .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
+            return Err(InputError::at(
+                source,
+                span,
+                format!("speed_limit is {limit}: half a step per tick or more"),
+            )
+            .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
         }
         let PinTiming { width, gap, .. } = self.pins;
         let clocks = u64::from(width) + u64::from(gap) + u64::from(timebase.clocks_per_phase());
@@ -188,7 +220,12 @@ impl Axis {
     }
 
     /// Checks the acceleration limit: below half a step per tick^2, so that A fits its register.
-    fn check_acceleration(&self, source: &Source, span: Range<usize>, timebase: &Timebase) -> Result<(), InputError> {
+    fn check_acceleration(
+        &self,
+        source: &Source,
+        span: Range<usize>,
+        timebase: &Timebase,
+    ) -> Result<(), InputError> {
         let tick = BigDecimal::from(timebase.tick_ns());
         if &self.accel_limit * &tick * &tick * BigDecimal::from(2) >= 10_u64.pow(18) {
             let limit = self.unit.both(decimal::to_f64(&self.accel_limit), 2);

@@ -157,8 +157,8 @@ impl Logic for Adder {
         // Operand B is loaded from memory, set to -1 or 0 for counting, or halved for the
         // bisection.
         self.counting.next = self.beat.val().get_bit(5) | self.beat.val().get_bit(6);
-        self.ones_in.next =
-            (self.beat.val().get_bit(5) & self.counts.val()) | (self.beat.val().get_bit(6) & !self.up.val());
+        self.ones_in.next = (self.beat.val().get_bit(5) & self.counts.val())
+            | (self.beat.val().get_bit(6) & !self.up.val());
         self.load.next = self.beat.val().get_bit(2)
             | self.beat.val().get_bit(3)
             | self.beat.val().get_bit(7)
@@ -178,7 +178,8 @@ impl Logic for Adder {
             self.b.d.next = self.half.val();
         }
         // 1 if the bisection continues in the next beat.
-        self.halves_on.next = self.beat.val().get_bit(12) | self.beat.val().get_bit(13) | self.beat.val().get_bit(14);
+        self.halves_on.next =
+            self.beat.val().get_bit(12) | self.beat.val().get_bit(13) | self.beat.val().get_bit(14);
         self.bisects.d.next = self.halves_on.val();
 
         // Operand X is A, or in the bisection R or the complement of R.
@@ -194,7 +195,9 @@ impl Logic for Adder {
         // The sum. A carry enters as 1 + 1 in an additional bit below the lowest.
         self.carry_due.next = (self.beat.val().get_bit(5) & self.lost.val())
             | (self.beat.val().get_bit(6) & !self.down.val())
-            | ((self.beat.val().get_bit(8) | self.beat.val().get_bit(9) | self.beat.val().get_bit(10))
+            | ((self.beat.val().get_bit(8)
+                | self.beat.val().get_bit(9)
+                | self.beat.val().get_bit(10))
                 & self.carry_2.q.val());
         self.odd.next = self.halves_on.val() & self.b.q.val().get_bit(0);
         self.odd_beyond.next = self.odd.val() & self.bisects.q.val() & self.crosses_now.val();
@@ -212,9 +215,11 @@ impl Logic for Adder {
         if self.b.q.val().get_bit(31) {
             self.extended.next = bit_cast::<33, 32>(self.b.q.val()) | self.above.val();
         }
-        self.wide.next = ((bit_cast::<34, 32>(self.x.val()) << self.by_one.val()) | self.carry.val())
+        self.wide.next = ((bit_cast::<34, 32>(self.x.val()) << self.by_one.val())
+            | self.carry.val())
             + ((bit_cast::<34, 33>(self.extended.val()) << self.by_one.val()) | self.low.val());
-        self.wiping.next = self.wipe.val() & (self.beat.val().get_bit(5) | self.beat.val().get_bit(11));
+        self.wiping.next =
+            self.wipe.val() & (self.beat.val().get_bit(5) | self.beat.val().get_bit(11));
         self.r.d.next = self.wide.val().get_bits::<32>(1);
         if self.beat.val().get_bit(8) {
             self.r.d.next = self.x.val();
@@ -243,7 +248,8 @@ impl Logic for Adder {
         }
         self.sign_of_a.d.next = self.a.q.val().get_bit(31);
         if self.beat.val().get_bit(11) {
-            self.unfit.d.next = self.r.q.val().get_bit(31) ^ self.top.q.val() ^ self.sign_of_a.q.val();
+            self.unfit.d.next =
+                self.r.q.val().get_bit(31) ^ self.top.q.val() ^ self.sign_of_a.q.val();
             self.other.d.next = self.r.q.val().get_bit(31) ^ self.b.q.val().get_bit(31);
         }
         self.empty.next = !(self.b.q.val() & !self.sign.val()).any();
@@ -252,8 +258,10 @@ impl Logic for Adder {
         }
         if self.beat.val().get_bit(11) {
             self.minus.d.next = self.b.q.val().get_bit(31);
-            self.zero.d.next = self.low_zero.q.val() & self.empty.val() & !self.b.q.val().get_bit(31);
-            self.bound.d.next = self.low_zero.q.val() & self.empty.val() & self.b.q.val().get_bit(31);
+            self.zero.d.next =
+                self.low_zero.q.val() & self.empty.val() & !self.b.q.val().get_bit(31);
+            self.bound.d.next =
+                self.low_zero.q.val() & self.empty.val() & self.b.q.val().get_bit(31);
         }
 
         // The phase: a part of V that does not carry sets its bit.

@@ -68,7 +68,8 @@ impl<const N: usize> Logic for Homes<N> {
         self.mine.next = (self.waiting.q.val() & self.lane.val()).any();
         self.lane_next.next = self.lane.val();
         if self.turn_ends.val() {
-            self.lane_next.next = (self.lane.val() << self.by_one.val()) | (self.lane.val() >> self.to_top.val());
+            self.lane_next.next =
+                (self.lane.val() << self.by_one.val()) | (self.lane.val() >> self.to_top.val());
         }
         self.mine_slows.d.next = (self.slowing.q.val() & self.lane_next.val()).any();
         self.caught.next = self.hit.val() & self.mine.val();

@@ -95,9 +95,12 @@ impl<const N: usize> Limits<N> {
         };
         let wiring = LIMITS.of::<32>(number(guard.limits));
         let is = |one| wiring.whole().is(&Formula::number(number(one).into()));
-        let (low, looks) = (LIMITS_LOW.of::<32>(guard.limits_low), DEBOUNCE_LOOKS.of::<32>(guard.debounce));
+        let (low, looks) =
+            (LIMITS_LOW.of::<32>(guard.limits_low), DEBOUNCE_LOOKS.of::<32>(guard.debounce));
         Self {
-            exist: Parameter::of(&wiring.whole().is_not(&Formula::number(number(Wiring::None).into()))),
+            exist: Parameter::of(
+                &wiring.whole().is_not(&Formula::number(number(Wiring::None).into())),
+            ),
             pair: Parameter::of(&is(Wiring::Pair)),
             one_for_all: Parameter::of(&is(Wiring::One)),
             low: Parameter::of(&low.bits(0)),
@@ -141,7 +144,8 @@ impl<const N: usize> Logic for Limits<N> {
             (bit_cast::<4, 3>(self.axis.val()) << self.by_one.val()) | self.max_bit.val();
         self.word.next = self.switches.read_data.val();
         self.differs.next = self.now.q.val() ^ self.word.val().get_bit(7);
-        self.flips.next = self.differs.val() & (self.word.val().get_bits::<7>(0) == self.last_look.val());
+        self.flips.next =
+            self.differs.val() & (self.word.val().get_bits::<7>(0) == self.last_look.val());
         self.state.next = self.word.val().get_bit(7) ^ self.flips.val();
         self.count.next = self.none.val();
         if self.differs.val() & !self.flips.val() {

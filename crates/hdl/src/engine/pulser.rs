@@ -121,7 +121,8 @@ impl Pulser {
         let hold_over = hold.bits::<17>(0).without(Formula::number(2));
         // In 16 bits 65536 is 0, and two less than it what it should be.
         let at_once = setup.whole().is(&Formula::number(1));
-        let setup_over = Formula::number(0).where_or(&at_once, setup.bits::<16>(0) - Formula::number(2));
+        let setup_over =
+            Formula::number(0).where_or(&at_once, setup.bits::<16>(0) - Formula::number(2));
         let greatest = gap_over.clone().or_more(hold_over.clone());
         Ok(Self {
             pulse_over: Parameter::of(&pulse_over),
@@ -144,7 +145,9 @@ impl Pulser {
 impl Logic for Pulser {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, step_pin, dir_pin, want, due, due_back, since, after, busy, held, settled);
+        dff_setup!(
+            self, clock, step_pin, dir_pin, want, due, due_back, since, after, busy, held, settled
+        );
         dff_setup!(self, clock, count, lost);
 
         // The direction that DIR should have, and the direction of the step that is due.
@@ -167,11 +170,12 @@ impl Logic for Pulser {
         if self.pending.val() {
             self.aim.next = self.first_back.val();
         }
-        self.turn.next = !self.frozen.val() & !self.held.q.val() & (self.dir_pin.q.val() != self.aim.val());
+        self.turn.next =
+            !self.frozen.val() & !self.held.q.val() & (self.dir_pin.q.val() != self.aim.val());
 
         // The pins.
-        self.step_pin.d.next =
-            self.rise.val() | (self.step_pin.q.val() & (self.since.q.val() != self.pulse_over.val()));
+        self.step_pin.d.next = self.rise.val()
+            | (self.step_pin.q.val() & (self.since.q.val() != self.pulse_over.val()));
         self.dir_pin.d.next = self.dir_pin.q.val() ^ self.turn.val();
 
         // The time since STEP rose limits the pulse, the gap and the hold.
@@ -205,7 +209,8 @@ impl Logic for Pulser {
         // Every requested step is made, held back or counted as discarded.
         self.second.next = self.due.q.val() & self.request.val();
         self.late_now.next = self.second.val() & !self.rise.val() & !self.frozen.val();
-        self.due.d.next = (self.pending.val() & !self.rise.val() & !self.frozen.val()) | self.second.val();
+        self.due.d.next =
+            (self.pending.val() & !self.rise.val() & !self.frozen.val()) | self.second.val();
         if !self.due.q.val() | self.rise.val() {
             self.due_back.d.next = self.request_back.val();
         }
@@ -216,8 +221,8 @@ impl Logic for Pulser {
         self.step.next = self.step_pin.q.val();
         self.dir.next = self.dir_pin.q.val();
         self.owed.next = self.due.q.val();
-        self.counts.next =
-            bit_cast::<6, 3>(self.count.q.val()) | (bit_cast::<6, 3>(self.lost.q.val()) << self.at_3.val());
+        self.counts.next = bit_cast::<6, 3>(self.count.q.val())
+            | (bit_cast::<6, 3>(self.lost.q.val()) << self.at_3.val());
         self.overruns.next = self.late_now.val();
     }
 }

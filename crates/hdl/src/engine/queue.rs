@@ -172,7 +172,8 @@ impl Logic for Queue {
         // Decides what follows after this tick.
         self.last_one.next = self.lasts.read_data.val().any();
         self.ramps.next = self.ramp.val() & self.word.val().get_bit(15);
-        self.follows.next = self.ended.val() & !self.last_one.val() & !self.none.val() & !self.ramp.val();
+        self.follows.next =
+            self.ended.val() & !self.last_one.val() & !self.none.val() & !self.ramp.val();
         self.moves.next = self.fits.val() & !self.least.val();
         self.over.next = self.ended.val() & self.last_one.val();
         if self.ramp.val() {
@@ -181,7 +182,11 @@ impl Logic for Queue {
         self.stays.next = self.moves.val() & !self.over.val();
         self.goes_on.next = self.stays.val();
         self.too_fast.next = self.runs.val() & (self.word.val().get_bit(7) | self.least.val());
-        self.dry.next = self.moves.val() & self.ended.val() & !self.last_one.val() & self.none.val() & !self.ramp.val();
+        self.dry.next = self.moves.val()
+            & self.ended.val()
+            & !self.last_one.val()
+            & self.none.val()
+            & !self.ramp.val();
 
         // Pulses and discarded steps are transferred to memory one per tick. The difference of the
         // low bits shows which are not transferred yet.
@@ -200,10 +205,10 @@ impl Logic for Queue {
         if self.take.val() & self.commit.val() {
             self.committed.d.next = true;
         }
-        self.lasts.read_address.next =
-            (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val()) | bit_cast::<6, 3>(self.live_now.val());
-        self.lasts.write_address.next =
-            (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val()) | bit_cast::<6, 3>(self.fresh_now.val());
+        self.lasts.read_address.next = (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val())
+            | bit_cast::<6, 3>(self.live_now.val());
+        self.lasts.write_address.next = (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val())
+            | bit_cast::<6, 3>(self.fresh_now.val());
         self.lasts.write_data.next = self.unset.val();
         if self.last.val() {
             self.lasts.write_data.next = self.set.val();
@@ -244,7 +249,8 @@ impl Logic for Queue {
             self.next_known.next = self.known_bit.val();
         }
         self.next_back.next = self.no.val();
-        if (self.ramps.val() & self.word.val().get_bit(14)) | (!self.ramps.val() & self.back.val()) {
+        if (self.ramps.val() & self.word.val().get_bit(14)) | (!self.ramps.val() & self.back.val())
+        {
             self.next_back.next = self.back_bit.val();
         }
         self.next_seen.next = self.word.val().get_bits::<3>(8);

@@ -124,7 +124,8 @@ impl<const N: usize> Logic for Stops<N> {
         dff_setup!(self, clock, first, axes, found, kind, found_freezing, ran);
 
         // Collects the causes that the time slots find.
-        self.finds_now.next = self.turn_ends.val() & (self.too_fast.val() | self.limit.val() | self.dry.val());
+        self.finds_now.next =
+            self.turn_ends.val() & (self.too_fast.val() | self.limit.val() | self.dry.val());
         if self.finds_now.val() {
             self.found.d.next = true;
         }
@@ -137,7 +138,9 @@ impl<const N: usize> Logic for Stops<N> {
                 self.kind.d.next = self.overspeed.val();
             }
         }
-        if self.turn_ends.val() & (self.too_fast.val() | (self.limit.val() & self.limits_freeze.val().any())) {
+        if self.turn_ends.val()
+            & (self.too_fast.val() | (self.limit.val() & self.limits_freeze.val().any()))
+        {
             self.found_freezing.d.next = true;
         }
         if self.turn_ends.val() & self.runs.val() {
@@ -146,7 +149,8 @@ impl<const N: usize> Logic for Stops<N> {
 
         // Latches the first cause. Of several causes in one clock, the one assigned last below has
         // priority.
-        self.urgent.next = self.late.val().any() | (self.strobe.val() & self.pressed.val()) | self.breaks.val();
+        self.urgent.next =
+            self.late.val().any() | (self.strobe.val() & self.pressed.val()) | self.breaks.val();
         self.ripe.next = self.strobe.val() & self.found.q.val();
         self.by_host.next = (self.strobe.val() & self.missed.val()) | self.asked.val();
         self.calls.next = self.urgent.val() | self.ripe.val() | self.by_host.val();
@@ -188,8 +192,9 @@ impl<const N: usize> Logic for Stops<N> {
             self.found_freezing.d.next = false;
             self.ran.d.next = false;
             self.slow.d.next = self.called.q.val() | self.found.q.val();
-            self.still.d.next =
-                self.freeze.q.val() | self.found_freezing.q.val() | (self.slow.q.val() & !self.ran.q.val());
+            self.still.d.next = self.freeze.q.val()
+                | self.found_freezing.q.val()
+                | (self.slow.q.val() & !self.ran.q.val());
             self.settled.d.next = self.still.q.val();
             self.wiping.d.next = self.clear.val()
                 & self.settled.q.val()

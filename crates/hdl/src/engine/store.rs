@@ -114,10 +114,12 @@ impl Store {
             let stop = STOP_ACCEL.of_axis::<64>(axis, *stop);
             let (low, high) = (stop.bits::<32>(0), stop.bits::<32>(32));
             // -s: one more than its complement, whose low half carries where s has zeros only there.
-            let carry = Formula::number(1).where_or(&low.is(&Formula::number(0)), Formula::number(0));
+            let carry =
+                Formula::number(1).where_or(&low.is(&Formula::number(0)), Formula::number(0));
             let down = [Formula::number(0) - low.clone(), !high.clone() + carry];
             let [down_low, down_high] = down;
-            let words = [(1, start_high.clone()), (4, down_low), (5, down_high), (6, low), (7, high)];
+            let words =
+                [(1, start_high.clone()), (4, down_low), (5, down_high), (6, low), (7, high)];
             kept.extend(words.map(|(slot, word)| (axis << 6 | slot << 3 | 7, word)));
             store.stop_accel_out_of_range[axis] = Refusal::of(&stop.is_outside(1, 1 << 62));
         }
@@ -191,7 +193,8 @@ impl Logic for Store {
             self.read_axis.next = self.get_axis.val();
             self.read_slot.next = bit_cast::<3, 2>(self.get_item.val());
         }
-        self.segments.read_address.next = (bit_cast::<9, 3>(self.read_axis.val()) << self.at_6.val())
+        self.segments.read_address.next = (bit_cast::<9, 3>(self.read_axis.val())
+            << self.at_6.val())
             | (bit_cast::<9, 3>(self.read_slot.val()) << self.at_3.val())
             | bit_cast::<9, 3>(self.read_word.val());
         self.word.next = self.segments.read_data.val();

@@ -86,7 +86,8 @@ impl<const N: usize> Logic for Turn<N> {
             }
         }
         if self.beats.q.val().get_bit(12) {
-            self.lanes.d.next = (self.lanes.q.val() << self.by_one.val()) | (self.lanes.q.val() >> self.to_top.val());
+            self.lanes.d.next = (self.lanes.q.val() << self.by_one.val())
+                | (self.lanes.q.val() >> self.to_top.val());
         }
         self.number.d.next = self.axis_to_come.val();
 
@@ -117,7 +118,11 @@ mod tests {
             let beats = turn.beat.val().value() as u32;
             assert_eq!(beats & 0x1fff, if turns { 1 << beat } else { 0 }, "cycle {cycle}");
             // After the last time slot, `lane` is axis 0 again.
-            assert_eq!(turn.lane.val().value() as u32, if turns { 1 << axis } else { 1 }, "cycle {cycle}");
+            assert_eq!(
+                turn.lane.val().value() as u32,
+                if turns { 1 << axis } else { 1 },
+                "cycle {cycle}"
+            );
             turn.clock.next = true.into();
             rising_edge(&mut turn);
         }

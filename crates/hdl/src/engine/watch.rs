@@ -79,9 +79,12 @@ pub struct Watch {
 impl Watch {
     /// Makes the monitor of this guard. The caller has checked the guard.
     pub fn new(guard: &Guard) -> Self {
-        let (watchdog, enable) = (WATCHDOG_ROUNDS.of::<32>(guard.watchdog), ENABLE_ROUNDS.of::<32>(guard.enable));
-        let (round, estop_low) = (ROUND_TICKS.of::<32>(guard.round), ESTOP_LOW.of::<32>(guard.estop_low));
-        let no_power = (round.whole() & (round.whole() - Formula::number(1))).is_not(&Formula::number(0));
+        let (watchdog, enable) =
+            (WATCHDOG_ROUNDS.of::<32>(guard.watchdog), ENABLE_ROUNDS.of::<32>(guard.enable));
+        let (round, estop_low) =
+            (ROUND_TICKS.of::<32>(guard.round), ESTOP_LOW.of::<32>(guard.estop_low));
+        let no_power =
+            (round.whole() & (round.whole() - Formula::number(1))).is_not(&Formula::number(0));
         Self {
             pressed_low: Parameter::of(&estop_low.bits(0)),
             round_bits: Parameter::of(&(round.bits(0) - Formula::number(1))),
@@ -89,7 +92,9 @@ impl Watch {
             silence_bits: Parameter::of(&watchdog.bits::<12>(0).used_bits()),
             warm_at: Parameter::of(&enable.bits(0)),
             warm_bits: Parameter::of(&enable.bits::<12>(0).used_bits()),
-            round_ticks_out_of_range: Refusal::of(&(round.is_outside(2, MAX_ROUND.into()) | no_power)),
+            round_ticks_out_of_range: Refusal::of(
+                &(round.is_outside(2, MAX_ROUND.into()) | no_power),
+            ),
             watchdog_rounds_out_of_range: Refusal::of(&watchdog.is_outside(0, MAX_ROUNDS.into())),
             enable_rounds_out_of_range: Refusal::of(&enable.is_outside(0, MAX_ROUNDS.into())),
             estop_low_out_of_range: Refusal::of(&estop_low.is_outside(0, 1)),
@@ -120,7 +125,8 @@ impl Logic for Watch {
         // The watchdog.
         self.silent.next = self.silence.q.val() == self.watchdog.val();
         if self.round_over.val() & !self.silent.val() {
-            self.silence.d.next = (self.silence.q.val() + self.one_round.val()) & self.silence_bits.val();
+            self.silence.d.next =
+                (self.silence.q.val() + self.one_round.val()) & self.silence_bits.val();
         }
         if self.kick.val() {
             self.silence.d.next = self.no_round.val();
@@ -131,7 +137,8 @@ impl Logic for Watch {
         self.power.d.next = self.enable.val() | (self.power.q.val() & !self.idle.val());
         self.is_warm.next = self.warmth.q.val() == self.warm_at.val();
         if self.round_over.val() & !self.is_warm.val() {
-            self.warmth.d.next = (self.warmth.q.val() + self.one_round.val()) & self.warm_bits.val();
+            self.warmth.d.next =
+                (self.warmth.q.val() + self.one_round.val()) & self.warm_bits.val();
         }
         if !self.power.q.val() {
             self.warmth.d.next = self.no_round.val();

@@ -70,7 +70,7 @@ pub struct Wheel<const N: usize> {
     sign_due: Register<Bit>,
     step_due: Register<Bit>,
     step_known: Register<Bit>,
-    when: Register<Word<2>>,       // the tick before the one in which the event takes place
+    when: Register<Word<2>>, // the tick before the one in which the event takes place
     whose: Signal<Local, Word<N>>, // the axis of the slot before, one-hot
     writes_sign: Signal<Local, Bit>,
     writes_step: Signal<Local, Bit>,
@@ -119,8 +119,8 @@ impl<const N: usize> Logic for Wheel<N> {
         }
 
         // Each word is read one clock before its event, and cleared in the clock of the event.
-        self.place.next =
-            (bit_cast::<7, 2>(self.ahead.q.val()) << self.at_5.val()) | bit_cast::<7, 4>(self.tick.phase.val());
+        self.place.next = (bit_cast::<7, 2>(self.ahead.q.val()) << self.at_5.val())
+            | bit_cast::<7, 4>(self.tick.phase.val());
         if self.tick.strobe.val() {
             self.place.next = (bit_cast::<7, 2>(self.ahead.q.val()) << self.at_5.val())
                 | bit_cast::<7, 4>(self.tick.phase.val())
@@ -133,8 +133,10 @@ impl<const N: usize> Logic for Wheel<N> {
         // Writes the results of a time slot, the sign first and then the step, in clocks without a
         // clear.
         self.writes_sign.next = !self.wipes.val() & self.sign_due.q.val();
-        self.writes_step.next =
-            !self.wipes.val() & !self.sign_due.q.val() & self.step_due.q.val() & self.step_known.q.val();
+        self.writes_step.next = !self.wipes.val()
+            & !self.sign_due.q.val()
+            & self.step_due.q.val()
+            & self.step_known.q.val();
         if self.writes_sign.val() {
             self.sign_due.d.next = false;
         }
@@ -154,8 +156,9 @@ impl<const N: usize> Logic for Wheel<N> {
         self.later.next = (bit_cast::<7, 2>(self.now.val()) << self.at_5.val())
             | bit_cast::<7, 4>(self.q.val() >> self.q_shift.val());
         if self.sign_due.q.val() {
-            self.later.next =
-                (bit_cast::<7, 2>(self.when.q.val()) << self.at_5.val()) | self.sign_kind.val() | self.last_phase.val();
+            self.later.next = (bit_cast::<7, 2>(self.when.q.val()) << self.at_5.val())
+                | self.sign_kind.val()
+                | self.last_phase.val();
         }
         self.rim.write_address.next = self.later.val();
         if self.wipes.val() {
@@ -169,11 +172,12 @@ impl<const N: usize> Logic for Wheel<N> {
             }
         }
         self.rim.write_data.next = self.data.val();
-        self.whose.next = (self.lane.val() >> self.by_one.val()) | (self.lane.val() << self.to_top.val());
+        self.whose.next =
+            (self.lane.val() >> self.by_one.val()) | (self.lane.val() << self.to_top.val());
         self.bits.next = self.no.val();
         if self.writes_sign.val() | self.writes_step.val() {
-            self.bits.next =
-                bit_cast::<16, N>(self.whose.val()) | (bit_cast::<16, N>(self.whose.val()) << self.at_8.val());
+            self.bits.next = bit_cast::<16, N>(self.whose.val())
+                | (bit_cast::<16, N>(self.whose.val()) << self.at_8.val());
         }
         if self.wipes.val() {
             self.bits.next = self.all.val();

@@ -18,7 +18,9 @@ use rust_hdl::prelude::*;
 impl<const N: usize> Logic for Engine<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, waits, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2);
+        dff_setup!(
+            self, clock, waits, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2
+        );
         clock!(self, clock, turn, adder, queue, store, wheel, limits, homes, stops, watch);
 
         self.strobe.next = self.wheel.strobe.val();
@@ -26,9 +28,10 @@ impl<const N: usize> Logic for Engine<N> {
 
         // The words of the host.
         self.nobody.next = bit_cast::<4, 3>(self.put_axis.val()) >= self.axes.val();
-        self.listens.next = self.turn.beat.val().get_bit(7) & (self.turn.axis.val() == self.put_axis.val());
-        self.put_ready.next =
-            !self.stops.fault.val() & (self.nobody.val() | (self.listens.val() & !self.queue.full.val()));
+        self.listens.next =
+            self.turn.beat.val().get_bit(7) & (self.turn.axis.val() == self.put_axis.val());
+        self.put_ready.next = !self.stops.fault.val()
+            & (self.nobody.val() | (self.listens.val() & !self.queue.full.val()));
         self.room.next = self.queue.room.val();
         self.room_valid.next = self.listens.val();
         self.take.next = self.put_valid.val() & self.put_ready.val() & !self.nobody.val();
@@ -43,8 +46,10 @@ impl<const N: usize> Logic for Engine<N> {
         // A start is armed at a strobe. It takes effect at the first later strobe at which every
         // axis of its mask is at rest or comes to rest, and has a waiting segment.
         self.may_start.next = self.enable.val() & self.watch.warm.val();
-        self.start_ready.next =
-            self.strobe.val() & !self.waits.q.val() & !self.stops.fault.val() & self.may_start.val();
+        self.start_ready.next = self.strobe.val()
+            & !self.waits.q.val()
+            & !self.stops.fault.val()
+            & self.may_start.val();
         self.free.next = !self.stops.fault.val() & !self.stops.finds.val();
         self.decides.next = self.strobe.val() & self.waits.q.val() & self.free.val();
         self.go.next = self.decides.val() & !self.unfed.q.val() & !self.held.q.val();
@@ -52,7 +57,8 @@ impl<const N: usize> Logic for Engine<N> {
             self.going.d.next = self.go.val();
         }
         if self.turn.beat.val().get_bit(12) {
-            self.mask.d.next = (self.mask.q.val() >> self.by_one.val()) | (self.mask.q.val() << self.to_top.val());
+            self.mask.d.next =
+                (self.mask.q.val() >> self.by_one.val()) | (self.mask.q.val() << self.to_top.val());
         }
         if self.start_ready.val() & self.start_valid.val() {
             self.waits.d.next = true;
@@ -65,9 +71,10 @@ impl<const N: usize> Logic for Engine<N> {
         // Collects the results of the time slots.
         if self.turn.beat.val().get_bit(12) {
             self.unfed.d.next = self.unfed.q.val() | (self.masked.val() & self.queue.empty.val());
-            self.held.d.next =
-                self.held.q.val() | (self.masked.val() & (self.queue.goes_on.val() | self.homes.slows.val()));
-            self.active.d.next = self.active.q.val() | self.queue.running.val() | !self.queue.empty.val();
+            self.held.d.next = self.held.q.val()
+                | (self.masked.val() & (self.queue.goes_on.val() | self.homes.slows.val()));
+            self.active.d.next =
+                self.active.q.val() | self.queue.running.val() | !self.queue.empty.val();
         }
         if self.strobe.val() {
             self.unfed.d.next = false;
@@ -88,7 +95,8 @@ impl<const N: usize> Logic for Engine<N> {
         for i in 0..N {
             self.pulser[i].clock.next = self.clock.val();
             self.pulser[i].frozen.next = self.stops.frozen.val();
-            self.pulser[i].request.next = self.wheel.events.val().get_bit(i) & self.wheel.phase_start.val();
+            self.pulser[i].request.next =
+                self.wheel.events.val().get_bit(i) & self.wheel.phase_start.val();
             self.pulser[i].request_back.next = self.wheel.backward.val().get_bit(i);
             self.pulser[i].has_sign.next = self.wheel.events.val().get_bit(i) & self.strobe.val();
             self.pulser[i].sign_back.next = self.wheel.backward.val().get_bit(i);
@@ -102,7 +110,8 @@ impl<const N: usize> Logic for Engine<N> {
                 self.late_bit[i].next = self.one_axis[i].val();
             }
             self.late.next = self.late.val() | self.late_bit[i].val();
-            self.pins_busy.next = self.pins_busy.val() | self.pulser[i].owed.val() | self.pulser[i].step.val();
+            self.pins_busy.next =
+                self.pins_busy.val() | self.pulser[i].owed.val() | self.pulser[i].step.val();
             self.step[i].next = self.pulser[i].step.val();
             self.dir[i].next = self.pulser[i].dir.val();
         }
@@ -190,7 +199,8 @@ impl<const N: usize> Logic for Engine<N> {
         self.stops.lane.next = self.turn.lane.val();
         self.stops.runs.next = self.queue.running.val();
         self.stops.too_fast.next = self.queue.too_fast.val();
-        self.stops.limit.next = self.limits.hit.val() & !self.homes.waits.val() & !self.homes.slows.val();
+        self.stops.limit.next =
+            self.limits.hit.val() & !self.homes.waits.val() & !self.homes.slows.val();
         self.stops.dry.next = self.queue.dry.val();
         self.stops.late.next = self.late.val();
         self.stops.pressed.next = self.watch.pressed.val();

@@ -63,7 +63,9 @@ impl UartIn {
             to_first: Parameter::of(&to_first),
             to_next: Parameter::of(&(bit.bits(0) - Formula::number(1))),
             timer_bits: Parameter::of(&to_first.used_bits()),
-            bit_clocks_out_of_range: Refusal::of(&bit.is_outside(MIN_BIT_CLOCKS.into(), MAX_BIT_CLOCKS.into())),
+            bit_clocks_out_of_range: Refusal::of(
+                &bit.is_outside(MIN_BIT_CLOCKS.into(), MAX_BIT_CLOCKS.into()),
+            ),
             ..Self::default()
         }
     }

@@ -59,7 +59,8 @@ pub struct Facts {
 impl Facts {
     /// Makes the memory with these constants, each given as its address and its value.
     pub fn new(facts: &[(u8, Formula<32>)]) -> Self {
-        let words: Vec<_> = facts.iter().map(|(address, fact)| (usize::from(*address), fact.clone())).collect();
+        let words: Vec<_> =
+            facts.iter().map(|(address, fact)| (usize::from(*address), fact.clone())).collect();
         Self { known: Memory::of_formulas(&words), ..Self::default() }
     }
 }
@@ -82,7 +83,8 @@ impl Logic for Facts {
             | (bit_cast::<7, 3>(self.asked.q.val().get_bits::<3>(2)) << self.at_3.val())
             | bit_cast::<7, 2>(self.asked.q.val().get_bits::<2>(0));
         if self.latch.val() {
-            self.place.next = self.latched.val() | (bit_cast::<7, 3>(self.latch_axis.val()) << self.at_3.val());
+            self.place.next =
+                self.latched.val() | (bit_cast::<7, 3>(self.latch_axis.val()) << self.at_3.val());
         }
         self.known.write_address.next = self.place.val();
         self.known.write_data.next = self.get_data.val();

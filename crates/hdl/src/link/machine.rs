@@ -152,9 +152,18 @@ pub struct Machine<const N: usize> {
 impl<const N: usize> Machine<N> {
     /// Makes the machine with this initial content of its program and data memories.
     pub fn new(image: &Image) -> Self {
-        let program: Vec<_> =
-            image.program.iter().enumerate().map(|(at, code)| (at, Word::from(u64::from(*code)))).collect();
-        let data: Vec<_> = image.data.iter().enumerate().map(|(at, byte)| (at, Word::from(u64::from(*byte)))).collect();
+        let program: Vec<_> = image
+            .program
+            .iter()
+            .enumerate()
+            .map(|(at, code)| (at, Word::from(u64::from(*code))))
+            .collect();
+        let data: Vec<_> = image
+            .data
+            .iter()
+            .enumerate()
+            .map(|(at, byte)| (at, Word::from(u64::from(*byte))))
+            .collect();
         Self {
             instructions: Memory::of_words(&program),
             data: Memory::of_words(&data),
@@ -181,12 +190,14 @@ impl<const N: usize> Logic for Machine<N> {
         self.stores.next = self.executes.val() & self.code.val().get_bit(14);
         self.jumps.next = self.code.val().get_bit(13);
         self.acts.next = self.executes.val() & self.code.val().get_bit(12);
-        self.does.next = self.acts.val() & !self.code.val().get_bit(15) & !self.code.val().get_bit(14);
+        self.does.next =
+            self.acts.val() & !self.code.val().get_bit(15) & !self.code.val().get_bit(14);
         self.steps.next = self.does.val() & self.code.val().get_bit(2);
         self.waits.next = self.does.val() & self.code.val().get_bit(5);
         self.state.next = self.none.val();
         if self.fault.val() {
-            self.state.next = (bit_cast::<8, 3>(self.cause.val()) << self.at_5.val()) | self.bit_0.val();
+            self.state.next =
+                (bit_cast::<8, 3>(self.cause.val()) << self.at_5.val()) | self.bit_0.val();
         }
         if self.halted.val() {
             self.state.next = self.state.val() | self.bit_1.val();
@@ -200,7 +211,8 @@ impl<const N: usize> Logic for Machine<N> {
         if self.armed.val() {
             self.state.next = self.state.val() | self.bit_4.val();
         }
-        self.waited.next = self.scanned.val() | (self.code.val().get_bit(3) & self.room_valid.val());
+        self.waited.next =
+            self.scanned.val() | (self.code.val().get_bit(3) & self.room_valid.val());
         if self.code.val().get_bit(11) {
             self.waited.next = self.put_ready.val() | self.fault.val();
         }
@@ -210,7 +222,8 @@ impl<const N: usize> Logic for Machine<N> {
         if self.code.val().get_bit(10) {
             self.waited.next = self.start_ready.val() | self.fault.val();
         }
-        self.over.next = (!self.waits.val() | self.waited.val()) & (!self.steps.val() | self.check.over.val());
+        self.over.next =
+            (!self.waits.val() | self.waited.val()) & (!self.steps.val() | self.check.over.val());
         if !self.executes.val() {
             self.stage.d.next = self.stage.q.val() + self.next_stage.val();
         } else if self.over.val() {
@@ -333,7 +346,8 @@ impl<const N: usize> Logic for Machine<N> {
             self.control.d.next = self.sum.q.val().get_bits::<2>(0);
             self.clears.d.next = self.code.val().get_bit(9);
         }
-        self.home_valid.next = self.does.val() & self.code.val().get_bit(6) & self.code.val().get_bit(7);
+        self.home_valid.next =
+            self.does.val() & self.code.val().get_bit(6) & self.code.val().get_bit(7);
         self.kick.next = self.does.val() & self.code.val().get_bit(7) & !self.code.val().get_bit(6);
         self.broken.next = self.does.val() & self.code.val().get_bit(8);
         self.clear.next = self.clears.q.val();

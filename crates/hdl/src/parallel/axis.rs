@@ -135,7 +135,8 @@ impl Logic for Axis {
 
         // The addition P + V. Its carry, compared with the sign of V, tells whether the tick steps.
         self.tick.next = self.strobe.val() & !self.frozen.val();
-        self.sum.next = bit_cast::<65, 64>(self.position.q.val()) + bit_cast::<65, 64>(self.speed.q.val());
+        self.sum.next =
+            bit_cast::<65, 64>(self.position.q.val()) + bit_cast::<65, 64>(self.speed.q.val());
         self.backward.next = self.speed.q.val().get_bit(63);
         self.step_edge.crosses.next = self.sum.val().get_bit(64) ^ self.backward.val();
         if self.tick.val() {
@@ -153,7 +154,8 @@ impl Logic for Axis {
             self.next_speed.next = self.faster.val();
         }
         self.off_limits.next = self.tick.val()
-            & ((self.next_speed.val() == self.least.val()) | (self.sequencer.advance.val() & self.overflow.val()));
+            & ((self.next_speed.val() == self.least.val())
+                | (self.sequencer.advance.val() & self.overflow.val()));
 
         // At a tick, V and A advance, or a segment is loaded, or the axis comes to rest.
         if self.tick.val() {
@@ -210,8 +212,9 @@ impl Logic for Axis {
         self.want_fwd.next = self.step_edge.want_fwd.val();
         self.want_back.next = self.step_edge.want_back.val();
         self.in_flight.next = self.step_edge.in_flight.val();
-        self.drained.next =
-            !(self.sequencer.running.val() | self.sequencer.waiting.val() | self.step_edge.in_flight.val());
+        self.drained.next = !(self.sequencer.running.val()
+            | self.sequencer.waiting.val()
+            | self.step_edge.in_flight.val());
         self.overspeed.next = self.too_fast.q.val();
         self.underrun.next = self.sequencer.underrun.val();
         self.crossed.next = self.step_edge.crossed.val();
@@ -259,7 +262,8 @@ mod tests {
     fn axis_adds_the_values_from_before_the_tick() {
         let segment = Segment { ticks: 4, v: 100, a: 10, j: 1, last: false };
         let mut axis = started(StartPhase::Zero, segment);
-        let ticks: Vec<(u64, i64)> = (0..3).map(|_| axis.tick(false)).map(|tick| (tick.p, tick.v)).collect();
+        let ticks: Vec<(u64, i64)> =
+            (0..3).map(|_| axis.tick(false)).map(|tick| (tick.p, tick.v)).collect();
         assert_eq!(ticks, [(100, 110), (210, 121), (331, 133)]);
     }
 

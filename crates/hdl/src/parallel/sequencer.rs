@@ -84,10 +84,14 @@ pub struct Sequencer {
 impl Logic for Sequencer {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, wait_full, wait_ticks, wait_v, wait_a, wait_j, wait_last, active, left, last, dry);
+        dff_setup!(
+            self, clock, wait_full, wait_ticks, wait_v, wait_a, wait_j, wait_last, active, left,
+            last, dry
+        );
 
         self.ending.next = self.active.q.val() & (self.left.q.val() == self.one.val());
-        self.startable.next = self.wait_full.q.val() & (!self.active.q.val() | (self.ending.val() & self.last.q.val()));
+        self.startable.next = self.wait_full.q.val()
+            & (!self.active.q.val() | (self.ending.val() & self.last.q.val()));
         self.load.next = self.strobe.val()
             & self.wait_full.q.val()
             & ((self.ending.val() & !self.last.q.val()) | (self.startable.val() & self.go.val()));

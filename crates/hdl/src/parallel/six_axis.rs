@@ -140,7 +140,8 @@ impl Logic for SixAxis {
                 | self.shaper[i].overrun.val()
                 | self.axis[i].overspeed.val()
                 | self.axis[i].underrun.val();
-            self.in_flight.next = self.in_flight.val() | self.axis[i].in_flight.val() | self.shaper[i].step.val();
+            self.in_flight.next =
+                self.in_flight.val() | self.axis[i].in_flight.val() | self.shaper[i].step.val();
             self.at_rest.next = self.at_rest.val()
                 & self.axis[i].drained.val()
                 & !(self.shaper[i].owed.val() | self.shaper[i].step.val());
@@ -152,11 +153,13 @@ impl Logic for SixAxis {
         self.nobody.next = self.seg_axis.val() >= self.six.val();
         self.waiting.next = false;
         for i in 0..6 {
-            self.waiting.next = self.waiting.val() | (self.selected.val().get_bit(i) & self.axis[i].waiting.val());
+            self.waiting.next =
+                self.waiting.val() | (self.selected.val().get_bit(i) & self.axis[i].waiting.val());
         }
         self.seg_ready.next = !(self.frozen.val() | self.waiting.val());
         self.taken.next = self.seg_valid.val() & self.seg_ready.val();
-        self.push.next = self.taken.val() & !self.nobody.val() & (self.seg_ticks.val() != self.no_ticks.val());
+        self.push.next =
+            self.taken.val() & !self.nobody.val() & (self.seg_ticks.val() != self.no_ticks.val());
 
         // The port for starts. A start stays armed until every axis of its mask can start; then all
         // start at one strobe.
@@ -165,11 +168,15 @@ impl Logic for SixAxis {
         self.unfed.next = false;
         self.all_startable.next = true;
         for i in 0..6 {
-            self.unfed.next = self.unfed.val() | (self.start_mask.val().get_bit(i) & !self.axis[i].waiting.val());
-            self.all_startable.next =
-                self.all_startable.val() & (!self.mask.q.val().get_bit(i) | self.axis[i].startable.val());
+            self.unfed.next =
+                self.unfed.val() | (self.start_mask.val().get_bit(i) & !self.axis[i].waiting.val());
+            self.all_startable.next = self.all_startable.val()
+                & (!self.mask.q.val().get_bit(i) | self.axis[i].startable.val());
         }
-        self.go.next = self.armed.q.val() & self.tick.strobe.val() & self.all_startable.val() & !self.frozen.val();
+        self.go.next = self.armed.q.val()
+            & self.tick.strobe.val()
+            & self.all_startable.val()
+            & !self.frozen.val();
         if self.go.val() | self.frozen.val() {
             self.armed.d.next = false;
         }

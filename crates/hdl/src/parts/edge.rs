@@ -102,12 +102,25 @@ impl Edge {
 impl Logic for Edge {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, tick_crossed, tick_back, sign_fwd, sign_back, bisect_p, bisect_v, bisect_q, weight);
+        dff_setup!(
+            self,
+            clock,
+            tick_crossed,
+            tick_back,
+            sign_fwd,
+            sign_back,
+            bisect_p,
+            bisect_v,
+            bisect_q,
+            weight
+        );
         dff_setup!(self, clock, emit, emit_back, emit_q, dir_fwd, dir_back);
 
         // The bisection decides one bit of the phase per clock, the highest bit first.
-        self.half.next = (self.bisect_v.q.val() >> self.by_one.val()) | (self.bisect_v.q.val() & self.sign.val());
-        self.trial.next = bit_cast::<33, 32>(self.bisect_p.q.val()) + bit_cast::<33, 32>(self.half.val());
+        self.half.next = (self.bisect_v.q.val() >> self.by_one.val())
+            | (self.bisect_v.q.val() & self.sign.val());
+        self.trial.next =
+            bit_cast::<33, 32>(self.bisect_p.q.val()) + bit_cast::<33, 32>(self.half.val());
         self.trial_crosses.next = self.trial.val().get_bit(32) ^ self.bisect_v.q.val().get_bit(31);
         if self.weight.q.val().any() {
             self.weight.d.next = self.weight.q.val() >> self.weight_by_one.val();
@@ -143,7 +156,8 @@ impl Logic for Edge {
             self.dir_back.d.next = false;
         }
 
-        self.request.next = self.emit.q.val() & self.phase_start.val() & (self.phase.val() == self.emit_q.q.val());
+        self.request.next =
+            self.emit.q.val() & self.phase_start.val() & (self.phase.val() == self.emit_q.q.val());
         self.request_back.next = self.emit_back.q.val();
         self.want_fwd.next = self.dir_fwd.q.val();
         self.want_back.next = self.dir_back.q.val();

@@ -134,7 +134,10 @@ impl Shaper {
 impl Logic for Shaper {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, step_pin, dir_pin, want, due, due_back, busy, hold, setup, steps, lost, late);
+        dff_setup!(
+            self, clock, step_pin, dir_pin, want, due, due_back, busy, hold, setup, steps, lost,
+            late
+        );
 
         // The direction that DIR should have, and the direction of the step that is due.
         self.want_now.next = self.want_back.val() | (self.want.q.val() & !self.want_fwd.val());
@@ -155,10 +158,13 @@ impl Logic for Shaper {
         if self.pending.val() {
             self.aim.next = self.first_back.val();
         }
-        self.turn.next = !self.frozen.val() & !self.hold.q.val().any() & (self.dir_pin.q.val() != self.aim.val());
+        self.turn.next = !self.frozen.val()
+            & !self.hold.q.val().any()
+            & (self.dir_pin.q.val() != self.aim.val());
 
         // The pins.
-        self.step_pin.d.next = self.rise.val() | (self.step_pin.q.val() & (self.busy.q.val() != self.gap.val()));
+        self.step_pin.d.next =
+            self.rise.val() | (self.step_pin.q.val() & (self.busy.q.val() != self.gap.val()));
         self.dir_pin.d.next = self.dir_pin.q.val() ^ self.turn.val();
 
         // The timers.

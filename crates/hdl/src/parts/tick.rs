@@ -58,7 +58,9 @@ impl Tick {
         Self {
             last_sub: Parameter::of(&last_sub),
             sub_bits: Parameter::of(&last_sub.used_bits()),
-            clocks_per_tick_out_of_range: Refusal::of(&(outside | remainder.is_not(&Formula::number(0)))),
+            clocks_per_tick_out_of_range: Refusal::of(
+                &(outside | remainder.is_not(&Formula::number(0))),
+            ),
             last_phase: Parameter::new(u64::from(timebase.phases() - 1)),
             ..Self::default()
         }
@@ -117,6 +119,9 @@ mod tests {
 
     #[test]
     fn tick_synthesizes() {
-        crate::sim::assert_synthesizes(Tick::new(&Timebase::new(16_000_000, 1000, 1).unwrap()), "carrystep_tick");
+        crate::sim::assert_synthesizes(
+            Tick::new(&Timebase::new(16_000_000, 1000, 1).unwrap()),
+            "carrystep_tick",
+        );
     }
 }

@@ -10,7 +10,8 @@ use crate::primitives::formula::{Formula, Note, ParameterValue};
 use crate::primitives::word::Word;
 use rust_hdl::core::signal::get_signal_id;
 use rust_hdl::prelude::{
-    Atom, AtomKind, Block, Logic, PinConstraint, Probe, Synth, TypeDescriptor, VCDValue, VerilogLiteral,
+    Atom, AtomKind, Block, Logic, PinConstraint, Probe, Synth, TypeDescriptor, VCDValue,
+    VerilogLiteral,
 };
 
 /// The constant VALUE, N bits wide.
@@ -108,8 +109,14 @@ pub struct Given {
 impl Given {
     /// Makes the constant of this parameter.
     pub fn new(given: ParameterValue) -> Self {
-        let (name, text, value) = (given.name.clone(), given.name.clone(), Word::from(given.number()));
-        Self { name, value, note: Note { text, given: vec![given], is_refusal: false }, id: get_signal_id() }
+        let (name, text, value) =
+            (given.name.clone(), given.name.clone(), Word::from(given.number()));
+        Self {
+            name,
+            value,
+            note: Note { text, given: vec![given], is_refusal: false },
+            id: get_signal_id(),
+        }
     }
 
     /// The name of the parameter.

@@ -81,7 +81,11 @@ impl ParameterValue {
     /// The value as a number; of a word, that of its characters, as Verilog has it.
     pub(crate) fn number(&self) -> u64 {
         let Some((_, digits)) = self.literal.split_once('\'') else {
-            return self.literal.trim_matches('"').bytes().fold(0, |number, byte| number << 8 | u64::from(byte));
+            return self
+                .literal
+                .trim_matches('"')
+                .bytes()
+                .fold(0, |number, byte| number << 8 | u64::from(byte));
         };
         let radix = match digits.bytes().next() {
             Some(b'h') => 16,
@@ -219,7 +223,12 @@ operator!(BitOr, bitor, "|", |a, b| a | b);
 impl<const N: usize> Not for Formula<N> {
     type Output = Self;
     fn not(self) -> Self {
-        Self { value: !self.value, text: format!("~{}", self.closed()), is_closed: true, given: self.given }
+        Self {
+            value: !self.value,
+            text: format!("~{}", self.closed()),
+            is_closed: true,
+            given: self.given,
+        }
     }
 }
 
@@ -261,7 +270,11 @@ impl Note {
         let given = parts.map(|part| {
             let mut words = part.split(' ');
             let (name, bits, literal) = (words.next()?, words.next()?, words.next()?);
-            Some(ParameterValue { name: name.to_owned(), bits: bits.parse().ok()?, literal: literal.to_owned() })
+            Some(ParameterValue {
+                name: name.to_owned(),
+                bits: bits.parse().ok()?,
+                literal: literal.to_owned(),
+            })
         });
         Some(Self { text, given: given.collect::<Option<_>>()?, is_refusal })
     }
@@ -269,8 +282,10 @@ impl Note {
     /// The note as a type's name.
     pub(crate) fn written(&self) -> String {
         let kind = if self.is_refusal { REFUSAL } else { CONSTANT };
-        let given =
-            self.given.iter().map(|ParameterValue { name, bits, literal }| format!("\t{name} {bits} {literal}"));
+        let given = self
+            .given
+            .iter()
+            .map(|ParameterValue { name, bits, literal }| format!("\t{name} {bits} {literal}"));
         format!("{kind}\t{}{}", self.text, given.collect::<String>())
     }
 }
@@ -300,7 +315,9 @@ mod tests {
 
     #[test]
     fn used_bits_are_all_up_to_the_highest() {
-        for (greatest, bits) in [(0, 0), (1, 1), (2, 3), (3, 3), (4, 7), (65_535, 65_535), (65_536, 131_071)] {
+        for (greatest, bits) in
+            [(0, 0), (1, 1), (2, 3), (3, 3), (4, 7), (65_535, 65_535), (65_536, 131_071)]
+        {
             assert_eq!(given(greatest).bits::<17>(0).used_bits().value().value(), bits);
         }
         assert_eq!(given(5).bits::<17>(0).used_bits().text(), "used_bits_17(X[16:0])");

@@ -58,7 +58,8 @@ impl<const A: usize, const W: usize> Memory<A, W> {
     /// # Panics
     /// Panics if an address of `initial` is 2^A or more.
     pub fn of_words(initial: &[(usize, Word<W>)]) -> Self {
-        let numbers: Vec<_> = initial.iter().map(|&(address, word)| (address, Formula::from(word))).collect();
+        let numbers: Vec<_> =
+            initial.iter().map(|&(address, word)| (address, Formula::from(word))).collect();
         Self::of_formulas(&numbers)
     }
 
@@ -69,7 +70,9 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         let mut given: Vec<ParameterValue> = Vec::new();
         for (address, word) in initial {
             memory.words[*address] = word.value();
-            given.extend(word.given().iter().filter(|one| !given.contains(one)).cloned().collect::<Vec<_>>());
+            given.extend(
+                word.given().iter().filter(|one| !given.contains(one)).cloned().collect::<Vec<_>>(),
+            );
         }
         memory.given = given.into_iter().map(Given::new).collect();
         memory.initial = initial.to_vec();
@@ -80,7 +83,11 @@ impl<const A: usize, const W: usize> Memory<A, W> {
     /// FPGA has block RAM with such enables: the parameter `EVENT_MEMORY` of the Verilog places it.
     pub fn of_bits() -> Self {
         let words = vec![Word::default(); 1 << A];
-        let style = ParameterValue { name: EVENT_MEMORY.name.to_owned(), bits: 0, literal: BLOCK.to_owned() };
+        let style = ParameterValue {
+            name: EVENT_MEMORY.name.to_owned(),
+            bits: 0,
+            literal: BLOCK.to_owned(),
+        };
         Self {
             clock: Input::default(),
             read_address: Input::default(),
@@ -129,7 +136,9 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         }
         text.push_str("end\n\nalways @(posedge clock) begin\n    value <= words[read_address];\n");
         text.push_str(match (self.whole_words, W) {
-            (true, 1) | (false, 1) => "    if (write_bits) words[write_address] <= write_data;\nend",
+            (true, 1) | (false, 1) => {
+                "    if (write_bits) words[write_address] <= write_data;\nend"
+            }
             (true, _) => "    if (write_bits[0]) words[write_address] <= write_data;\nend",
             (false, _) => "",
         });

@@ -18,8 +18,8 @@ use crate::primitives::word::Word;
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::signal::get_signal_id;
 use rust_hdl::prelude::{
-    Atom, AtomKind, Block, Clock, Logic, Out, PinConstraint, Probe, Signal, Synth, TimingInfo, TypeDescriptor,
-    VCDValue, Verilog,
+    Atom, AtomKind, Block, Clock, Logic, Out, PinConstraint, Probe, Signal, Synth, TimingInfo,
+    TypeDescriptor, VCDValue, Verilog,
 };
 
 /// The register's Verilog text writes this before the note of its initial value.
@@ -46,7 +46,13 @@ impl<T: Synth> Input<T> {
 
 impl<T: Synth> Default for Input<T> {
     fn default() -> Self {
-        Self { next: T::default(), seen: T::default(), changed: false, connected: false, id: get_signal_id() }
+        Self {
+            next: T::default(),
+            seen: T::default(),
+            changed: false,
+            connected: false,
+            id: get_signal_id(),
+        }
     }
 }
 
@@ -127,7 +133,13 @@ impl<T: Synth> Register<T> {
     /// Makes a register that holds `initial` after configuration of the FPGA.
     pub fn new(initial: T) -> Self {
         let d = Input { next: initial, ..Input::default() };
-        Self { d, q: Signal::new_with_default(initial), clock: Input::default(), initial, note: None }
+        Self {
+            d,
+            q: Signal::new_with_default(initial),
+            clock: Input::default(),
+            initial,
+            note: None,
+        }
     }
 }
 
@@ -149,7 +161,8 @@ impl<T: Synth> Logic for Register<T> {
     }
     fn hdl(&self) -> Verilog {
         let initial = self.initial.verilog();
-        let note = self.note.as_ref().map_or(String::new(), |note| format!("{NOTE}{}", note.written()));
+        let note =
+            self.note.as_ref().map_or(String::new(), |note| format!("{NOTE}{}", note.written()));
         Verilog::Custom(format!("initial q = {initial};\nalways @(posedge clock) q <= d;{note}"))
     }
     fn timing(&self) -> Vec<TimingInfo> {

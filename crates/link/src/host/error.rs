@@ -23,7 +23,9 @@ pub enum HostError<E> {
         ms: u32,
     },
     /// Bytes were received, but no valid frame.
-    #[error("something answers ({bytes} bytes), but not in this protocol: another device, or another baud rate")]
+    #[error(
+        "something answers ({bytes} bytes), but not in this protocol: another device, or another baud rate"
+    )]
     Noise {
         /// Number of bytes.
         bytes: u32,
@@ -54,7 +56,9 @@ pub enum HostError<E> {
     )]
     Restarted,
     /// A program was given while the machine is not at rest.
-    #[error("the machine moves, or another host has left segments in its queues: stop and clear it first")]
+    #[error(
+        "the machine moves, or another host has left segments in its queues: stop and clear it first"
+    )]
     NotIdle,
     /// The program cannot be sent.
     #[error(transparent)]

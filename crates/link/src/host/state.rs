@@ -24,7 +24,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     ///
     /// # Errors
     /// As [`Self::enable`].
-    pub fn enable_while(&mut self, mut watch: impl FnMut(&Progress<'_>) -> Wish) -> Result<Ended, HostError<L::Error>> {
+    pub fn enable_while(
+        &mut self,
+        mut watch: impl FnMut(&Progress<'_>) -> Wish,
+    ) -> Result<Ended, HostError<L::Error>> {
         self.write(map::CONTROL, map::CONTROL_ENABLE)?;
         let mut asked = Wish::GoOn;
         self.wait_while(
@@ -65,7 +68,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     ///
     /// # Errors
     /// As [`Self::stop`].
-    pub fn stop_while(&mut self, mut watch: impl FnMut(&Status)) -> Result<Status, HostError<L::Error>> {
+    pub fn stop_while(
+        &mut self,
+        mut watch: impl FnMut(&Status),
+    ) -> Result<Status, HostError<L::Error>> {
         self.session.withdraw();
         self.write(map::CONTROL, self.power() | map::CONTROL_STOP)?;
         self.wait_while(
@@ -104,7 +110,11 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             }
             if self.clock.milliseconds().wrapping_sub(begin) > self.patience.change {
                 let cause = self.status.answer.cause_name();
-                return Err(HostError::TooLong { what: "the clear", cause, ms: self.patience.change });
+                return Err(HostError::TooLong {
+                    what: "the clear",
+                    cause,
+                    ms: self.patience.change,
+                });
             }
         }
         Ok(())

@@ -23,7 +23,15 @@ pub(super) struct Watch {
 
 impl Watch {
     pub(super) const fn new() -> Self {
-        Self { first: false, now: false, held: false, tick_of_round: 0, silence: 0, enabled: false, warm: 0 }
+        Self {
+            first: false,
+            now: false,
+            held: false,
+            tick_of_round: 0,
+            silence: 0,
+            enabled: false,
+            warm: 0,
+        }
     }
 
     /// At a strobe: true if the e-stop was active during the whole tick.
@@ -64,7 +72,13 @@ impl Watch {
 /// Access for the fast model, which passes many clocks at once.
 impl Watch {
     /// True if these inputs and this `idle` change nothing but the counters of rounds.
-    pub(super) fn is_steady(&self, guard: &Guard, inputs: &EngineInputs, idle: bool, stop: &Stop) -> bool {
+    pub(super) fn is_steady(
+        &self,
+        guard: &Guard,
+        inputs: &EngineInputs,
+        idle: bool,
+        stop: &Stop,
+    ) -> bool {
         let estop = inputs.estop != guard.estop_low;
         let seen = [self.first, self.now, self.held].iter().all(|&seen| seen == estop);
         seen && (!estop || (stop.frozen && stop.fault.is_some()))
@@ -75,7 +89,11 @@ impl Watch {
 
     /// Strobes before the strobe at which the watchdog expires.
     pub(super) fn strobes_to_silence(&self, guard: &Guard) -> u64 {
-        if guard.watchdog == 0 { u64::MAX } else { self.strobes_to(guard, guard.watchdog - self.silence) }
+        if guard.watchdog == 0 {
+            u64::MAX
+        } else {
+            self.strobes_to(guard, guard.watchdog - self.silence)
+        }
     }
 
     /// Strobes before the first strobe at which the warm-up time is over.
@@ -86,7 +104,8 @@ impl Watch {
     /// Strobes before the first strobe that finds a counter saturated which is `rounds` rounds
     /// below its maximum.
     fn strobes_to(&self, guard: &Guard, rounds: u32) -> u64 {
-        u64::from(rounds) * u64::from(guard.round) - if rounds == 0 { 0 } else { u64::from(self.tick_of_round) }
+        u64::from(rounds) * u64::from(guard.round)
+            - if rounds == 0 { 0 } else { u64::from(self.tick_of_round) }
     }
 
     /// Strobes before the first strobe in this tick of a round.

@@ -120,7 +120,9 @@ impl Lane {
         next.unfit = false;
         let mut found = None;
         match self.running.filter(|_| !tick.halted) {
-            Some(Segment { v, .. }) if self.unfit || v == i64::MIN => found = Some(Cause::Overspeed),
+            Some(Segment { v, .. }) if self.unfit || v == i64::MIN => {
+                found = Some(Cause::Overspeed)
+            }
             Some(segment) => found = self.add(&mut next, segment, tick),
             None => {}
         }
@@ -150,7 +152,8 @@ impl Lane {
     /// Executes the additions of one tick. `next` must be at rest when the function is called.
     fn add(&self, next: &mut Self, segment: Segment, tick: Tick<'_>) -> Option<Cause> {
         let Segment { left, v, a, j, last } = segment;
-        let step = crosses(self.p, v).then(|| Step { backward: v < 0, phase: bisect(self.p, v, tick.phase_bits) });
+        let step = crosses(self.p, v)
+            .then(|| Step { backward: v < 0, phase: bisect(self.p, v, tick.phase_bits) });
         next.computed = Stage { step, sign: v.signum() as i8 };
         next.p = self.p.wrapping_add(v.cast_unsigned());
         if tick.ramp || self.homing.slows {

@@ -80,7 +80,8 @@ impl Engine {
         let waiting = bits(&self.lanes, |lane| !lane.queue.is_empty());
         let ran = running != 0 && !stop.halted;
         let halted = stop.frozen || (stop.ramp && !ran);
-        let goes_on = Stop { ramp: fault, halted, settled: stop.halted, clearing: false, ..*stop } == *stop;
+        let goes_on =
+            Stop { ramp: fault, halted, settled: stop.halted, clearing: false, ..*stop } == *stop;
         let clears = inputs.clear && stop.settled && !self.watch.pressed();
         let starts = self.armed.is_some_and(|mask| mask & !waiting != 0 || mask & running == 0);
         let rests = if ran || waiting != 0 { 0 } else { 2 };
@@ -91,7 +92,12 @@ impl Engine {
         if !fault && self.rest < 2 && !inputs.kick {
             strobes = strobes.min(self.watch.strobes_to_silence(guard));
         }
-        if !fault && self.armed.is_none() && inputs.start.is_some() && inputs.enable && self.watch.enabled {
+        if !fault
+            && self.armed.is_none()
+            && inputs.start.is_some()
+            && inputs.enable
+            && self.watch.enabled
+        {
             strobes = strobes.min(self.watch.strobes_to_warmth(guard));
         }
         self.lanes.iter().map(|lane| lane.plain_strobes(stop.ramp)).fold(strobes, u64::min)
@@ -112,9 +118,17 @@ impl Engine {
                 let first = self.watch.strobes_to_look(guard, end);
                 // An active limit stops an axis that moves toward it.
                 let counts = !stopped || lane.homing.waits;
-                let hits = guard.limits == Limits::Pair && limit.active && lane.running.is_some() && counts;
-                let looks = if hits { 0 } else { limit.plain_looks(self.pin(inputs, axis, end), guard.debounce) };
-                strobes = strobes.min(looks.saturating_mul(guard.round.into()).saturating_add(first));
+                let hits = guard.limits == Limits::Pair
+                    && limit.active
+                    && lane.running.is_some()
+                    && counts;
+                let looks = if hits {
+                    0
+                } else {
+                    limit.plain_looks(self.pin(inputs, axis, end), guard.debounce)
+                };
+                strobes =
+                    strobes.min(looks.saturating_mul(guard.round.into()).saturating_add(first));
             }
         }
         strobes
@@ -181,7 +195,9 @@ impl Lane {
             (Some(segment), _) if segment.v == i64::MIN => 0,
             (Some(segment), None) if !ramp => segment.left.into(),
             // The axis comes to rest in the tick in which V would change its sign.
-            (Some(segment), Some(back)) if ramp => (segment.v.unsigned_abs() - u64::from(back)) / stop,
+            (Some(segment), Some(back)) if ramp => {
+                (segment.v.unsigned_abs() - u64::from(back)) / stop
+            }
             _ => 0,
         }
     }
@@ -195,14 +211,28 @@ impl Lane {
 
     fn moving(&self, ramp: bool) -> Moving {
         let cubic = self.running.map_or(Cubic::REST, |segment| match self.ramp {
-            Some(back) if ramp => Cubic { v: segment.v, a: if back { self.stop } else { -self.stop }, j: 0 },
+            Some(back) if ramp => {
+                Cubic { v: segment.v, a: if back { self.stop } else { -self.stop }, j: 0 }
+            }
             _ => Cubic { v: segment.v, a: segment.a, j: segment.j },
         });
-        Moving { p: self.p, cubic, computed: self.computed, emitted: self.emitted, shaper: self.shaper }
+        Moving {
+            p: self.p,
+            cubic,
+            computed: self.computed,
+            emitted: self.emitted,
+            shaper: self.shaper,
+        }
     }
 
     fn moved(&mut self, moved: &Moving, ramp: bool, strobes: u32) {
-        Moving { p: self.p, cubic: _, computed: self.computed, emitted: self.emitted, shaper: self.shaper } = *moved;
+        Moving {
+            p: self.p,
+            cubic: _,
+            computed: self.computed,
+            emitted: self.emitted,
+            shaper: self.shaper,
+        } = *moved;
         if let Some(segment) = &mut self.running {
             segment.v = moved.cubic.v;
             if !ramp {

@@ -49,7 +49,8 @@ impl Engine {
         let of_lane = |lane: &Lane| {
             let all = || lane.running.iter().chain(&lane.queue);
             let begun = armed || lane.running.is_some();
-            let ended = if armed { all().next_back()?.last } else { all().any(|segment| segment.last) };
+            let ended =
+                if armed { all().next_back()?.last } else { all().any(|segment| segment.last) };
             if !begun || ended {
                 return None;
             }
@@ -106,7 +107,12 @@ mod tests {
             // The loop begins with the second tick; the first has no turns.
             for clocks in 0..answers.len() as u64 - 96.min(answers.len() as u64) {
                 let counted: u64 = answers.iter().rev().take(clocks as usize).sum();
-                assert_eq!(engine.answers_before(clocks), counted, "{clocks} before {}", answers.len());
+                assert_eq!(
+                    engine.answers_before(clocks),
+                    counted,
+                    "{clocks} before {}",
+                    answers.len()
+                );
             }
         }
     }

@@ -91,7 +91,11 @@ impl Passage<'_> {
     fn request(&mut self, stage: Stage, n: u32) -> Result<(), Overrun> {
         let Some(step) = stage.step else { return Ok(()) };
         let at = self.cycle(n) + u64::from(step.phase) * u64::from(self.clocks_per_phase);
-        if (self.window.from..self.window.to).contains(&at) { self.pins.requests(&[at], step.backward) } else { Ok(()) }
+        if (self.window.from..self.window.to).contains(&at) {
+            self.pins.requests(&[at], step.backward)
+        } else {
+            Ok(())
+        }
     }
 
     /// Executes the strobe at the end of tick `n`.
@@ -100,7 +104,8 @@ impl Passage<'_> {
         let Some(faster) = v.checked_add(a).filter(|&faster| faster != i64::MIN) else {
             return Err(FaultIn(self.cycle(n + 1) - 1));
         };
-        let step = crosses(lane.p, v).then(|| Step { backward: v < 0, phase: bisect(lane.p, v, self.phase_bits) });
+        let step = crosses(lane.p, v)
+            .then(|| Step { backward: v < 0, phase: bisect(lane.p, v, self.phase_bits) });
         lane.emitted = lane.computed;
         lane.computed = Stage { step, sign: v.signum() as i8 };
         lane.p = lane.p.wrapping_add(v.cast_unsigned());

@@ -73,7 +73,11 @@ impl Passages {
         if clocks == 0 {
             return Ok(());
         }
-        let window = Window { tick: from.cycle - from.clock_of_tick, from: from.cycle, to: from.cycle + clocks };
+        let window = Window {
+            tick: from.cycle - from.clock_of_tick,
+            from: from.cycle,
+            to: from.cycle + clocks,
+        };
         for (((number, axis), pins), edges) in (0..).zip(axes).zip(pins).zip(lists) {
             lane::pass(axis, number, window, time, *pins, edges)?;
         }

@@ -31,7 +31,14 @@ pub(super) struct Pins<'a> {
 
 impl<'a> Pins<'a> {
     /// The shaper in clock `at`, with the sign of the speed that it sees.
-    pub fn new(axis: u8, pins: PinTiming, state: shaper::State, sign: i8, at: u64, edges: &'a mut Vec<Record>) -> Self {
+    pub fn new(
+        axis: u8,
+        pins: PinTiming,
+        state: shaper::State,
+        sign: i8,
+        at: u64,
+        edges: &'a mut Vec<Record>,
+    ) -> Self {
         let after = |timer: u32| at + u64::from(timer);
         let (busy, hold, setup) = (after(state.busy), after(state.hold), after(state.setup));
         let agrees = sign == 0 || (sign < 0) == state.want;
@@ -45,7 +52,9 @@ impl<'a> Pins<'a> {
         let period = u64::from(self.pins.width + self.pins.gap);
         let (Some(first), Some(last)) = (clocks.first(), clocks.last()) else { return Ok(()) };
         let ready = self.calm && backward == self.state.dir && *first >= self.busy.max(self.setup);
-        if !ready || clocks.windows(2).fold(false, |close, pair| close | (pair[1] - pair[0] < period)) {
+        if !ready
+            || clocks.windows(2).fold(false, |close, pair| close | (pair[1] - pair[0] < period))
+        {
             return clocks.iter().try_for_each(|at| self.request(*at, backward));
         }
         let axis = self.axis;
@@ -60,7 +69,8 @@ impl<'a> Pins<'a> {
         if !self.calm || backward != self.state.dir || at < self.busy.max(self.setup) {
             return self.hard_request(at, backward);
         }
-        self.edges.push(Edge { clock: at + 1, axis: self.axis, change: Change::Rise, backward }.record());
+        self.edges
+            .push(Edge { clock: at + 1, axis: self.axis, change: Change::Rise, backward }.record());
         self.made(at, 1, backward);
         Ok(())
     }
@@ -70,7 +80,8 @@ impl<'a> Pins<'a> {
         self.busy = at + u64::from(self.pins.width + self.pins.gap);
         self.hold = at + u64::from(self.pins.hold);
         self.state.step = true;
-        self.state.position = self.state.position.wrapping_add(if backward { -steps } else { steps });
+        self.state.position =
+            self.state.position.wrapping_add(if backward { -steps } else { steps });
     }
 
     /// Sets the sign of the speed from clock `at` on.
@@ -115,7 +126,13 @@ impl<'a> Pins<'a> {
         let timer = |end: u64| end.saturating_sub(at) as u32;
         let busy = timer(self.busy);
         let step = self.state.step && busy >= self.pins.gap;
-        self.state = shaper::State { step, busy, hold: timer(self.hold), setup: timer(self.setup), ..self.state };
+        self.state = shaper::State {
+            step,
+            busy,
+            hold: timer(self.hold),
+            setup: timer(self.setup),
+            ..self.state
+        };
         self.at = at;
         self.calm = false;
     }
@@ -123,12 +140,14 @@ impl<'a> Pins<'a> {
     /// Executes one clock of [`shaper::clock`].
     fn clock(&mut self, request: Option<bool>) -> Result<(), Overrun> {
         let before = self.state;
-        let next = shaper::clock(before, Input { request, sign: self.sign, frozen: false }, self.pins);
+        let next =
+            shaper::clock(before, Input { request, sign: self.sign, frozen: false }, self.pins);
         if next.overrun {
             return Err(Overrun(self.at));
         }
         self.at += 1;
-        let edge = |change, backward| Edge { clock: self.at, axis: self.axis, change, backward }.record();
+        let edge =
+            |change, backward| Edge { clock: self.at, axis: self.axis, change, backward }.record();
         if next.position != before.position {
             self.edges.push(edge(Change::Rise, before.dir));
         }
@@ -136,7 +155,8 @@ impl<'a> Pins<'a> {
             self.edges.push(edge(Change::Turn, next.dir));
         }
         let after = |timer: u32| self.at + u64::from(timer);
-        (self.busy, self.hold, self.setup) = (after(next.busy), after(next.hold), after(next.setup));
+        (self.busy, self.hold, self.setup) =
+            (after(next.busy), after(next.hold), after(next.setup));
         self.calm = next.owed.is_none() && next.dir == next.want;
         self.state = next;
         Ok(())

@@ -62,7 +62,9 @@ impl End {
     /// other pins of an SPI stay at rest, and `offered` stays the same.
     pub(super) fn quiet(&self, rx: bool, offered: bool) -> u64 {
         match self {
-            Self::Uart { receiver, transmitter } => receiver.quiet(rx).min(transmitter.quiet(offered)),
+            Self::Uart { receiver, transmitter } => {
+                receiver.quiet(rx).min(transmitter.quiet(offered))
+            }
             Self::Spi(spi) => spi.quiet(),
         }
     }

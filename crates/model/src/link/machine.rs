@@ -8,8 +8,9 @@ use super::check::{Check, Told};
 use carrystep_core::engine::EngineOutputs;
 use carrystep_core::link::Image;
 use carrystep_core::link::machine::{
-    ACTS, BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, Code, Condition, FOR_ROOM, GOES, HOMING,
-    INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, Source, TAX, UNLESS, WAIT, XOR,
+    ACTS, BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, Code, Condition,
+    FOR_ROOM, GOES, HOMING, INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, Source,
+    TAX, UNLESS, WAIT, XOR,
 };
 use carrystep_core::link::registers::{CONTROL_ENABLE, CONTROL_STOP};
 use std::sync::Arc;
@@ -246,7 +247,13 @@ impl Machine {
                 HOMING => engine.homing,
                 _ => {
                     let cause = engine.fault.map_or(0, |(cause, _)| cause as u8);
-                    let bits = [engine.fault.is_some(), engine.halted, engine.idle, engine.ready, engine.armed];
+                    let bits = [
+                        engine.fault.is_some(),
+                        engine.halted,
+                        engine.idle,
+                        engine.ready,
+                        engine.armed,
+                    ];
                     bits.iter().rev().fold(cause, |state, &bit| state << 1 | u8::from(bit))
                 }
             },
@@ -260,7 +267,9 @@ impl Machine {
         let waits = self.does(WAIT) && !self.does(GOES);
         let reads = self.executes(SETS) && self.code >> 8 & 7 == Source::Engine as Code;
         let asks = self.executes(JUMPS)
-            && [Condition::Fault, Condition::Startable].iter().any(|&asked| self.code >> 8 & 7 == asked as Code);
+            && [Condition::Fault, Condition::Startable]
+                .iter()
+                .any(|&asked| self.code >> 8 & 7 == asked as Code);
         acts || waits || reads || asks
     }
 

@@ -52,7 +52,16 @@ pub struct Output {
 impl State {
     /// An axis at rest, with P = `start_value` (2^-64 step) and no segment waiting.
     pub const fn at_rest(start_value: u64) -> Self {
-        Self { p: start_value, v: 0, a: 0, j: 0, left: 0, running: false, last: false, waiting: None }
+        Self {
+            p: start_value,
+            v: 0,
+            a: 0,
+            j: 0,
+            left: 0,
+            running: false,
+            last: false,
+            waiting: None,
+        }
     }
 
     /// True in the last tick of the running segment.

@@ -51,7 +51,14 @@ impl SixAxis {
             underrun: false,
             shaper: shaper::State::at_configuration(build.pins[axis]),
         };
-        Self { build: build.clone(), sub: 0, phase: 0, armed: None, protocol: false, lanes: std::array::from_fn(lane) }
+        Self {
+            build: build.clone(),
+            sub: 0,
+            phase: 0,
+            armed: None,
+            protocol: false,
+            lanes: std::array::from_fn(lane),
+        }
     }
 
     /// The registers of an axis' accumulator. Panics if `axis` is not less than 6.
@@ -95,7 +102,11 @@ impl SixAxis {
 
         for (axis, lane) in self.lanes.iter_mut().enumerate() {
             let request = lane.emitted.step.filter(|step| phase_start && step.phase == self.phase);
-            let input = shaper::Input { request: request.map(|step| step.backward), sign: lane.emitted.sign, frozen };
+            let input = shaper::Input {
+                request: request.map(|step| step.backward),
+                sign: lane.emitted.sign,
+                frozen,
+            };
             lane.shaper = shaper::clock(lane.shaper, input, self.build.pins[axis]);
             if strobe {
                 let selected = go.is_some_and(|mask| mask >> axis & 1 == 1);
@@ -187,21 +198,26 @@ impl SixAxis {
     /// True if the inputs change nothing in this cycle, the next strobe only adds, and neither
     /// `idle` nor a fault can occur before a segment ends.
     pub(crate) fn only_adds(&self, inputs: &Inputs) -> bool {
-        let moving = self.armed.is_some() || self.lanes.iter().any(|l| l.axis.running || l.axis.waiting.is_some());
+        let moving = self.armed.is_some()
+            || self.lanes.iter().any(|l| l.axis.running || l.axis.waiting.is_some());
         moving && !self.faults().any() && self.go().is_none() && !self.hears(inputs)
     }
 
     /// True if nothing changes as long as the inputs stay the same.
     pub(crate) fn is_still(&self, inputs: &Inputs) -> bool {
         let frozen = self.faults().any();
-        let deaf =
-            if frozen { !inputs.clear && self.armed.is_none() } else { self.go().is_none() && !self.hears(inputs) };
+        let deaf = if frozen {
+            !inputs.clear && self.armed.is_none()
+        } else {
+            self.go().is_none() && !self.hears(inputs)
+        };
         deaf && self.lanes.iter().all(Lane::is_still)
     }
 
     /// True if a core that is not frozen would accept an offered segment or start in this cycle.
     fn hears(&self, inputs: &Inputs) -> bool {
-        inputs.segment.is_some_and(|(axis, _)| self.takes(axis)) || (inputs.start.is_some() && self.armed.is_none())
+        inputs.segment.is_some_and(|(axis, _)| self.takes(axis))
+            || (inputs.start.is_some() && self.armed.is_none())
     }
 }
 
@@ -235,13 +251,22 @@ impl Lane {
 
     /// True if no clock and no strobe changes the axis.
     fn is_still(&self) -> bool {
-        !self.axis.running && self.computed.is_empty() && self.emitted.is_empty() && self.shaper.is_still(false)
+        !self.axis.running
+            && self.computed.is_empty()
+            && self.emitted.is_empty()
+            && self.shaper.is_still(false)
     }
 
     /// The part of the axis that a window of the fast model changes.
     pub(crate) fn moving(&self) -> Moving {
         let cubic = Cubic { v: self.axis.v, a: self.axis.a, j: self.axis.j };
-        Moving { p: self.axis.p, cubic, computed: self.computed, emitted: self.emitted, shaper: self.shaper }
+        Moving {
+            p: self.axis.p,
+            cubic,
+            computed: self.computed,
+            emitted: self.emitted,
+            shaper: self.shaper,
+        }
     }
 
     /// Writes back the axis as it is after a window with this many strobes.
@@ -253,7 +278,10 @@ impl Lane {
     }
 
     fn idle(&self) -> bool {
-        !self.axis.running && self.axis.waiting.is_none() && self.shaper.owed.is_none() && !self.on_its_way()
+        !self.axis.running
+            && self.axis.waiting.is_none()
+            && self.shaper.owed.is_none()
+            && !self.on_its_way()
     }
 }
 

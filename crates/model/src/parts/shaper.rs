@@ -103,7 +103,11 @@ pub fn clock(state: State, input: Input, pins: PinTiming) -> State {
         busy: if rise { pins.width + pins.gap - 1 } else { state.busy.saturating_sub(1) },
         hold: if rise { pins.hold - 1 } else { state.hold.saturating_sub(1) },
         setup: if turn { pins.setup - 1 } else { state.setup.saturating_sub(1) },
-        position: if rise { state.position.wrapping_add(if state.dir { -1 } else { 1 }) } else { state.position },
+        position: if rise {
+            state.position.wrapping_add(if state.dir { -1 } else { 1 })
+        } else {
+            state.position
+        },
         discarded: state.discarded.wrapping_add(lost),
         overrun: state.overrun || (!frozen && lost > 0),
     }

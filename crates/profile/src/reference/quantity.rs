@@ -100,7 +100,10 @@ mod tests {
     #[test]
     fn millimetres_without_a_travel_are_refused() {
         let motor = Drive { travel_per_rev_mm: None, ..SORN };
-        assert_eq!(Quantity::new(1.0, Length::Millimetre).in_steps(&motor), Err(ReferenceError::NoTravel));
+        assert_eq!(
+            Quantity::new(1.0, Length::Millimetre).in_steps(&motor),
+            Err(ReferenceError::NoTravel)
+        );
         assert_eq!(Quantity::new(1.0, Length::Turn).in_steps(&motor), Ok(400.0));
     }
 }

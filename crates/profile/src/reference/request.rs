@@ -62,7 +62,16 @@ impl Request {
     /// A request without any limits.
     pub const fn new(drive: Drive, travel: Travel) -> Self {
         let (time, centre) = (None, None);
-        Self { drive, travel, time, speed: None, start_speed: None, acceleration: None, jerk: None, centre }
+        Self {
+            drive,
+            travel,
+            time,
+            speed: None,
+            start_speed: None,
+            acceleration: None,
+            jerk: None,
+            centre,
+        }
     }
 
     /// The profiles of several kinds.
@@ -97,18 +106,28 @@ impl Request {
             if VALUES.contains(&value) || zero && value == 0.0 {
                 return Ok(Some(value));
             }
-            let must = if zero { "0, or 1e-9 to 1e15 in steps" } else { "over 0: 1e-9 to 1e15 in steps" };
+            let must =
+                if zero { "0, or 1e-9 to 1e15 in steps" } else { "over 0: 1e-9 to 1e15 in steps" };
             Err(ReferenceError::OutOfRange { what, value: quantity.value(), must })
         };
         let start_speed = read("the start speed", self.start_speed, true)?.unwrap_or(0.0);
         let top = read("the speed", self.speed, false)?;
-        let acceleration = read("the acceleration", self.acceleration, false)?.unwrap_or(f64::INFINITY);
+        let acceleration =
+            read("the acceleration", self.acceleration, false)?.unwrap_or(f64::INFINITY);
         let jerk = read("the jerk", self.jerk, false)?.unwrap_or(f64::INFINITY);
         if let Some(value) = self.time.filter(|time| !VALUES.contains(time)) {
-            return Err(ReferenceError::OutOfRange { what: "the time", value, must: "over 0: 1e-9 to 1e15 s" });
+            return Err(ReferenceError::OutOfRange {
+                what: "the time",
+                value,
+                must: "over 0: 1e-9 to 1e15 s",
+            });
         }
         if let Some(value) = self.centre.filter(|centre| !(-1e15..=1e15).contains(centre)) {
-            return Err(ReferenceError::OutOfRange { what: "the centre T_i", value, must: "-1e15 to 1e15 s" });
+            return Err(ReferenceError::OutOfRange {
+                what: "the centre T_i",
+                value,
+                must: "-1e15 to 1e15 s",
+            });
         }
         let speed = top.unwrap_or(f64::INFINITY);
         if start_speed >= speed {
@@ -141,7 +160,11 @@ impl Request {
         })
     }
 
-    fn ramp(&self, kind: ProfileKind, steps: &Steps) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
+    fn ramp(
+        &self,
+        kind: ProfileKind,
+        steps: &Steps,
+    ) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
         if kind == ProfileKind::Constant {
             return Err(ReferenceError::NoRamp);
         }
@@ -163,10 +186,17 @@ impl Request {
         kinds::ramp(kind, top, self.time, limits).ok_or(ReferenceError::NoRamp)?.map_err(refused)
     }
 
-    fn whole(&self, kind: ProfileKind, distance: f64, steps: &Steps) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
+    fn whole(
+        &self,
+        kind: ProfileKind,
+        distance: f64,
+        steps: &Steps,
+    ) -> Result<Arc<dyn Curve<f64>>, ReferenceError> {
         let Steps { limits, .. } = steps;
         if self.centre.is_some() && kind == ProfileKind::Logistic {
-            return Err(ReferenceError::CentreOf { what: "a move has two, symmetric in themselves" });
+            return Err(ReferenceError::CentreOf {
+                what: "a move has two, symmetric in themselves",
+            });
         }
         let missing = |what: String| Err(ReferenceError::Missing { kind, what });
         if kind != ProfileKind::Constant && limits.acceleration.is_infinite() {
@@ -195,20 +225,30 @@ impl Request {
         let (limit, power) = in_words(limit);
         let wanted = stated.back(wanted, &self.drive).map_or(wanted, up);
         let (available, unit) = (stated.value(), stated.unit(power));
-        ReferenceError::Refused { kind, limit, available, wanted, unit, least_time: least_time.map(up) }
+        ReferenceError::Refused {
+            kind,
+            limit,
+            available,
+            wanted,
+            unit,
+            least_time: least_time.map(up),
+        }
     }
 
     /// The advice to a user who gave no jerk limit: the jerk of the sine with the same speed and
     /// acceleration.
     fn jerk_advice(&self, top: f64, limits: &Limits<f64>) -> String {
-        let acceleration = self.time.map_or(limits.acceleration, |time| limits.acceleration.min(2.0 * top / time));
+        let acceleration =
+            self.time.map_or(limits.acceleration, |time| limits.acceleration.min(2.0 * top / time));
         if acceleration.is_infinite() {
             return "a jerk limit".to_owned();
         }
         let jerk = PI * acceleration * acceleration / (2.0 * top);
         let stated = Quantity::new(jerk, self.acceleration.map_or(Length::Step, |a| a.length()));
         let (jerk, unit) = (stated.back(jerk, &self.drive).map_or(jerk, up), stated.unit(3));
-        format!("a jerk limit; the sine has one of {jerk} {unit} at the same speed and acceleration")
+        format!(
+            "a jerk limit; the sine has one of {jerk} {unit} at the same speed and acceleration"
+        )
     }
 
     fn nothing_besides_the_centre(&self) -> Result<(), ReferenceError> {

@@ -51,7 +51,8 @@ impl Recording {
         how_far: Option<&HowFar>,
     ) -> Self {
         let mut model = Engine::new(build);
-        let mut recording = Self { stimuli: Vec::new(), outputs: Vec::new(), clocks: 0, kept: Kept::default() };
+        let mut recording =
+            Self { stimuli: Vec::new(), outputs: Vec::new(), clocks: 0, kept: Kept::default() };
         let settle = settle(build);
         let mut quiet = 0;
         while quiet < settle && recording.clocks < max_clocks && !halted(halt) {
@@ -90,13 +91,18 @@ impl Recording {
     fn text(&self) -> String {
         let mut text = String::new();
         for (count, inputs) in &self.stimuli {
-            let (axis, word, data) = inputs.put.map_or((inputs.room_of, 0, 0), |put| (put.axis, put.word, put.data));
+            let (axis, word, data) =
+                inputs.put.map_or((inputs.room_of, 0, 0), |put| (put.axis, put.word, put.data));
             let (put, start) = (u8::from(inputs.put.is_some()), u8::from(inputs.start.is_some()));
-            let EngineInputs { clear, stop, broken, kick, enable, estop, limit_min, limit_max, .. } = *inputs;
-            let [clear, stop, broken, kick, enable, estop] = [clear, stop, broken, kick, enable, estop].map(u8::from);
+            let EngineInputs {
+                clear, stop, broken, kick, enable, estop, limit_min, limit_max, ..
+            } = *inputs;
+            let [clear, stop, broken, kick, enable, estop] =
+                [clear, stop, broken, kick, enable, estop].map(u8::from);
             let homes = u8::from(inputs.home.is_some());
-            let [mask, home, min, max] = [inputs.start.unwrap_or(0), inputs.home.unwrap_or(0), limit_min, limit_max]
-                .map(|mask| u32::from(mask) & ((1 << self.axes()) - 1));
+            let [mask, home, min, max] =
+                [inputs.start.unwrap_or(0), inputs.home.unwrap_or(0), limit_min, limit_max]
+                    .map(|mask| u32::from(mask) & ((1 << self.axes()) - 1));
             let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear}");
             // Writing to a string cannot fail.
             let _ = writeln!(
@@ -120,7 +126,11 @@ pub(super) fn settle(build: &EngineBuild) -> u64 {
 ///
 /// # Errors
 /// [`LevelError`] if a tool is missing or fails, or if the level has no Verilog.
-pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<Option<String>, LevelError> {
+pub fn difference(
+    level: Level,
+    verilog: &str,
+    recording: &Recording,
+) -> Result<Option<String>, LevelError> {
     match level {
         Level::Icarus => {
             let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
@@ -139,7 +149,11 @@ pub fn difference(level: Level, verilog: &str, recording: &Recording) -> Result<
 ///
 /// # Errors
 /// [`LevelError`] if a tool is missing or fails.
-pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording) -> Result<Option<String>, LevelError> {
+pub fn difference_of_mutant(
+    verilog: &str,
+    mutant: usize,
+    recording: &Recording,
+) -> Result<Option<String>, LevelError> {
     let folder = tempfile::tempdir().map_err(tool::io("cannot make a temporary folder"))?;
     tool::put(folder.path(), &[("stimuli.txt", &recording.text())])?;
     let mut simulation = Command::new(verilated(verilog, recording.axes())?);
@@ -148,8 +162,14 @@ pub fn difference_of_mutant(verilog: &str, mutant: usize, recording: &Recording)
 }
 
 /// Runs a simulation until it differs from the recording, or to its end.
-fn first_difference(simulation: &mut Command, recording: &Recording) -> Result<Option<String>, LevelError> {
-    let mut running = simulation.stdout(Stdio::piped()).spawn().map_err(tool::io("cannot start the simulation"))?;
+fn first_difference(
+    simulation: &mut Command,
+    recording: &Recording,
+) -> Result<Option<String>, LevelError> {
+    let mut running = simulation
+        .stdout(Stdio::piped())
+        .spawn()
+        .map_err(tool::io("cannot start the simulation"))?;
     let lines = running.stdout.take().map(|output| BufReader::new(output).lines());
     let mut found = lines.into_iter().flatten().map_while(Result::ok);
     let difference = compare(&mut found, recording);
@@ -187,15 +207,29 @@ fn parsed(line: &str) -> Option<(u64, u64)> {
 
 /// Packs the outputs in the order of the benches.
 fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
-    let EngineOutputs { put_ready, start_ready, step, dir, enabled, idle, fault, halted, started, .. } = *outputs;
+    let EngineOutputs {
+        put_ready,
+        start_ready,
+        step,
+        dir,
+        enabled,
+        idle,
+        fault,
+        halted,
+        started,
+        ..
+    } = *outputs;
     let EngineOutputs { armed, ready, homing, latch, room, .. } = *outputs;
     let (cause, culprits) = fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
     let flags = [put_ready, start_ready, idle, fault.is_some(), halted, started, enabled];
-    let number = |place: Option<u8>| u64::from(place.is_some()) << 3 | u64::from(place.unwrap_or(0));
+    let number =
+        |place: Option<u8>| u64::from(place.is_some()) << 3 | u64::from(place.unwrap_or(0));
     let host = number(latch) << 6 | number(room) << 2 | u64::from(armed) << 1 | u64::from(ready);
     let host = host << axes | u64::from(homing);
     let flags = flags.into_iter().fold(host, |all, flag| all << 1 | u64::from(flag));
-    [step, dir, culprits].into_iter().fold(flags << 3 | cause, |all, mask| all << axes | u64::from(mask))
+    [step, dir, culprits]
+        .into_iter()
+        .fold(flags << 3 | cause, |all, mask| all << axes | u64::from(mask))
 }
 
 fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelError> {
@@ -213,5 +247,6 @@ fn icarus(folder: &Path, verilog: &str, axes: usize) -> Result<Command, LevelErr
 fn verilated(verilog: &str, axes: usize) -> Result<PathBuf, LevelError> {
     let flags = format!("-DAXES={axes}");
     let options: &[&str] = &["-CFLAGS", &flags];
-    Simulation { name: "engine", top: "carrystep_engine", bench: VERILATOR_BENCH, options }.compiled(verilog)
+    Simulation { name: "engine", top: "carrystep_engine", bench: VERILATOR_BENCH, options }
+        .compiled(verilog)
 }

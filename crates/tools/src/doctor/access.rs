@@ -84,7 +84,8 @@ fn user_of(host: &Host, device: &Path) -> Option<Access> {
         let pid = numbered(&process)?;
         let mut files = fs::read_dir(process.join("fd")).ok()?.flatten();
         files.find(|file| fs::read_link(file.path()).is_ok_and(|target| target == device))?;
-        let program = fs::read_to_string(process.join("comm")).unwrap_or_default().trim().to_owned();
+        let program =
+            fs::read_to_string(process.join("comm")).unwrap_or_default().trim().to_owned();
         Some(Access::InUse { pid, program })
     })
 }
@@ -93,7 +94,9 @@ impl fmt::Display for Access {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Granted => f.write_str("may be used"),
-            Self::InUse { pid, program } => write!(f, "in use by {program} (process {pid}): close that first"),
+            Self::InUse { pid, program } => {
+                write!(f, "in use by {program} (process {pid}): close that first")
+            }
             Self::Refused(Refusal::NotInGroup { group }) => write!(
                 f,
                 "may not be opened: you are not in its group {group}. `sudo usermod -aG {group} $USER`, then log out and in"
@@ -103,9 +106,9 @@ impl fmt::Display for Access {
                 "may not be opened yet: you are in its group {group} since this session began. Log out and in, or run \
                  `newgrp {group}`"
             ),
-            Self::Refused(Refusal::NoRule) => {
-                f.write_str("may not be opened: no rule of udev gives it to a group. docs/flashing.md has one")
-            }
+            Self::Refused(Refusal::NoRule) => f.write_str(
+                "may not be opened: no rule of udev gives it to a group. docs/flashing.md has one",
+            ),
         }
     }
 }

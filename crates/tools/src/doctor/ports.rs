@@ -57,7 +57,8 @@ pub fn usb_devices(host: &Host) -> Vec<UsbDevice> {
     let device = |folder: PathBuf| {
         let usb = usb_id(&folder)?;
         let maybe = with(Some(&usb));
-        let number = |name: &str| fs::read_to_string(folder.join(name)).ok()?.trim().parse::<u32>().ok();
+        let number =
+            |name: &str| fs::read_to_string(folder.join(name)).ok()?.trim().parse::<u32>().ok();
         let node = format!("dev/bus/usb/{:03}/{:03}", number("busnum")?, number("devnum")?);
         let path = host.root.join(node);
         (!maybe.is_empty()).then(|| UsbDevice { access: access(host, &path), path, usb, maybe })
@@ -67,7 +68,8 @@ pub fn usb_devices(host: &Host) -> Vec<UsbDevice> {
 
 /// Vendor and product id in a directory of `sys`.
 fn usb_id(folder: &Path) -> Option<String> {
-    let read = |name: &str| fs::read_to_string(folder.join(name)).ok().map(|text| text.trim().to_owned());
+    let read =
+        |name: &str| fs::read_to_string(folder.join(name)).ok().map(|text| text.trim().to_owned());
     Some(format!("{}:{}", read("idVendor")?, read("idProduct")?))
 }
 

@@ -1,7 +1,9 @@
 //! Finds the tools: their paths, their versions, and the commands that install missing ones.
 
 use crate::doctor::Host;
-use crate::programs::{FLOWS, ICARUS, ICEBOX_VLOG, ICEPACK, ICETIME, NEXTPNR, PROGRAMMERS, Tool, VERILATOR, YOSYS, Z3};
+use crate::programs::{
+    FLOWS, ICARUS, ICEBOX_VLOG, ICEPACK, ICETIME, NEXTPNR, PROGRAMMERS, Tool, VERILATOR, YOSYS, Z3,
+};
 use carrystep_boards::Board;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -29,8 +31,12 @@ pub fn tools(host: &Host, board: Option<&Board>) -> Vec<Found> {
         None => vec![ICARUS, VERILATOR, Z3, YOSYS, NEXTPNR, ICEPACK, ICETIME, ICEBOX_VLOG],
         Some(board) => {
             let programs = board.family.facts().toolchain().programs;
-            let flow = programs.iter().filter_map(|name| FLOWS.into_iter().find(|tool| tool.name == *name));
-            let loads = PROGRAMMERS.into_iter().filter(|tool| board.flash.split(' ').next() == Some(tool.name));
+            let flow = programs
+                .iter()
+                .filter_map(|name| FLOWS.into_iter().find(|tool| tool.name == *name));
+            let loads = PROGRAMMERS
+                .into_iter()
+                .filter(|tool| board.flash.split(' ').next() == Some(tool.name));
             flow.chain(loads).collect()
         }
     };
@@ -61,7 +67,11 @@ mod tests {
     fn programs_of_every_family_are_known() {
         for board in boards() {
             for program in board.family.facts().toolchain().programs {
-                assert!(FLOWS.iter().any(|tool| tool.name == *program), "{}: {program}", board.name);
+                assert!(
+                    FLOWS.iter().any(|tool| tool.name == *program),
+                    "{}: {program}",
+                    board.name
+                );
             }
         }
     }

@@ -22,7 +22,10 @@ pub fn links() -> Result<[Size; LINES.len()], SynthesisError> {
     let build = machine(row)?;
     let uart = Uart::new(row.clock_hz, 3_000_000).map_err(failed)?;
     let size = |line| {
-        let parts = [(link_verilog(&build, line, ""), LINK_NAME), (line_verilog(line, ""), line_name(line))];
+        let parts = [
+            (link_verilog(&build, line, ""), LINK_NAME),
+            (line_verilog(line, ""), line_name(line)),
+        ];
         let mut all = Size { logic_cells: 0, block_rams: 0 };
         for (verilog, name) in parts {
             let found = ice40::synthesise(&verilog.map_err(failed)?, name)?.size(row.part)?;

@@ -66,7 +66,8 @@ pub(super) fn machine(row: &Row) -> Result<EngineBuild, SynthesisError> {
     if !MACHINE.contains(SHIPPED_TIME) {
         return Err(failed(format!("{SHIPPED} has no {SHIPPED_TIME}")));
     }
-    let text = MACHINE.replace(SHIPPED_TIME, &format!("clock_hz = {clock_hz}\ntick_ns = {tick_ns}\n"));
+    let text =
+        MACHINE.replace(SHIPPED_TIME, &format!("clock_hz = {clock_hz}\ntick_ns = {tick_ns}\n"));
     let source = Source { path: SHIPPED.into(), text: text.into() };
     let mut build = Machine::from_source(&source).map_err(failed)?.engine();
     // If the row has more axes than the machine, the machine's axes are repeated.
@@ -84,7 +85,9 @@ pub(crate) fn failed(error: impl Into<Box<dyn std::error::Error>>) -> SynthesisE
 ///
 /// # Errors
 /// [`SynthesisError`] if a tool is missing or fails.
-pub fn placed(row: &Row) -> Result<impl Iterator<Item = Result<f64, SynthesisError>>, SynthesisError> {
+pub fn placed(
+    row: &Row,
+) -> Result<impl Iterator<Item = Result<f64, SynthesisError>>, SynthesisError> {
     let harness = HARNESS.replace("AXES = 6", &format!("AXES = {}", row.axes));
     let netlist = ice40::synthesise(&(verilog(row)? + &harness), "budget_harness")?;
     let row = *row;

@@ -57,14 +57,23 @@ fn key(row: &Row) -> String {
     let (part, axes, us) = (row.part, row.axes, row.tick_ns / 1000);
     let [mhz, least] = [row.clock_hz, row.clock_needed_hz()].map(|hz| hz / 1_000_000);
     let (has, needs) = (row.clocks_per_tick(), row.clocks_needed());
-    format!("| {} {} | {axes} | {us} us | {mhz}, {least} | {has}, {needs} |", part.device, part.package)
+    format!(
+        "| {} {} | {axes} | {us} us | {mhz}, {least} | {has}, {needs} |",
+        part.device, part.package
+    )
 }
 
 fn line(row: &Row, found: &Measured) -> String {
     let each: Vec<String> = found.mhz.iter().map(|mhz| format!("{mhz:.0}")).collect();
     let reached = if is_met(row, found) { "yes" } else { "**no**" };
-    let (cells, rams, budget) = (found.size.logic_cells, found.size.block_rams, row.budget.logic_cells);
-    format!("{} {cells} ({budget}) | {rams} | {:.1} ({}) | {reached} |\n", key(row), found.best(), each.join(", "))
+    let (cells, rams, budget) =
+        (found.size.logic_cells, found.size.block_rams, row.budget.logic_cells);
+    format!(
+        "{} {cells} ({budget}) | {rams} | {:.1} ({}) | {reached} |\n",
+        key(row),
+        found.best(),
+        each.join(", ")
+    )
 }
 
 /// Whether the best seed reaches the row's clock.
@@ -73,7 +82,10 @@ fn is_met(row: &Row, found: &Measured) -> bool {
 }
 
 fn link_line(name: &str, found: &Size) -> String {
-    format!("| {name} | {} ({}) | {} |\n", found.logic_cells, LINK_BUDGET.logic_cells, found.block_rams)
+    format!(
+        "| {name} | {} ({}) | {} |\n",
+        found.logic_cells, LINK_BUDGET.logic_cells, found.block_rams
+    )
 }
 
 fn cells_line(family: &Family, found: &Mapped) -> String {
@@ -90,7 +102,13 @@ fn beside(rows: &[Measured]) -> String {
         .iter()
         .map(|peer| {
             let (queue, cells, mhz) = (peer.queue, peer.logic_cells, peer.mhz);
-            (cells, format!("| {} | {} | {} | {queue} | {cells} | {mhz} |\n", peer.core, peer.ramp, peer.pins))
+            (
+                cells,
+                format!(
+                    "| {} | {} | {} | {queue} | {cells} | {mhz} |\n",
+                    peer.core, peer.ramp, peer.pins
+                ),
+            )
         })
         .collect();
     let ours = ROWS.iter().zip(rows).filter(|(row, _)| row.part == ROWS[0].part && row.always);
@@ -101,7 +119,10 @@ fn beside(rows: &[Measured]) -> String {
         let cells = size.logic_cells;
         (
             cells,
-            format!("| {name} | 3rd order | all four, owes one step | {queue} | {cells} | {:.0} |\n", found.median()),
+            format!(
+                "| {name} | 3rd order | all four, owes one step | {queue} | {cells} | {:.0} |\n",
+                found.median()
+            ),
         )
     }));
     lines.sort_by_key(|(cells, _)| *cells);
@@ -116,10 +137,13 @@ pub fn check(page: &str) -> Result<(), String> {
     for row in &ROWS {
         let key = key(row);
         let rest = page.lines().find_map(|line| line.strip_prefix(&key));
-        let rest = rest.ok_or_else(|| format!("{PAGE} has no row {key}: run `cargo xtask resources`"))?;
+        let rest =
+            rest.ok_or_else(|| format!("{PAGE} has no row {key}: run `cargo xtask resources`"))?;
         let cells: u32 = number(rest).ok_or_else(|| format!("no logic cells in {key}{rest}"))?;
         let mut wrong = String::new();
-        if cells > row.budget.logic_cells || !rest.contains(&format!("({})", row.budget.logic_cells)) {
+        if cells > row.budget.logic_cells
+            || !rest.contains(&format!("({})", row.budget.logic_cells))
+        {
             wrong += " logic cells";
         }
         if rest.contains("| yes |") != row.met {
@@ -133,12 +157,15 @@ pub fn check(page: &str) -> Result<(), String> {
         let rest = page.lines().find_map(|line| line.strip_prefix(&format!("| {name} |")));
         let cells = rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {name}"))?;
         if cells > LINK_BUDGET.logic_cells {
-            return Err(format!("{PAGE}: {cells} logic cells of the link over {name} are over budget"));
+            return Err(format!(
+                "{PAGE}: {cells} logic cells of the link over {name} are over budget"
+            ));
         }
     }
     for family in &FAMILIES {
         let rest = page.lines().find_map(|line| line.strip_prefix(&format!("| {} |", family.name)));
-        let luts = rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {}", family.name))?;
+        let luts =
+            rest.and_then(number).ok_or_else(|| format!("{PAGE} has no row {}", family.name))?;
         if luts > family.budget.luts {
             return Err(format!("{PAGE}: {} LUTs in {} are over budget", luts, family.name));
         }

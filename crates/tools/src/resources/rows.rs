@@ -37,7 +37,8 @@ impl Row {
 
     /// The slowest clock, Hz, whose tick holds the turns of all axes and divides into phases.
     pub const fn clock_needed_hz(&self) -> u64 {
-        (self.clocks_needed().next_multiple_of(PHASES) as u64 * 1_000_000_000).div_ceil(self.tick_ns)
+        (self.clocks_needed().next_multiple_of(PHASES) as u64 * 1_000_000_000)
+            .div_ceil(self.tick_ns)
     }
 
     /// Number of clocks of a tick that the turns of all axes need.
@@ -63,7 +64,12 @@ const TWO: Row = Row {
 };
 
 /// A tick of 1 us at 80 MHz.
-const ONE: Row = Row { tick_ns: 1000, clock_hz: 80_000_000, budget: Size { logic_cells: 910, block_rams: 8 }, ..TWO };
+const ONE: Row = Row {
+    tick_ns: 1000,
+    clock_hz: 80_000_000,
+    budget: Size { logic_cells: 910, block_rams: 8 },
+    ..TWO
+};
 
 /// Six axes to be compared with eight: a tick of 2 us at the slowest clock that eight axes need.
 const SIX: Row = Row { clock_hz: 56_000_000, always: false, ..TWO };
@@ -99,7 +105,19 @@ pub struct Family {
 
 /// All rows for Xilinx; each has the engine of the first row.
 pub const FAMILIES: [Family; 3] = [
-    Family { name: "xc3s", of: TWO, budget: Mapped { luts: 700, flip_flops: 400, carries: 360, block_rams: 16 } },
-    Family { name: "xc6s", of: TWO, budget: Mapped { luts: 690, flip_flops: 410, carries: 60, block_rams: 8 } },
-    Family { name: "xc7", of: TWO, budget: Mapped { luts: 650, flip_flops: 410, carries: 60, block_rams: 6 } },
+    Family {
+        name: "xc3s",
+        of: TWO,
+        budget: Mapped { luts: 700, flip_flops: 400, carries: 360, block_rams: 16 },
+    },
+    Family {
+        name: "xc6s",
+        of: TWO,
+        budget: Mapped { luts: 690, flip_flops: 410, carries: 60, block_rams: 8 },
+    },
+    Family {
+        name: "xc7",
+        of: TWO,
+        budget: Mapped { luts: 650, flip_flops: 410, carries: 60, block_rams: 6 },
+    },
 ];

@@ -4,7 +4,8 @@
 use super::{CLOCK_NAME, Design, rendered};
 use crate::ExportError;
 use crate::core::{
-    ENGINE_NAME, LINK_NAME, Overrides, engine_verilog, line_name, line_verilog, link_ports, link_verilog,
+    ENGINE_NAME, LINK_NAME, Overrides, engine_verilog, line_name, line_verilog, link_ports,
+    link_verilog,
 };
 use crate::parameters::overrides;
 use crate::write::TextFile;
@@ -131,14 +132,21 @@ impl<'a> Gateware<'a> {
     /// [`ExportError`] if a module cannot be generated.
     pub fn files_beside(&self, core: &str) -> Result<Vec<TextFile>, ExportError> {
         let all = self.verilog()?;
-        let is_own =
-            |file: &TextFile| file.name == format!("{}.v", self.top()) || file.name == format!("{CLOCK_NAME}.v");
-        let source = |file: &TextFile| if is_own(file) { file.name.clone() } else { format!("{core}/{}", file.name) };
+        let is_own = |file: &TextFile| {
+            file.name == format!("{}.v", self.top()) || file.name == format!("{CLOCK_NAME}.v")
+        };
+        let source = |file: &TextFile| {
+            if is_own(file) { file.name.clone() } else { format!("{core}/{}", file.name) }
+        };
         let sources = all.iter().map(source).collect();
         self.files_with(all.into_iter().filter(is_own).collect(), sources)
     }
 
-    fn files_with(&self, verilog: Vec<TextFile>, sources: Vec<String>) -> Result<Vec<TextFile>, ExportError> {
+    fn files_with(
+        &self,
+        verilog: Vec<TextFile>,
+        sources: Vec<String>,
+    ) -> Result<Vec<TextFile>, ExportError> {
         let mut files = verilog;
         files.push(TextFile::new(FILE_LIST, sources.join("\n") + "\n"));
         let sources: Vec<&str> = sources.iter().map(String::as_str).collect();
@@ -154,7 +162,8 @@ impl<'a> Gateware<'a> {
     /// The bits of the top level's ports.
     fn ports(&self) -> Vec<String> {
         let axes = self.build.axes();
-        let bits = |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
+        let bits =
+            |name: &str, count| (0..count).map(|bit| bit_of(name, bit, count)).collect::<Vec<_>>();
         let (low, high) = limit_bits(&self.build);
         let fixed = ["enable_n", "estop"].map(str::to_owned);
         let line = self.line_pins().map(|(_, pin)| pin.to_owned());
@@ -177,7 +186,12 @@ impl<'a> Gateware<'a> {
     fn line_pins(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         let pins: &[_] = match self.line {
             Line::Uart(_) => &[("rx", "uart_rx"), ("tx", "uart_tx")],
-            Line::Spi => &[("sck", "spi_sck"), ("select_n", "spi_cs_n"), ("mosi", "spi_mosi"), ("miso", "spi_miso")],
+            Line::Spi => &[
+                ("sck", "spi_sck"),
+                ("select_n", "spi_cs_n"),
+                ("mosi", "spi_mosi"),
+                ("miso", "spi_miso"),
+            ],
         };
         pins.iter().copied()
     }

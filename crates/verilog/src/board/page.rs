@@ -16,11 +16,20 @@ use minijinja::{Value, context};
 pub(crate) fn pages() -> Result<Vec<TextFile>, ExportError> {
     let all: Vec<Value> = boards().iter().map(values).collect();
     let mut pages = vec![
-        TextFile::new("docs/boards/index.md", rendered("index.md", context! { boards => all.clone() })?),
-        TextFile::new("docs/drivers.md", rendered("drivers.md", context! { drivers => all_drivers() })?),
+        TextFile::new(
+            "docs/boards/index.md",
+            rendered("index.md", context! { boards => all.clone() })?,
+        ),
+        TextFile::new(
+            "docs/drivers.md",
+            rendered("drivers.md", context! { drivers => all_drivers() })?,
+        ),
     ];
     for (board, values) in boards().iter().zip(all) {
-        pages.push(TextFile::new(format!("docs/boards/{}.md", board.name), rendered("page.md", values)?));
+        pages.push(TextFile::new(
+            format!("docs/boards/{}.md", board.name),
+            rendered("page.md", values)?,
+        ));
     }
     Ok(pages)
 }

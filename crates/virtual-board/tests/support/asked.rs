@@ -37,7 +37,11 @@ pub fn homing_of(machine: &Machine) -> Owned {
         Limits::One => Wiring::One,
         Limits::Pair | Limits::None => Wiring::Pair,
     };
-    let groups = machine.home_order.iter().map(|group| group.iter().fold(0, |mask, axis| mask | 1 << axis)).collect();
+    let groups = machine
+        .home_order
+        .iter()
+        .map(|group| group.iter().fold(0, |mask, axis| mask | 1 << axis))
+        .collect();
     let (round, debounce) = (machine.guard.round, machine.guard.debounce);
     Owned { homing: Homing { wiring, axes, groups: &[], others: 0, round, debounce }, groups }
 }

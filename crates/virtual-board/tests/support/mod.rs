@@ -63,7 +63,10 @@ impl Kind for Board {
 
     fn least_waiting(&self) -> Option<usize> {
         let core = self.engine().core();
-        (0..AXES).filter(|axis| core.in_a_move() >> axis & 1 == 1).map(|axis| core.waiting(axis)).min()
+        (0..AXES)
+            .filter(|axis| core.in_a_move() >> axis & 1 == 1)
+            .map(|axis| core.waiting(axis))
+            .min()
     }
 }
 
@@ -238,7 +241,11 @@ impl<B: Kind> End<B> {
     }
 
     /// Connects a host that refuses any other build than `id`.
-    pub fn connect_to(&self, id: BuildId, patience: Patience) -> Result<BoardHost<B>, HostError<Died>> {
+    pub fn connect_to(
+        &self,
+        id: BuildId,
+        patience: Patience,
+    ) -> Result<BoardHost<B>, HostError<Died>> {
         Host::connect(self.clone(), self.clone(), Some(id.0), patience)
     }
 

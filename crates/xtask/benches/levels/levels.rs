@@ -49,7 +49,10 @@ pub fn engine(moves: &Moves, heard: &Consumer) -> Result<f64, String> {
     });
     let (outcome, consumer) = result.map_err(|error| error.to_string())?;
     if outcome.fault.is_some() || (consumer.pulses, consumer.turns) != (heard.pulses, heard.turns) {
-        return Err(format!("the engine makes other pulses: {consumer:?}, fault {:?}", outcome.fault));
+        return Err(format!(
+            "the engine makes other pulses: {consumer:?}, fault {:?}",
+            outcome.fault
+        ));
     }
     Ok(outcome.clocks as f64 / moves.engine.timebase.clock_hz() as f64 / seconds)
 }

@@ -50,8 +50,9 @@ fn main() -> ExitCode {
 
 fn measure() -> Result<Report, String> {
     let moves = DENSITIES.iter().map(Moves::load).collect::<Result<Vec<_>, _>>()?;
-    let verilog = carrystep_verilog::six_axis_verilog(&moves[0].plan.build, "sim/bench/machine.toml")
-        .map_err(|error| error.to_string())?;
+    let verilog =
+        carrystep_verilog::six_axis_verilog(&moves[0].plan.build, "sim/bench/machine.toml")
+            .map_err(|error| error.to_string())?;
     let toggling = Verilated::compile(&verilog, false)?;
     let tracing = Verilated::compile(&verilog, true)?;
 
@@ -82,7 +83,8 @@ fn measure() -> Result<Report, String> {
     if busy_ns > NS_PER_EDGE_AT_MOST {
         failures.push(format!("busy: {busy_ns:.1} ns an edge, {NS_PER_EDGE_AT_MOST} wanted"));
     }
-    let ratio = |name: &str| rows.iter().find(|row: &&Row| row.name == name).map_or(0.0, |row| row.ratio);
+    let ratio =
+        |name: &str| rows.iter().find(|row: &&Row| row.name == name).map_or(0.0, |row| row.ratio);
     Ok(Report {
         passed: failures.is_empty(),
         machine: machine(),
@@ -103,19 +105,35 @@ fn measure() -> Result<Report, String> {
     })
 }
 
-fn row(density: &Density, moves: &Moves, toggling: &Verilated, failures: &mut Vec<String>) -> Result<Row, String> {
+fn row(
+    density: &Density,
+    moves: &Moves,
+    toggling: &Verilated,
+    failures: &mut Vec<String>,
+) -> Result<Row, String> {
     let clocks = moves.outcome.clocks;
     let (seconds, heard) = levels::fast(moves)?;
     let run = toggling.run(&moves.feed(), clocks, None)?;
     if run.positions != moves.outcome.last.position {
-        failures.push(format!("{}: Verilator's positions are not those of the fast model", density.name));
+        failures.push(format!(
+            "{}: Verilator's positions are not those of the fast model",
+            density.name
+        ));
     }
     let (fast, verilator) = (clocks as f64 / seconds, clocks as f64 / run.seconds);
     if verilator < VERILATOR_AT_LEAST {
-        failures.push(format!("{}: invalid, Verilator runs at only {verilator:.2e} clocks/s", density.name));
+        failures.push(format!(
+            "{}: invalid, Verilator runs at only {verilator:.2e} clocks/s",
+            density.name
+        ));
     }
     if fast < density.wanted * verilator {
-        failures.push(format!("{}: {:.0} times Verilator, {} wanted", density.name, fast / verilator, density.wanted));
+        failures.push(format!(
+            "{}: {:.0} times Verilator, {} wanted",
+            density.name,
+            fast / verilator,
+            density.wanted
+        ));
     }
     Ok(Row {
         name: density.name,

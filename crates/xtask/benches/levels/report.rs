@@ -88,7 +88,11 @@ impl fmt::Display for Report {
             "\nan edge at 10 000 steps/s without loads: {:.1} ns; a load of the typical move: {:.0} ns",
             self.steady_ns_per_edge, self.typical_ns_per_load
         )?;
-        writeln!(f, "the engine at 80 MHz, busy: {:.0} times real time", self.engine_times_real_time)?;
+        writeln!(
+            f,
+            "the engine at 80 MHz, busy: {:.0} times real time",
+            self.engine_times_real_time
+        )?;
         writeln!(
             f,
             "a tick of six axes, added: {:.1} ns one axis after the other, {:.1} ns side by side",

@@ -40,7 +40,11 @@ impl Memory {
     fn parse(text: &str) -> Option<Self> {
         let all: Map<String, Value> = serde_json::from_str(text).ok()?;
         let tests = |tests: &Value| -> Option<BTreeMap<String, f64>> {
-            tests.as_object()?.iter().map(|(test, seconds)| Some((test.clone(), seconds.as_f64()?))).collect()
+            tests
+                .as_object()?
+                .iter()
+                .map(|(test, seconds)| Some((test.clone(), seconds.as_f64()?)))
+                .collect()
         };
         all.iter().map(|(id, all)| Some((id.clone(), tests(all)?))).collect::<Option<_>>().map(Self)
     }
@@ -65,11 +69,15 @@ impl Memory {
     /// The expected seconds of some tests of a binary, one for each.
     pub fn expect(&self, id: &str, tests: &[String]) -> Vec<f64> {
         let known = self.0.get(id);
-        let of_binary = KNOWN.iter().find(|(name, _)| *name == id).map_or(UNKNOWN, |(_, seconds)| *seconds);
+        let of_binary =
+            KNOWN.iter().find(|(name, _)| *name == id).map_or(UNKNOWN, |(_, seconds)| *seconds);
         let each = of_binary / tests.len().max(1) as f64;
         // A test that is new among known ones is taken for a short one.
         let new = if known.is_some() { each.min(UNKNOWN) } else { each };
-        tests.iter().map(|test| known.and_then(|known| known.get(test)).copied().unwrap_or(new)).collect()
+        tests
+            .iter()
+            .map(|test| known.and_then(|known| known.get(test)).copied().unwrap_or(new))
+            .collect()
     }
 }
 
@@ -94,7 +102,10 @@ mod tests {
     #[test]
     fn known_binaries_are_long_without_memory() {
         let memory = Memory::default();
-        assert_eq!(memory.expect("carrystep-virtual-board::bad_line", &tests(&["x", "y"])), [100.0; 2]);
+        assert_eq!(
+            memory.expect("carrystep-virtual-board::bad_line", &tests(&["x", "y"])),
+            [100.0; 2]
+        );
         assert_eq!(memory.expect("unheard of", &tests(&["x"])), [UNKNOWN]);
     }
 

@@ -29,7 +29,11 @@ impl Counts {
                 let part = line.split([';', '.']).find_map(|part| part.trim().strip_suffix(what));
                 part.and_then(|number| number.trim().parse().ok()).unwrap_or(0)
             };
-            sum.and(Self { passed: number("passed"), failed: number("failed"), ignored: number("ignored") })
+            sum.and(Self {
+                passed: number("passed"),
+                failed: number("failed"),
+                ignored: number("ignored"),
+            })
         })
     }
 

@@ -78,7 +78,8 @@ fn summary(id: &str, parts: &[&Ended]) -> String {
     let seconds: f64 = parts.iter().map(|part| part.took.as_secs_f64()).sum();
     let counts = parts.iter().map(|part| part.counts).fold(Counts::default(), Counts::and);
     let Counts { passed, failed, ignored } = counts;
-    let mut text = format!("{seconds:>7.1} s  {passed} passed, {failed} failed, {ignored} ignored  {id}");
+    let mut text =
+        format!("{seconds:>7.1} s  {passed} passed, {failed} failed, {ignored} ignored  {id}");
     if parts.len() > 1 {
         text += &format!(", in {} slices", parts.len());
     }
@@ -109,8 +110,14 @@ mod tests {
         assert_eq!(summary("a::b", &[&plain]), "    1.5 s  2 passed, 0 failed, 1 ignored  a::b");
         let with_answers = ended("9 answers of tools, 4 of them kept from an earlier run\n");
         let line = summary("a::b", &[&with_answers, &with_answers]);
-        assert!(line.contains("    3.0 s  4 passed, 0 failed, 2 ignored  a::b, in 2 slices"), "{line}");
-        assert!(line.ends_with("; 18 answers of tools, 8 of them kept from an earlier run"), "{line}");
+        assert!(
+            line.contains("    3.0 s  4 passed, 0 failed, 2 ignored  a::b, in 2 slices"),
+            "{line}"
+        );
+        assert!(
+            line.ends_with("; 18 answers of tools, 8 of them kept from an earlier run"),
+            "{line}"
+        );
     }
 
     #[test]

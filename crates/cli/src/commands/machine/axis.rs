@@ -94,7 +94,8 @@ impl Axis {
         let has = |set: &&[&str]| set.iter().all(|key| self.keys.contains_key(key));
         let lacks = |ways: &&&[&[&'static str]]| !ways.iter().any(has);
         let told = |ways: &&[&[&'static str]]| {
-            let first = ways[0].iter().copied().filter(|key| !self.keys.contains_key(key)).collect();
+            let first =
+                ways[0].iter().copied().filter(|key| !self.keys.contains_key(key)).collect();
             (first, ways.iter().map(|set| set.join(", ")).collect::<Vec<_>>().join("; or "))
         };
         NEEDED.iter().filter(lacks).map(told).collect()
@@ -108,11 +109,16 @@ impl Axis {
     /// The text of the axis' table.
     pub fn text(&self) -> String {
         let quoted = |text: &str| format!("{text:?}");
-        let mut lines = vec!["[[machine.axis]]".to_owned(), format!("name = {}", quoted(&self.name))];
+        let mut lines =
+            vec!["[[machine.axis]]".to_owned(), format!("name = {}", quoted(&self.name))];
         for (key, kind, comment) in KEYS {
             let Some(value) = self.keys.get(key) else { continue };
             let value = if kind == Kind::Text { quoted(value) } else { value.clone() };
-            lines.push(format!("{:<28} # {}", format!("{key} = {value}"), comment.replace("UNIT", self.unit())));
+            lines.push(format!(
+                "{:<28} # {}",
+                format!("{key} = {value}"),
+                comment.replace("UNIT", self.unit())
+            ));
         }
         lines.join("\n") + "\n"
     }

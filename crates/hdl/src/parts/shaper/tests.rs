@@ -29,7 +29,11 @@ fn clock(shaper: &mut Shaper, what: char) -> (bool, bool) {
 /// Runs one clock for each character of `requests`. Returns drawings of STEP and DIR.
 fn draw(shaper: &mut Shaper, requests: &str) -> (String, String) {
     let level = |high| if high { '^' } else { '_' };
-    requests.chars().map(|what| clock(shaper, what)).map(|(step, dir)| (level(step), level(dir))).unzip()
+    requests
+        .chars()
+        .map(|what| clock(shaper, what))
+        .map(|(step, dir)| (level(step), level(dir)))
+        .unzip()
 }
 
 #[test]
