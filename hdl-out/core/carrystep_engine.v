@@ -4,6 +4,10 @@
 //
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
+//
+// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
+// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+//
 // Clock        80000000 Hz
 // Tick         1000 ns, 80 clocks in 16 phases
 // Latency      161 clocks from the load of a move to the edge of its tick 1, phase 0
@@ -265,6 +269,7 @@ module carrystep_control (
     input  wire  [15:0] write_bits,
     input  wire  [15:0] write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:7];
     reg [15:0] value; // a block RAM gives no value before its first clock
     integer i;
@@ -290,6 +295,7 @@ module carrystep_lasts (
     input  wire         write_bits,
     input  wire         write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg words [0:63];
     reg value; // a block RAM gives no value before its first clock
     integer i;
@@ -544,7 +550,17 @@ module carrystep_queue (
 endmodule
 
 // Segments, which are also registers, and what an axis keeps between moves.
-module carrystep_segments (
+module carrystep_segments #(
+    // 1: P starts at half a step; 0: P starts at zero; 0 or 1
+    parameter [31:0] START_HALF = 32'd1,
+    // Acceleration of the ramp of a controlled stop, in units of 2^-64 step per tick^2; 1 to 2^62
+    parameter [63:0] STOP_ACCEL_0 = 64'hd6bf94d5e57,
+    parameter [63:0] STOP_ACCEL_1 = 64'habcc7711846,
+    parameter [63:0] STOP_ACCEL_2 = 64'ha10fafa06c1,
+    parameter [63:0] STOP_ACCEL_3 = 64'h5f71977b826,
+    parameter [63:0] STOP_ACCEL_4 = 64'hee9bfab4c61,
+    parameter [63:0] STOP_ACCEL_5 = 64'h2843ebe81b0
+) (
     input  wire         clock,
     input  wire   [8:0] read_address,
     output wire  [31:0] read_data,
@@ -552,6 +568,7 @@ module carrystep_segments (
     input  wire  [31:0] write_bits,
     input  wire  [31:0] write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:511];
     reg [31:0] value; // a block RAM gives no value before its first clock
     integer i;
@@ -560,36 +577,36 @@ module carrystep_segments (
 
     initial begin
         for (i = 0; i < 512; i = i + 1) words[i] = 0;
-        words[15] = 32'h80000000;
-        words[39] = 32'h6b2a1a9;
-        words[47] = 32'hfffff294;
-        words[55] = 32'hf94d5e57;
-        words[63] = 32'hd6b;
-        words[79] = 32'h80000000;
-        words[103] = 32'h388ee7ba;
-        words[111] = 32'hfffff543;
-        words[119] = 32'hc7711846;
-        words[127] = 32'habc;
-        words[143] = 32'h80000000;
-        words[167] = 32'h505f93f;
-        words[175] = 32'hfffff5ef;
-        words[183] = 32'hfafa06c1;
-        words[191] = 32'ha10;
-        words[207] = 32'h80000000;
-        words[231] = 32'he68847da;
-        words[239] = 32'hfffffa08;
-        words[247] = 32'h1977b826;
-        words[255] = 32'h5f7;
-        words[271] = 32'h80000000;
-        words[295] = 32'h4054b39f;
-        words[303] = 32'hfffff116;
-        words[311] = 32'hbfab4c61;
-        words[319] = 32'hee9;
-        words[335] = 32'h80000000;
-        words[359] = 32'hc1417e50;
-        words[367] = 32'hfffffd7b;
-        words[375] = 32'h3ebe81b0;
-        words[383] = 32'h284;
+        words[15] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[39] = 32'd0 - STOP_ACCEL_0[31:0];
+        words[47] = ~STOP_ACCEL_0[63:32] + ((STOP_ACCEL_0[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[55] = STOP_ACCEL_0[31:0];
+        words[63] = STOP_ACCEL_0[63:32];
+        words[79] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[103] = 32'd0 - STOP_ACCEL_1[31:0];
+        words[111] = ~STOP_ACCEL_1[63:32] + ((STOP_ACCEL_1[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[119] = STOP_ACCEL_1[31:0];
+        words[127] = STOP_ACCEL_1[63:32];
+        words[143] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[167] = 32'd0 - STOP_ACCEL_2[31:0];
+        words[175] = ~STOP_ACCEL_2[63:32] + ((STOP_ACCEL_2[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[183] = STOP_ACCEL_2[31:0];
+        words[191] = STOP_ACCEL_2[63:32];
+        words[207] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[231] = 32'd0 - STOP_ACCEL_3[31:0];
+        words[239] = ~STOP_ACCEL_3[63:32] + ((STOP_ACCEL_3[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[247] = STOP_ACCEL_3[31:0];
+        words[255] = STOP_ACCEL_3[63:32];
+        words[271] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[295] = 32'd0 - STOP_ACCEL_4[31:0];
+        words[303] = ~STOP_ACCEL_4[63:32] + ((STOP_ACCEL_4[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[311] = STOP_ACCEL_4[31:0];
+        words[319] = STOP_ACCEL_4[63:32];
+        words[335] = START_HALF[0] ? 32'h80000000 : 32'd0;
+        words[359] = 32'd0 - STOP_ACCEL_5[31:0];
+        words[367] = ~STOP_ACCEL_5[63:32] + ((STOP_ACCEL_5[31:0] == 32'd0) ? 32'd1 : 32'd0);
+        words[375] = STOP_ACCEL_5[31:0];
+        words[383] = STOP_ACCEL_5[63:32];
     end
 
     always @(posedge clock) begin
@@ -599,7 +616,17 @@ module carrystep_segments (
 endmodule
 
 // Where everything is in the memory of the axes.
-module carrystep_store (
+module carrystep_store #(
+    // 1: P starts at half a step; 0: P starts at zero; 0 or 1
+    parameter [31:0] START_HALF = 32'd1,
+    // Acceleration of the ramp of a controlled stop, in units of 2^-64 step per tick^2; 1 to 2^62
+    parameter [63:0] STOP_ACCEL_0 = 64'hd6bf94d5e57,
+    parameter [63:0] STOP_ACCEL_1 = 64'habcc7711846,
+    parameter [63:0] STOP_ACCEL_2 = 64'ha10fafa06c1,
+    parameter [63:0] STOP_ACCEL_3 = 64'h5f71977b826,
+    parameter [63:0] STOP_ACCEL_4 = 64'hee9bfab4c61,
+    parameter [63:0] STOP_ACCEL_5 = 64'h2843ebe81b0
+) (
     input  wire         clock,
     input  wire  [16:0] beat,
     input  wire   [2:0] axis,
@@ -637,9 +664,33 @@ module carrystep_store (
     localparam [2:0] UP_HIGH = 3'd7;
     localparam [3:0] AT_3 = 4'd3;
     localparam [3:0] AT_6 = 4'd6;
-    localparam [31:0] START_HIGH = 32'h80000000;
+    localparam [31:0] START_HIGH = START_HALF[0] ? 32'h80000000 : 32'd0;
     localparam [31:0] NO = 32'd0;
     localparam [31:0] ALL = 32'hffffffff;
+
+    generate
+        if (START_HALF > 32'd1) begin : start_half_out_of_range
+            carrystep_error_start_half_out_of_range error ();
+        end
+        if ((STOP_ACCEL_0 < 64'h1) | (STOP_ACCEL_0 > 64'h4000000000000000)) begin : stop_accel_out_of_range_0
+            carrystep_error_stop_accel_out_of_range_0 error ();
+        end
+        if ((STOP_ACCEL_1 < 64'h1) | (STOP_ACCEL_1 > 64'h4000000000000000)) begin : stop_accel_out_of_range_1
+            carrystep_error_stop_accel_out_of_range_1 error ();
+        end
+        if ((STOP_ACCEL_2 < 64'h1) | (STOP_ACCEL_2 > 64'h4000000000000000)) begin : stop_accel_out_of_range_2
+            carrystep_error_stop_accel_out_of_range_2 error ();
+        end
+        if ((STOP_ACCEL_3 < 64'h1) | (STOP_ACCEL_3 > 64'h4000000000000000)) begin : stop_accel_out_of_range_3
+            carrystep_error_stop_accel_out_of_range_3 error ();
+        end
+        if ((STOP_ACCEL_4 < 64'h1) | (STOP_ACCEL_4 > 64'h4000000000000000)) begin : stop_accel_out_of_range_4
+            carrystep_error_stop_accel_out_of_range_4 error ();
+        end
+        if ((STOP_ACCEL_5 < 64'h1) | (STOP_ACCEL_5 > 64'h4000000000000000)) begin : stop_accel_out_of_range_5
+            carrystep_error_stop_accel_out_of_range_5 error ();
+        end
+    endgenerate
 
     reg [2:0] read_axis;
     reg [2:0] read_slot;
@@ -773,7 +824,15 @@ module carrystep_store (
         end
     end
 
-    carrystep_segments segments (
+    carrystep_segments #(
+        .START_HALF(START_HALF),
+        .STOP_ACCEL_0(STOP_ACCEL_0),
+        .STOP_ACCEL_1(STOP_ACCEL_1),
+        .STOP_ACCEL_2(STOP_ACCEL_2),
+        .STOP_ACCEL_3(STOP_ACCEL_3),
+        .STOP_ACCEL_4(STOP_ACCEL_4),
+        .STOP_ACCEL_5(STOP_ACCEL_5)
+    ) segments (
         .clock(clock),
         .read_address(({6'b0, read_axis} << AT_6) | ({6'b0, read_slot} << AT_3) | {6'b0, read_word}),
         .read_data(segments_read_data),
@@ -784,19 +843,38 @@ module carrystep_store (
 endmodule
 
 // The beat: a strobe in the last cycle of each tick, and the phases in between.
-module carrystep_tick (
+module carrystep_tick #(
+    // Length of a tick in clocks; 13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases
+    parameter [31:0] CLOCKS_PER_TICK = 32'd80
+) (
     input  wire         clock,
     output wire         strobe,
     output wire         phase_start,
     output wire   [3:0] phase
 );
+    // All bits of a counter that goes up to `greatest`.
+    function [15:0] used_bits_16(input [15:0] greatest);
+        begin
+            used_bits_16 = greatest;
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 1);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 2);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 4);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
+        end
+    endfunction
     localparam [15:0] ZERO = 16'd0;
     localparam [15:0] ONE = 16'd1;
-    localparam [15:0] LAST_SUB = 16'd4;
-    localparam [15:0] SUB_BITS = 16'd7;
+    localparam [15:0] LAST_SUB = CLOCKS_PER_TICK[19:4] - 16'd1;
+    localparam [15:0] SUB_BITS = used_bits_16(CLOCKS_PER_TICK[19:4] - 16'd1);
     localparam [3:0] FIRST_PHASE = 4'd0;
     localparam [3:0] ONE_PHASE = 4'd1;
     localparam [3:0] LAST_PHASE = 4'd15;
+
+    generate
+        if (((CLOCKS_PER_TICK < 32'd16) | (CLOCKS_PER_TICK > 32'h10000)) | ((CLOCKS_PER_TICK & 32'd15) != 32'd0)) begin : clocks_per_tick_out_of_range
+            carrystep_error_clocks_per_tick_out_of_range error ();
+        end
+    endgenerate
 
     reg [15:0] sub = 16'd1;
     reg [3:0] phases = 4'd0;
@@ -821,7 +899,10 @@ module carrystep_tick (
 endmodule
 
 // What the pins do in each phase of four ticks.
-module carrystep_rim (
+module carrystep_rim #(
+    // Where the memory of events lies: in block RAM, or in LUTs for parts whose block RAMs write whole words only; "block" or "distributed"
+    parameter EVENT_MEMORY = "block"
+) (
     input  wire         clock,
     input  wire   [6:0] read_address,
     output wire  [15:0] read_data,
@@ -829,7 +910,17 @@ module carrystep_rim (
     input  wire  [15:0] write_bits,
     input  wire  [15:0] write_data
 );
-    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:127];
+    // Words of different lengths are compared.
+    // verilator lint_off WIDTH
+    generate
+        if ((EVENT_MEMORY != "block") && (EVENT_MEMORY != "distributed")) begin : refused
+            carrystep_error_event_memory_out_of_range error ();
+        end
+    endgenerate
+    // verilator lint_on WIDTH
+
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
+    (* no_rw_check, ram_style = EVENT_MEMORY *) reg [15:0] words [0:127];
     reg [15:0] value; // a block RAM gives no value before its first clock
     integer i;
 
@@ -848,7 +939,12 @@ module carrystep_rim (
 endmodule
 
 // Events on their way to the pins.
-module carrystep_wheel (
+module carrystep_wheel #(
+    // Length of a tick in clocks; 13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases
+    parameter [31:0] CLOCKS_PER_TICK = 32'd80,
+    // Where the memory of events lies: in block RAM, or in LUTs for parts whose block RAMs write whole words only; "block" or "distributed"
+    parameter EVENT_MEMORY = "block"
+) (
     input  wire         clock,
     input  wire         turn_ends,
     input  wire   [5:0] lane,
@@ -945,14 +1041,18 @@ module carrystep_wheel (
         end
     end
 
-    carrystep_tick tick (
+    carrystep_tick #(
+        .CLOCKS_PER_TICK(CLOCKS_PER_TICK)
+    ) tick (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
         .phase(tick_phase)
     );
 
-    carrystep_rim rim (
+    carrystep_rim #(
+        .EVENT_MEMORY(EVENT_MEMORY)
+    ) rim (
         .clock(clock),
         .read_address(place),
         .read_data(rim_read_data),
@@ -995,6 +1095,7 @@ module carrystep_switches (
     input  wire   [7:0] write_bits,
     input  wire   [7:0] write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:15];
     reg [7:0] value; // a block RAM gives no value before its first clock
     integer i;
@@ -1012,7 +1113,14 @@ module carrystep_switches (
 endmodule
 
 // The limit switches, one look in a turn.
-module carrystep_limits (
+module carrystep_limits #(
+    // Number of successive samples of the same level after which a limit's level is accepted; 1 to 127
+    parameter [31:0] DEBOUNCE_LOOKS = 32'd17,
+    // Limit switches: 0 none, 1 two an axis, 2 one an axis, 3 one for all axes; 0 to 3
+    parameter [31:0] LIMITS = 32'd1,
+    // Level at which a limit is reached: 0 high, 1 low; 0 or 1
+    parameter [31:0] LIMITS_LOW = 32'd0
+) (
     input  wire         clock,
     input  wire         turn_ends,
     input  wire   [2:0] axis,
@@ -1026,11 +1134,11 @@ module carrystep_limits (
     input  wire         back,
     output wire         hit
 );
-    localparam EXIST = 1'b1;
-    localparam PAIR = 1'b1;
-    localparam ONE_FOR_ALL = 1'b0;
-    localparam LOW = 1'b0;
-    localparam [6:0] LAST_LOOK = 7'd16;
+    localparam EXIST = LIMITS != 32'd0;
+    localparam PAIR = LIMITS == 32'd1;
+    localparam ONE_FOR_ALL = LIMITS == 32'd3;
+    localparam LOW = LIMITS_LOW[0];
+    localparam [6:0] LAST_LOOK = DEBOUNCE_LOOKS[6:0] - 7'd1;
     localparam [5:0] FIRST_LANE = 6'd1;
     localparam [6:0] ONE = 7'd1;
     localparam [6:0] NONE = 7'd0;
@@ -1040,6 +1148,18 @@ module carrystep_limits (
     localparam [3:0] SIDE = 4'd1;
     localparam [3:0] NO_SIDE = 4'd0;
     localparam BY_ONE = 1'b1;
+
+    generate
+        if (LIMITS > 32'd3) begin : limits_out_of_range
+            carrystep_error_limits_out_of_range error ();
+        end
+        if (LIMITS_LOW > 32'd1) begin : limits_low_out_of_range
+            carrystep_error_limits_low_out_of_range error ();
+        end
+        if ((DEBOUNCE_LOOKS < 32'd1) | (DEBOUNCE_LOOKS > 32'd127)) begin : debounce_looks_out_of_range
+            carrystep_error_debounce_looks_out_of_range error ();
+        end
+    endgenerate
 
     reg sync = 1'b0;
     reg now = 1'b0;
@@ -1180,7 +1300,10 @@ module carrystep_homes (
 endmodule
 
 // Who stops the axes, and how far the stop has come.
-module carrystep_stops (
+module carrystep_stops #(
+    // What a limit does: 0 all axes ramp down, 1 all axes freeze; 0 or 1
+    parameter [31:0] LIMIT_FREEZES = 32'd0
+) (
     input  wire         clock,
     input  wire         strobe,
     input  wire         turn_ends,
@@ -1205,7 +1328,7 @@ module carrystep_stops (
     output wire   [2:0] cause,
     output wire   [5:0] culprits
 );
-    localparam LIMIT_FREEZES = 1'b0;
+    localparam LIMITS_FREEZE = LIMIT_FREEZES[0];
     localparam [2:0] E_STOP = 3'd0;
     localparam [2:0] OVERRUN = 3'd1;
     localparam [2:0] PROTOCOL = 3'd2;
@@ -1214,6 +1337,12 @@ module carrystep_stops (
     localparam [2:0] LIMITED = 3'd5;
     localparam [2:0] UNDERRUN = 3'd6;
     localparam [2:0] HOST = 3'd7;
+
+    generate
+        if (LIMIT_FREEZES > 32'd1) begin : limit_freezes_out_of_range
+            carrystep_error_limit_freezes_out_of_range error ();
+        end
+    endgenerate
 
     reg called = 1'b0;
     reg freeze = 1'b0;
@@ -1256,7 +1385,7 @@ module carrystep_stops (
                 kind <= OVERSPEED;
             end
         end
-        if (turn_ends & (too_fast | (limit & (LIMIT_FREEZES != 1'b0)))) begin
+        if (turn_ends & (too_fast | (limit & (LIMITS_FREEZE != 1'b0)))) begin
             found_freezing <= 1'b1;
         end
         if (turn_ends & runs) begin
@@ -1313,7 +1442,16 @@ module carrystep_stops (
 endmodule
 
 // The e-stop, the host's signs of life, the drivers' power.
-module carrystep_watch (
+module carrystep_watch #(
+    // Length of a round in ticks: the unit of the times below, and the time between two samples of a limit; a power of two from 2 to 1024
+    parameter [31:0] ROUND_TICKS = 32'd32,
+    // Time in rounds without a valid request after which all axes stop; 0: there is no watchdog; 0 to 4095
+    parameter [31:0] WATCHDOG_ROUNDS = 32'd3126,
+    // Time in rounds from the rise of `enabled` to the first start; 0 to 4095
+    parameter [31:0] ENABLE_ROUNDS = 32'd33,
+    // Level at which the e-stop is pressed: 0 high, 1 low; 0 or 1
+    parameter [31:0] ESTOP_LOW = 32'd0
+) (
     input  wire         clock,
     input  wire         strobe,
     input  wire         estop,
@@ -1327,16 +1465,41 @@ module carrystep_watch (
     output wire         tick_0,
     output wire         tick_1
 );
-    localparam ESTOP_LOW = 1'b0;
-    localparam [9:0] ROUND_BITS = 10'd31;
-    localparam [11:0] WATCHDOG = 12'd3126;
-    localparam [11:0] SILENCE_BITS = 12'd4095;
-    localparam [11:0] WARM_AT = 12'd33;
-    localparam [11:0] WARM_BITS = 12'd63;
+    // All bits of a counter that goes up to `greatest`.
+    function [11:0] used_bits_12(input [11:0] greatest);
+        begin
+            used_bits_12 = greatest;
+            used_bits_12 = used_bits_12 | (used_bits_12 >> 1);
+            used_bits_12 = used_bits_12 | (used_bits_12 >> 2);
+            used_bits_12 = used_bits_12 | (used_bits_12 >> 4);
+            used_bits_12 = used_bits_12 | (used_bits_12 >> 8);
+        end
+    endfunction
+    localparam PRESSED_LOW = ESTOP_LOW[0];
+    localparam [9:0] ROUND_BITS = ROUND_TICKS[9:0] - 10'd1;
+    localparam [11:0] WATCHDOG = WATCHDOG_ROUNDS[11:0];
+    localparam [11:0] SILENCE_BITS = used_bits_12(WATCHDOG_ROUNDS[11:0]);
+    localparam [11:0] WARM_AT = ENABLE_ROUNDS[11:0];
+    localparam [11:0] WARM_BITS = used_bits_12(ENABLE_ROUNDS[11:0]);
     localparam [9:0] FIRST_TICK = 10'd0;
     localparam [9:0] ONE_TICK = 10'd1;
     localparam [11:0] NO_ROUND = 12'd0;
     localparam [11:0] ONE_ROUND = 12'd1;
+
+    generate
+        if (((ROUND_TICKS < 32'd2) | (ROUND_TICKS > 32'd1024)) | ((ROUND_TICKS & (ROUND_TICKS - 32'd1)) != 32'd0)) begin : round_ticks_out_of_range
+            carrystep_error_round_ticks_out_of_range error ();
+        end
+        if (WATCHDOG_ROUNDS > 32'd4095) begin : watchdog_rounds_out_of_range
+            carrystep_error_watchdog_rounds_out_of_range error ();
+        end
+        if (ENABLE_ROUNDS > 32'd4095) begin : enable_rounds_out_of_range
+            carrystep_error_enable_rounds_out_of_range error ();
+        end
+        if (ESTOP_LOW > 32'd1) begin : estop_low_out_of_range
+            carrystep_error_estop_low_out_of_range error ();
+        end
+    endgenerate
 
     reg sync = 1'b0;
     reg now = 1'b0;
@@ -1358,7 +1521,7 @@ module carrystep_watch (
     assign tick_1 = round == ONE_TICK;
 
     always @(posedge clock) begin
-        sync <= estop ^ (ESTOP_LOW != 1'b0);
+        sync <= estop ^ (PRESSED_LOW != 1'b0);
         now <= sync;
         held <= now & (held | strobe);
         if (strobe) begin
@@ -1381,7 +1544,16 @@ module carrystep_watch (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w8_s8_d2_h2 (
+module carrystep_pulser #(
+    // W, least time in clocks for which STEP is high; 1 to 65536
+    parameter [31:0] STEP_HIGH = 32'd8,
+    // S, least time in clocks for which STEP is low; 1 to 65536
+    parameter [31:0] STEP_LOW = 32'd8,
+    // D, least time in clocks from a change of DIR to a rise of STEP; 1 to 65536
+    parameter [31:0] DIR_SETUP = 32'd2,
+    // H, least time in clocks from a rise of STEP to a change of DIR; 1 to 65536
+    parameter [31:0] DIR_HOLD = 32'd2
+) (
     input  wire         clock,
     input  wire         frozen,
     input  wire         request,
@@ -1394,14 +1566,35 @@ module carrystep_pulser_w8_s8_d2_h2 (
     output wire   [5:0] counts,
     output wire         overruns
 );
-    localparam [16:0] PULSE_OVER = 17'd7;
-    localparam [16:0] GAP_OVER = 17'd14;
-    localparam [16:0] HOLD_OVER = 17'd0;
-    localparam [16:0] SINCE_BITS = 17'd15;
-    localparam [15:0] SETUP_OVER = 16'd0;
-    localparam [15:0] AFTER_BITS = 16'd0;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
+    // All bits of a counter that goes up to `greatest`.
+    function [15:0] used_bits_16(input [15:0] greatest);
+        begin
+            used_bits_16 = greatest;
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 1);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 2);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 4);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
+        end
+    endfunction
+    // All bits of a counter that goes up to `greatest`.
+    function [16:0] used_bits_17(input [16:0] greatest);
+        begin
+            used_bits_17 = greatest;
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 1);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 2);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 4);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 8);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 16);
+        end
+    endfunction
+    localparam [16:0] PULSE_OVER = STEP_HIGH[16:0] - 17'd1;
+    localparam [16:0] GAP_OVER = (STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2;
+    localparam [16:0] HOLD_OVER = (DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0;
+    localparam [16:0] SINCE_BITS = used_bits_17((((((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) > ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) ? ((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) : ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) > (STEP_HIGH[16:0] - 17'd1)) ? ((((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) > ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) ? ((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) : ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) : (STEP_HIGH[16:0] - 17'd1));
+    localparam [15:0] SETUP_OVER = (DIR_SETUP == 32'd1) ? 16'd0 : (DIR_SETUP[15:0] - 16'd2);
+    localparam [15:0] AFTER_BITS = used_bits_16((DIR_SETUP == 32'd1) ? 16'd0 : (DIR_SETUP[15:0] - 16'd2));
+    localparam HOLDS = DIR_HOLD > 32'd1;
+    localparam INSTANT = DIR_SETUP == 32'd1;
     localparam [16:0] SINCE_RISE = 17'd0;
     localparam [16:0] SINCE_ONE = 17'd1;
     localparam [15:0] AFTER_TURN = 16'd0;
@@ -1410,453 +1603,20 @@ module carrystep_pulser_w8_s8_d2_h2 (
     localparam [2:0] ONE = 3'd1;
     localparam [2:0] MINUS_ONE = 3'd7;
 
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] since = 17'd0;
-    reg [15:0] after = 16'd0;
-    reg busy = 1'b0;
-    reg held = 1'b0;
-    reg settled = 1'b0;
-    reg [2:0] count = 3'd0;
-    reg [2:0] lost = 3'd0;
-    reg first_back;
-    reg aim;
-    reg [2:0] change;
-
-    wire pending = due | request;
-    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
-    wire second = due & request;
-    wire late_now = second & !rise & !frozen;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
-    assign overruns = late_now;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
+    generate
+        if ((STEP_HIGH < 32'd1) | (STEP_HIGH > 32'h10000)) begin : step_high_out_of_range
+            carrystep_error_step_high_out_of_range error ();
         end
-    end
-
-    always @(*) begin
-        aim = want;
-        if (pending) begin
-            aim = first_back;
+        if ((STEP_LOW < 32'd1) | (STEP_LOW > 32'h10000)) begin : step_low_out_of_range
+            carrystep_error_step_low_out_of_range error ();
         end
-    end
-
-    always @(*) begin
-        change = ONE;
-        if (dir_pin) begin
-            change = MINUS_ONE;
+        if ((DIR_SETUP < 32'd1) | (DIR_SETUP > 32'h10000)) begin : dir_setup_out_of_range
+            carrystep_error_dir_setup_out_of_range error ();
         end
-    end
-
-    always @(posedge clock) begin
-        if (has_sign) begin
-            want <= sign_back;
+        if ((DIR_HOLD < 32'd1) | (DIR_HOLD > 32'h10000)) begin : dir_hold_out_of_range
+            carrystep_error_dir_hold_out_of_range error ();
         end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
-        since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
-        held <= held & (since != HOLD_OVER);
-        if (rise) begin
-            since <= SINCE_RISE;
-            busy <= 1'b1;
-            held <= HOLDS != 1'b0;
-        end
-        after <= (after + AFTER_ONE) & AFTER_BITS;
-        settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
-            settled <= 1'b0;
-        end
-        if (rise) begin
-            count <= count + change;
-        end
-        due <= (pending & !rise & !frozen) | second;
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if ((frozen & pending) | late_now) begin
-            lost <= lost + ONE;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w80_s80_d16_h16 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         has_sign,
-    input  wire         sign_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire   [5:0] counts,
-    output wire         overruns
-);
-    localparam [16:0] PULSE_OVER = 17'd79;
-    localparam [16:0] GAP_OVER = 17'd158;
-    localparam [16:0] HOLD_OVER = 17'd14;
-    localparam [16:0] SINCE_BITS = 17'd255;
-    localparam [15:0] SETUP_OVER = 16'd14;
-    localparam [15:0] AFTER_BITS = 16'd15;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
-    localparam [16:0] SINCE_RISE = 17'd0;
-    localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
-    localparam [15:0] AFTER_ONE = 16'd1;
-    localparam [3:0] AT_3 = 4'd3;
-    localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] since = 17'd0;
-    reg [15:0] after = 16'd0;
-    reg busy = 1'b0;
-    reg held = 1'b0;
-    reg settled = 1'b0;
-    reg [2:0] count = 3'd0;
-    reg [2:0] lost = 3'd0;
-    reg first_back;
-    reg aim;
-    reg [2:0] change;
-
-    wire pending = due | request;
-    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
-    wire second = due & request;
-    wire late_now = second & !rise & !frozen;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
-    assign overruns = late_now;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(*) begin
-        change = ONE;
-        if (dir_pin) begin
-            change = MINUS_ONE;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (has_sign) begin
-            want <= sign_back;
-        end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
-        since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
-        held <= held & (since != HOLD_OVER);
-        if (rise) begin
-            since <= SINCE_RISE;
-            busy <= 1'b1;
-            held <= HOLDS != 1'b0;
-        end
-        after <= (after + AFTER_ONE) & AFTER_BITS;
-        settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
-            settled <= 1'b0;
-        end
-        if (rise) begin
-            count <= count + change;
-        end
-        due <= (pending & !rise & !frozen) | second;
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if ((frozen & pending) | late_now) begin
-            lost <= lost + ONE;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w152_s152_d52_h52 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         has_sign,
-    input  wire         sign_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire   [5:0] counts,
-    output wire         overruns
-);
-    localparam [16:0] PULSE_OVER = 17'd151;
-    localparam [16:0] GAP_OVER = 17'd302;
-    localparam [16:0] HOLD_OVER = 17'd50;
-    localparam [16:0] SINCE_BITS = 17'd511;
-    localparam [15:0] SETUP_OVER = 16'd50;
-    localparam [15:0] AFTER_BITS = 16'd63;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
-    localparam [16:0] SINCE_RISE = 17'd0;
-    localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
-    localparam [15:0] AFTER_ONE = 16'd1;
-    localparam [3:0] AT_3 = 4'd3;
-    localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] since = 17'd0;
-    reg [15:0] after = 16'd0;
-    reg busy = 1'b0;
-    reg held = 1'b0;
-    reg settled = 1'b0;
-    reg [2:0] count = 3'd0;
-    reg [2:0] lost = 3'd0;
-    reg first_back;
-    reg aim;
-    reg [2:0] change;
-
-    wire pending = due | request;
-    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
-    wire second = due & request;
-    wire late_now = second & !rise & !frozen;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
-    assign overruns = late_now;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(*) begin
-        change = ONE;
-        if (dir_pin) begin
-            change = MINUS_ONE;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (has_sign) begin
-            want <= sign_back;
-        end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
-        since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
-        held <= held & (since != HOLD_OVER);
-        if (rise) begin
-            since <= SINCE_RISE;
-            busy <= 1'b1;
-            held <= HOLDS != 1'b0;
-        end
-        after <= (after + AFTER_ONE) & AFTER_BITS;
-        settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
-            settled <= 1'b0;
-        end
-        if (rise) begin
-            count <= count + change;
-        end
-        due <= (pending & !rise & !frozen) | second;
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if ((frozen & pending) | late_now) begin
-            lost <= lost + ONE;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w200_s200_d400_h400 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         has_sign,
-    input  wire         sign_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire   [5:0] counts,
-    output wire         overruns
-);
-    localparam [16:0] PULSE_OVER = 17'd199;
-    localparam [16:0] GAP_OVER = 17'd398;
-    localparam [16:0] HOLD_OVER = 17'd398;
-    localparam [16:0] SINCE_BITS = 17'd511;
-    localparam [15:0] SETUP_OVER = 16'd398;
-    localparam [15:0] AFTER_BITS = 16'd511;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
-    localparam [16:0] SINCE_RISE = 17'd0;
-    localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
-    localparam [15:0] AFTER_ONE = 16'd1;
-    localparam [3:0] AT_3 = 4'd3;
-    localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] since = 17'd0;
-    reg [15:0] after = 16'd0;
-    reg busy = 1'b0;
-    reg held = 1'b0;
-    reg settled = 1'b0;
-    reg [2:0] count = 3'd0;
-    reg [2:0] lost = 3'd0;
-    reg first_back;
-    reg aim;
-    reg [2:0] change;
-
-    wire pending = due | request;
-    wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
-    wire second = due & request;
-    wire late_now = second & !rise & !frozen;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
-    assign overruns = late_now;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(*) begin
-        change = ONE;
-        if (dir_pin) begin
-            change = MINUS_ONE;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (has_sign) begin
-            want <= sign_back;
-        end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
-        since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
-        held <= held & (since != HOLD_OVER);
-        if (rise) begin
-            since <= SINCE_RISE;
-            busy <= 1'b1;
-            held <= HOLDS != 1'b0;
-        end
-        after <= (after + AFTER_ONE) & AFTER_BITS;
-        settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
-            settled <= 1'b0;
-        end
-        if (rise) begin
-            count <= count + change;
-        end
-        due <= (pending & !rise & !frozen) | second;
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if ((frozen & pending) | late_now) begin
-            lost <= lost + ONE;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_pulser_w240_s240_d120_h120 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         has_sign,
-    input  wire         sign_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire   [5:0] counts,
-    output wire         overruns
-);
-    localparam [16:0] PULSE_OVER = 17'd239;
-    localparam [16:0] GAP_OVER = 17'd478;
-    localparam [16:0] HOLD_OVER = 17'd118;
-    localparam [16:0] SINCE_BITS = 17'd511;
-    localparam [15:0] SETUP_OVER = 16'd118;
-    localparam [15:0] AFTER_BITS = 16'd127;
-    localparam HOLDS = 1'b1;
-    localparam INSTANT = 1'b0;
-    localparam [16:0] SINCE_RISE = 17'd0;
-    localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
-    localparam [15:0] AFTER_ONE = 16'd1;
-    localparam [3:0] AT_3 = 4'd3;
-    localparam [2:0] ONE = 3'd1;
-    localparam [2:0] MINUS_ONE = 3'd7;
+    endgenerate
 
     reg step_pin = 1'b0;
     reg dir_pin = 1'b0;
@@ -1941,7 +1701,65 @@ module carrystep_pulser_w240_s240_d120_h120 (
 endmodule
 
 // Axes on one adder, their queues, starts, and the guard.
-module carrystep_engine (
+module carrystep_engine #(
+    // Length of a tick in clocks; 13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases
+    parameter [31:0] CLOCKS_PER_TICK = 32'd80,
+    // 1: P starts at half a step; 0: P starts at zero; 0 or 1
+    parameter [31:0] START_HALF = 32'd1,
+    // W, least time in clocks for which STEP is high; 1 to 65536
+    parameter [31:0] STEP_HIGH_0 = 32'd8,
+    parameter [31:0] STEP_HIGH_1 = 32'd80,
+    parameter [31:0] STEP_HIGH_2 = 32'd152,
+    parameter [31:0] STEP_HIGH_3 = 32'd200,
+    parameter [31:0] STEP_HIGH_4 = 32'd8,
+    parameter [31:0] STEP_HIGH_5 = 32'd240,
+    // S, least time in clocks for which STEP is low; 1 to 65536
+    parameter [31:0] STEP_LOW_0 = 32'd8,
+    parameter [31:0] STEP_LOW_1 = 32'd80,
+    parameter [31:0] STEP_LOW_2 = 32'd152,
+    parameter [31:0] STEP_LOW_3 = 32'd200,
+    parameter [31:0] STEP_LOW_4 = 32'd8,
+    parameter [31:0] STEP_LOW_5 = 32'd240,
+    // D, least time in clocks from a change of DIR to a rise of STEP; 1 to 65536
+    parameter [31:0] DIR_SETUP_0 = 32'd2,
+    parameter [31:0] DIR_SETUP_1 = 32'd16,
+    parameter [31:0] DIR_SETUP_2 = 32'd52,
+    parameter [31:0] DIR_SETUP_3 = 32'd400,
+    parameter [31:0] DIR_SETUP_4 = 32'd2,
+    parameter [31:0] DIR_SETUP_5 = 32'd120,
+    // H, least time in clocks from a rise of STEP to a change of DIR; 1 to 65536
+    parameter [31:0] DIR_HOLD_0 = 32'd2,
+    parameter [31:0] DIR_HOLD_1 = 32'd16,
+    parameter [31:0] DIR_HOLD_2 = 32'd52,
+    parameter [31:0] DIR_HOLD_3 = 32'd400,
+    parameter [31:0] DIR_HOLD_4 = 32'd2,
+    parameter [31:0] DIR_HOLD_5 = 32'd120,
+    // Acceleration of the ramp of a controlled stop, in units of 2^-64 step per tick^2; 1 to 2^62
+    parameter [63:0] STOP_ACCEL_0 = 64'hd6bf94d5e57,
+    parameter [63:0] STOP_ACCEL_1 = 64'habcc7711846,
+    parameter [63:0] STOP_ACCEL_2 = 64'ha10fafa06c1,
+    parameter [63:0] STOP_ACCEL_3 = 64'h5f71977b826,
+    parameter [63:0] STOP_ACCEL_4 = 64'hee9bfab4c61,
+    parameter [63:0] STOP_ACCEL_5 = 64'h2843ebe81b0,
+    // Length of a round in ticks: the unit of the times below, and the time between two samples of a limit; a power of two from 2 to 1024
+    parameter [31:0] ROUND_TICKS = 32'd32,
+    // Time in rounds without a valid request after which all axes stop; 0: there is no watchdog; 0 to 4095
+    parameter [31:0] WATCHDOG_ROUNDS = 32'd3126,
+    // Time in rounds from the rise of `enabled` to the first start; 0 to 4095
+    parameter [31:0] ENABLE_ROUNDS = 32'd33,
+    // Number of successive samples of the same level after which a limit's level is accepted; 1 to 127
+    parameter [31:0] DEBOUNCE_LOOKS = 32'd17,
+    // Limit switches: 0 none, 1 two an axis, 2 one an axis, 3 one for all axes; 0 to 3
+    parameter [31:0] LIMITS = 32'd1,
+    // Level at which a limit is reached: 0 high, 1 low; 0 or 1
+    parameter [31:0] LIMITS_LOW = 32'd0,
+    // What a limit does: 0 all axes ramp down, 1 all axes freeze; 0 or 1
+    parameter [31:0] LIMIT_FREEZES = 32'd0,
+    // Level at which the e-stop is pressed: 0 high, 1 low; 0 or 1
+    parameter [31:0] ESTOP_LOW = 32'd0,
+    // Where the memory of events lies: in block RAM, or in LUTs for parts whose block RAMs write whole words only; "block" or "distributed"
+    parameter EVENT_MEMORY = "block"
+) (
     input  wire         clock,
     input  wire         put_valid,
     input  wire   [2:0] put_axis,
@@ -1994,6 +1812,12 @@ module carrystep_engine (
     localparam BY_ONE = 1'b1;
     localparam [2:0] TO_TOP = 3'd5;
     localparam [3:0] AXES = 4'd6;
+
+    generate
+        if (CLOCKS_PER_TICK < 32'd79) begin : clocks_per_tick_too_few_for_the_axes
+            carrystep_error_clocks_per_tick_too_few_for_the_axes error ();
+        end
+    endgenerate
 
     reg waits = 1'b0;
     reg [5:0] mask = 6'd0;
@@ -2330,7 +2154,15 @@ module carrystep_engine (
         .lost(queue_lost)
     );
 
-    carrystep_store store (
+    carrystep_store #(
+        .START_HALF(START_HALF),
+        .STOP_ACCEL_0(STOP_ACCEL_0),
+        .STOP_ACCEL_1(STOP_ACCEL_1),
+        .STOP_ACCEL_2(STOP_ACCEL_2),
+        .STOP_ACCEL_3(STOP_ACCEL_3),
+        .STOP_ACCEL_4(STOP_ACCEL_4),
+        .STOP_ACCEL_5(STOP_ACCEL_5)
+    ) store (
         .clock(clock),
         .beat(turn_beat),
         .axis(turn_axis),
@@ -2351,7 +2183,10 @@ module carrystep_engine (
         .word(store_word)
     );
 
-    carrystep_wheel wheel (
+    carrystep_wheel #(
+        .CLOCKS_PER_TICK(CLOCKS_PER_TICK),
+        .EVENT_MEMORY(EVENT_MEMORY)
+    ) wheel (
         .clock(clock),
         .turn_ends(turn_beat[12]),
         .lane(turn_lane),
@@ -2366,7 +2201,11 @@ module carrystep_engine (
         .backward(wheel_backward)
     );
 
-    carrystep_limits limits (
+    carrystep_limits #(
+        .DEBOUNCE_LOOKS(DEBOUNCE_LOOKS),
+        .LIMITS(LIMITS),
+        .LIMITS_LOW(LIMITS_LOW)
+    ) limits (
         .clock(clock),
         .turn_ends(turn_beat[12]),
         .axis(turn_axis),
@@ -2394,7 +2233,9 @@ module carrystep_engine (
         .slows(homes_slows)
     );
 
-    carrystep_stops stops (
+    carrystep_stops #(
+        .LIMIT_FREEZES(LIMIT_FREEZES)
+    ) stops (
         .clock(clock),
         .strobe(strobe),
         .turn_ends(turn_beat[12]),
@@ -2420,7 +2261,12 @@ module carrystep_engine (
         .culprits(stops_culprits)
     );
 
-    carrystep_watch watch (
+    carrystep_watch #(
+        .ROUND_TICKS(ROUND_TICKS),
+        .WATCHDOG_ROUNDS(WATCHDOG_ROUNDS),
+        .ENABLE_ROUNDS(ENABLE_ROUNDS),
+        .ESTOP_LOW(ESTOP_LOW)
+    ) watch (
         .clock(clock),
         .strobe(strobe),
         .estop(estop),
@@ -2435,7 +2281,12 @@ module carrystep_engine (
         .tick_1(watch_tick_1)
     );
 
-    carrystep_pulser_w8_s8_d2_h2 pulser_0 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_0),
+        .STEP_LOW(STEP_LOW_0),
+        .DIR_SETUP(DIR_SETUP_0),
+        .DIR_HOLD(DIR_HOLD_0)
+    ) pulser_0 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[0] & wheel_phase_start),
@@ -2449,7 +2300,12 @@ module carrystep_engine (
         .overruns(pulser_0_overruns)
     );
 
-    carrystep_pulser_w80_s80_d16_h16 pulser_1 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_1),
+        .STEP_LOW(STEP_LOW_1),
+        .DIR_SETUP(DIR_SETUP_1),
+        .DIR_HOLD(DIR_HOLD_1)
+    ) pulser_1 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[1] & wheel_phase_start),
@@ -2463,7 +2319,12 @@ module carrystep_engine (
         .overruns(pulser_1_overruns)
     );
 
-    carrystep_pulser_w152_s152_d52_h52 pulser_2 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_2),
+        .STEP_LOW(STEP_LOW_2),
+        .DIR_SETUP(DIR_SETUP_2),
+        .DIR_HOLD(DIR_HOLD_2)
+    ) pulser_2 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[2] & wheel_phase_start),
@@ -2477,7 +2338,12 @@ module carrystep_engine (
         .overruns(pulser_2_overruns)
     );
 
-    carrystep_pulser_w200_s200_d400_h400 pulser_3 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_3),
+        .STEP_LOW(STEP_LOW_3),
+        .DIR_SETUP(DIR_SETUP_3),
+        .DIR_HOLD(DIR_HOLD_3)
+    ) pulser_3 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[3] & wheel_phase_start),
@@ -2491,7 +2357,12 @@ module carrystep_engine (
         .overruns(pulser_3_overruns)
     );
 
-    carrystep_pulser_w8_s8_d2_h2 pulser_4 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_4),
+        .STEP_LOW(STEP_LOW_4),
+        .DIR_SETUP(DIR_SETUP_4),
+        .DIR_HOLD(DIR_HOLD_4)
+    ) pulser_4 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[4] & wheel_phase_start),
@@ -2505,7 +2376,12 @@ module carrystep_engine (
         .overruns(pulser_4_overruns)
     );
 
-    carrystep_pulser_w240_s240_d120_h120 pulser_5 (
+    carrystep_pulser #(
+        .STEP_HIGH(STEP_HIGH_5),
+        .STEP_LOW(STEP_LOW_5),
+        .DIR_SETUP(DIR_SETUP_5),
+        .DIR_HOLD(DIR_HOLD_5)
+    ) pulser_5 (
         .clock(clock),
         .frozen(stops_frozen),
         .request(wheel_events[5] & wheel_phase_start),

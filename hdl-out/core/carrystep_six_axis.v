@@ -4,6 +4,10 @@
 //
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
+//
+// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
+// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+//
 // Clock        80000000 Hz
 // Tick         1000 ns, 80 clocks in 16 phases
 // Latency      161 clocks from the load of a move to the edge of its tick 1, phase 0
@@ -19,19 +23,38 @@
 `default_nettype none
 
 // The beat: a strobe in the last cycle of each tick, and the phases in between.
-module carrystep_tick (
+module carrystep_tick #(
+    // Length of a tick in clocks; 13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases
+    parameter [31:0] CLOCKS_PER_TICK = 32'd80
+) (
     input  wire         clock,
     output wire         strobe,
     output wire         phase_start,
     output wire   [3:0] phase
 );
+    // All bits of a counter that goes up to `greatest`.
+    function [15:0] used_bits_16(input [15:0] greatest);
+        begin
+            used_bits_16 = greatest;
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 1);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 2);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 4);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
+        end
+    endfunction
     localparam [15:0] ZERO = 16'd0;
     localparam [15:0] ONE = 16'd1;
-    localparam [15:0] LAST_SUB = 16'd4;
-    localparam [15:0] SUB_BITS = 16'd7;
+    localparam [15:0] LAST_SUB = CLOCKS_PER_TICK[19:4] - 16'd1;
+    localparam [15:0] SUB_BITS = used_bits_16(CLOCKS_PER_TICK[19:4] - 16'd1);
     localparam [3:0] FIRST_PHASE = 4'd0;
     localparam [3:0] ONE_PHASE = 4'd1;
     localparam [3:0] LAST_PHASE = 4'd15;
+
+    generate
+        if (((CLOCKS_PER_TICK < 32'd16) | (CLOCKS_PER_TICK > 32'h10000)) | ((CLOCKS_PER_TICK & 32'd15) != 32'd0)) begin : clocks_per_tick_out_of_range
+            carrystep_error_clocks_per_tick_out_of_range error ();
+        end
+    endgenerate
 
     reg [15:0] sub = 16'd0;
     reg [3:0] phases = 4'd0;
@@ -225,7 +248,10 @@ module carrystep_step_edge (
 endmodule
 
 // One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched.
-module carrystep_axis (
+module carrystep_axis #(
+    // 1: P starts at half a step; 0: P starts at zero; 0 or 1
+    parameter [31:0] START_HALF = 32'd1
+) (
     input  wire         clock,
     input  wire         strobe,
     input  wire         phase_start,
@@ -255,11 +281,17 @@ module carrystep_axis (
     output wire  [63:0] p,
     output wire  [63:0] v
 );
-    localparam [63:0] START_VALUE = 64'h8000000000000000;
+    localparam [63:0] START_VALUE = START_HALF[0] ? 64'h8000000000000000 : 64'h0;
     localparam [63:0] ZERO = 64'h0;
     localparam [63:0] LEAST = 64'h8000000000000000;
 
-    reg [63:0] position = 64'h8000000000000000;
+    generate
+        if (START_HALF > 32'd1) begin : start_half_out_of_range
+            carrystep_error_start_half_out_of_range error ();
+        end
+    endgenerate
+
+    reg [63:0] position = START_HALF[0] ? 64'h8000000000000000 : 64'h0;
     reg [63:0] speed = 64'h0;
     reg [63:0] accel = 64'h0;
     reg [63:0] jerk = 64'h0;
@@ -392,7 +424,16 @@ module carrystep_axis (
 endmodule
 
 // STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w8_s8_d2_h2 (
+module carrystep_shaper #(
+    // W, least time in clocks for which STEP is high; 1 to 65536
+    parameter [31:0] STEP_HIGH = 32'd8,
+    // S, least time in clocks for which STEP is low; 1 to 65536
+    parameter [31:0] STEP_LOW = 32'd8,
+    // D, least time in clocks from a change of DIR to a rise of STEP; 1 to 65536
+    parameter [31:0] DIR_SETUP = 32'd2,
+    // H, least time in clocks from a rise of STEP to a change of DIR; 1 to 65536
+    parameter [31:0] DIR_HOLD = 32'd2
+) (
     input  wire         clock,
     input  wire         frozen,
     input  wire         clear,
@@ -407,17 +448,53 @@ module carrystep_shaper_w8_s8_d2_h2 (
     output wire  [31:0] discarded,
     output wire         overrun
 );
-    localparam [16:0] GAP = 17'd8;
-    localparam [16:0] BUSY_LOAD = 17'd15;
-    localparam [16:0] BUSY_BITS = 17'd15;
-    localparam [15:0] HOLD_LOAD = 16'd1;
-    localparam [15:0] HOLD_BITS = 16'd1;
-    localparam [15:0] SETUP_LOAD = 16'd1;
-    localparam [15:0] SETUP_BITS = 16'd1;
+    // All bits of a counter that goes up to `greatest`.
+    function [15:0] used_bits_16(input [15:0] greatest);
+        begin
+            used_bits_16 = greatest;
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 1);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 2);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 4);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
+        end
+    endfunction
+    // All bits of a counter that goes up to `greatest`.
+    function [16:0] used_bits_17(input [16:0] greatest);
+        begin
+            used_bits_17 = greatest;
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 1);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 2);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 4);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 8);
+            used_bits_17 = used_bits_17 | (used_bits_17 >> 16);
+        end
+    endfunction
+    localparam [16:0] GAP = STEP_LOW[16:0];
+    localparam [16:0] BUSY_LOAD = (STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd1;
+    localparam [16:0] BUSY_BITS = used_bits_17((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd1);
+    localparam [15:0] HOLD_LOAD = DIR_HOLD[15:0] - 16'd1;
+    localparam [15:0] HOLD_BITS = used_bits_16(DIR_HOLD[15:0] - 16'd1);
+    localparam [15:0] SETUP_LOAD = DIR_SETUP[15:0] - 16'd1;
+    localparam [15:0] SETUP_BITS = used_bits_16(DIR_SETUP[15:0] - 16'd1);
     localparam [16:0] BUSY_ONE = 17'd1;
     localparam [15:0] TIMER_ONE = 16'd1;
     localparam [31:0] ONE = 32'd1;
     localparam [31:0] TWO = 32'd2;
+
+    generate
+        if ((STEP_HIGH < 32'd1) | (STEP_HIGH > 32'h10000)) begin : step_high_out_of_range
+            carrystep_error_step_high_out_of_range error ();
+        end
+        if ((STEP_LOW < 32'd1) | (STEP_LOW > 32'h10000)) begin : step_low_out_of_range
+            carrystep_error_step_low_out_of_range error ();
+        end
+        if ((DIR_SETUP < 32'd1) | (DIR_SETUP > 32'h10000)) begin : dir_setup_out_of_range
+            carrystep_error_dir_setup_out_of_range error ();
+        end
+        if ((DIR_HOLD < 32'd1) | (DIR_HOLD > 32'h10000)) begin : dir_hold_out_of_range
+            carrystep_error_dir_hold_out_of_range error ();
+        end
+    endgenerate
 
     reg step_pin = 1'b0;
     reg dir_pin = 1'b0;
@@ -426,487 +503,7 @@ module carrystep_shaper_w8_s8_d2_h2 (
     reg due_back = 1'b0;
     reg [16:0] busy = 17'd0;
     reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd1;
-    reg [31:0] steps = 32'd0;
-    reg [31:0] lost = 32'd0;
-    reg late = 1'b0;
-    reg first_back;
-    reg aim;
-
-    wire want_now = want_back | (want & !want_fwd);
-    wire pending = due | request;
-    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
-    wire second = due & request;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign position = steps;
-    assign discarded = lost;
-    assign overrun = late;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want_now;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(posedge clock) begin
-        want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
-        if (rise) begin
-            busy <= BUSY_LOAD;
-        end else if (busy != 17'd0) begin
-            busy <= (busy - BUSY_ONE) & BUSY_BITS;
-        end
-        if (rise) begin
-            hold <= HOLD_LOAD;
-        end else if (hold != 16'd0) begin
-            hold <= (hold - TIMER_ONE) & HOLD_BITS;
-        end
-        if (turn) begin
-            setup <= SETUP_LOAD;
-        end else if (setup != 16'd0) begin
-            setup <= (setup - TIMER_ONE) & SETUP_BITS;
-        end
-        if (rise) begin
-            if (dir_pin) begin
-                steps <= steps - ONE;
-            end else begin
-                steps <= steps + ONE;
-            end
-        end
-        due <= pending & !rise;
-        if (rise) begin
-            due <= second;
-        end
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if (frozen) begin
-            due <= 1'b0;
-            due_back <= due_back;
-            if (second) begin
-                lost <= lost + TWO;
-            end else if (pending) begin
-                lost <= lost + ONE;
-            end
-        end else if (second & !rise) begin
-            late <= 1'b1;
-            lost <= lost + ONE;
-        end
-        if (clear) begin
-            late <= 1'b0;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w80_s80_d16_h16 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         clear,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         want_fwd,
-    input  wire         want_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire  [31:0] position,
-    output wire  [31:0] discarded,
-    output wire         overrun
-);
-    localparam [16:0] GAP = 17'd80;
-    localparam [16:0] BUSY_LOAD = 17'd159;
-    localparam [16:0] BUSY_BITS = 17'd255;
-    localparam [15:0] HOLD_LOAD = 16'd15;
-    localparam [15:0] HOLD_BITS = 16'd15;
-    localparam [15:0] SETUP_LOAD = 16'd15;
-    localparam [15:0] SETUP_BITS = 16'd15;
-    localparam [16:0] BUSY_ONE = 17'd1;
-    localparam [15:0] TIMER_ONE = 16'd1;
-    localparam [31:0] ONE = 32'd1;
-    localparam [31:0] TWO = 32'd2;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] busy = 17'd0;
-    reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd15;
-    reg [31:0] steps = 32'd0;
-    reg [31:0] lost = 32'd0;
-    reg late = 1'b0;
-    reg first_back;
-    reg aim;
-
-    wire want_now = want_back | (want & !want_fwd);
-    wire pending = due | request;
-    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
-    wire second = due & request;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign position = steps;
-    assign discarded = lost;
-    assign overrun = late;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want_now;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(posedge clock) begin
-        want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
-        if (rise) begin
-            busy <= BUSY_LOAD;
-        end else if (busy != 17'd0) begin
-            busy <= (busy - BUSY_ONE) & BUSY_BITS;
-        end
-        if (rise) begin
-            hold <= HOLD_LOAD;
-        end else if (hold != 16'd0) begin
-            hold <= (hold - TIMER_ONE) & HOLD_BITS;
-        end
-        if (turn) begin
-            setup <= SETUP_LOAD;
-        end else if (setup != 16'd0) begin
-            setup <= (setup - TIMER_ONE) & SETUP_BITS;
-        end
-        if (rise) begin
-            if (dir_pin) begin
-                steps <= steps - ONE;
-            end else begin
-                steps <= steps + ONE;
-            end
-        end
-        due <= pending & !rise;
-        if (rise) begin
-            due <= second;
-        end
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if (frozen) begin
-            due <= 1'b0;
-            due_back <= due_back;
-            if (second) begin
-                lost <= lost + TWO;
-            end else if (pending) begin
-                lost <= lost + ONE;
-            end
-        end else if (second & !rise) begin
-            late <= 1'b1;
-            lost <= lost + ONE;
-        end
-        if (clear) begin
-            late <= 1'b0;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w152_s152_d52_h52 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         clear,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         want_fwd,
-    input  wire         want_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire  [31:0] position,
-    output wire  [31:0] discarded,
-    output wire         overrun
-);
-    localparam [16:0] GAP = 17'd152;
-    localparam [16:0] BUSY_LOAD = 17'd303;
-    localparam [16:0] BUSY_BITS = 17'd511;
-    localparam [15:0] HOLD_LOAD = 16'd51;
-    localparam [15:0] HOLD_BITS = 16'd63;
-    localparam [15:0] SETUP_LOAD = 16'd51;
-    localparam [15:0] SETUP_BITS = 16'd63;
-    localparam [16:0] BUSY_ONE = 17'd1;
-    localparam [15:0] TIMER_ONE = 16'd1;
-    localparam [31:0] ONE = 32'd1;
-    localparam [31:0] TWO = 32'd2;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] busy = 17'd0;
-    reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd51;
-    reg [31:0] steps = 32'd0;
-    reg [31:0] lost = 32'd0;
-    reg late = 1'b0;
-    reg first_back;
-    reg aim;
-
-    wire want_now = want_back | (want & !want_fwd);
-    wire pending = due | request;
-    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
-    wire second = due & request;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign position = steps;
-    assign discarded = lost;
-    assign overrun = late;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want_now;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(posedge clock) begin
-        want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
-        if (rise) begin
-            busy <= BUSY_LOAD;
-        end else if (busy != 17'd0) begin
-            busy <= (busy - BUSY_ONE) & BUSY_BITS;
-        end
-        if (rise) begin
-            hold <= HOLD_LOAD;
-        end else if (hold != 16'd0) begin
-            hold <= (hold - TIMER_ONE) & HOLD_BITS;
-        end
-        if (turn) begin
-            setup <= SETUP_LOAD;
-        end else if (setup != 16'd0) begin
-            setup <= (setup - TIMER_ONE) & SETUP_BITS;
-        end
-        if (rise) begin
-            if (dir_pin) begin
-                steps <= steps - ONE;
-            end else begin
-                steps <= steps + ONE;
-            end
-        end
-        due <= pending & !rise;
-        if (rise) begin
-            due <= second;
-        end
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if (frozen) begin
-            due <= 1'b0;
-            due_back <= due_back;
-            if (second) begin
-                lost <= lost + TWO;
-            end else if (pending) begin
-                lost <= lost + ONE;
-            end
-        end else if (second & !rise) begin
-            late <= 1'b1;
-            lost <= lost + ONE;
-        end
-        if (clear) begin
-            late <= 1'b0;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w200_s200_d400_h400 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         clear,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         want_fwd,
-    input  wire         want_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire  [31:0] position,
-    output wire  [31:0] discarded,
-    output wire         overrun
-);
-    localparam [16:0] GAP = 17'd200;
-    localparam [16:0] BUSY_LOAD = 17'd399;
-    localparam [16:0] BUSY_BITS = 17'd511;
-    localparam [15:0] HOLD_LOAD = 16'd399;
-    localparam [15:0] HOLD_BITS = 16'd511;
-    localparam [15:0] SETUP_LOAD = 16'd399;
-    localparam [15:0] SETUP_BITS = 16'd511;
-    localparam [16:0] BUSY_ONE = 17'd1;
-    localparam [15:0] TIMER_ONE = 16'd1;
-    localparam [31:0] ONE = 32'd1;
-    localparam [31:0] TWO = 32'd2;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] busy = 17'd0;
-    reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd399;
-    reg [31:0] steps = 32'd0;
-    reg [31:0] lost = 32'd0;
-    reg late = 1'b0;
-    reg first_back;
-    reg aim;
-
-    wire want_now = want_back | (want & !want_fwd);
-    wire pending = due | request;
-    wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
-    wire second = due & request;
-
-    assign step = step_pin;
-    assign dir = dir_pin;
-    assign owed = due;
-    assign position = steps;
-    assign discarded = lost;
-    assign overrun = late;
-
-    always @(*) begin
-        first_back = request_back;
-        if (due) begin
-            first_back = due_back;
-        end
-    end
-
-    always @(*) begin
-        aim = want_now;
-        if (pending) begin
-            aim = first_back;
-        end
-    end
-
-    always @(posedge clock) begin
-        want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
-        if (rise) begin
-            busy <= BUSY_LOAD;
-        end else if (busy != 17'd0) begin
-            busy <= (busy - BUSY_ONE) & BUSY_BITS;
-        end
-        if (rise) begin
-            hold <= HOLD_LOAD;
-        end else if (hold != 16'd0) begin
-            hold <= (hold - TIMER_ONE) & HOLD_BITS;
-        end
-        if (turn) begin
-            setup <= SETUP_LOAD;
-        end else if (setup != 16'd0) begin
-            setup <= (setup - TIMER_ONE) & SETUP_BITS;
-        end
-        if (rise) begin
-            if (dir_pin) begin
-                steps <= steps - ONE;
-            end else begin
-                steps <= steps + ONE;
-            end
-        end
-        due <= pending & !rise;
-        if (rise) begin
-            due <= second;
-        end
-        if (!due | rise) begin
-            due_back <= request_back;
-        end
-        if (frozen) begin
-            due <= 1'b0;
-            due_back <= due_back;
-            if (second) begin
-                lost <= lost + TWO;
-            end else if (pending) begin
-                lost <= lost + ONE;
-            end
-        end else if (second & !rise) begin
-            late <= 1'b1;
-            lost <= lost + ONE;
-        end
-        if (clear) begin
-            late <= 1'b0;
-        end
-    end
-endmodule
-
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
-module carrystep_shaper_w240_s240_d120_h120 (
-    input  wire         clock,
-    input  wire         frozen,
-    input  wire         clear,
-    input  wire         request,
-    input  wire         request_back,
-    input  wire         want_fwd,
-    input  wire         want_back,
-    output wire         step,
-    output wire         dir,
-    output wire         owed,
-    output wire  [31:0] position,
-    output wire  [31:0] discarded,
-    output wire         overrun
-);
-    localparam [16:0] GAP = 17'd240;
-    localparam [16:0] BUSY_LOAD = 17'd479;
-    localparam [16:0] BUSY_BITS = 17'd511;
-    localparam [15:0] HOLD_LOAD = 16'd119;
-    localparam [15:0] HOLD_BITS = 16'd127;
-    localparam [15:0] SETUP_LOAD = 16'd119;
-    localparam [15:0] SETUP_BITS = 16'd127;
-    localparam [16:0] BUSY_ONE = 17'd1;
-    localparam [15:0] TIMER_ONE = 16'd1;
-    localparam [31:0] ONE = 32'd1;
-    localparam [31:0] TWO = 32'd2;
-
-    reg step_pin = 1'b0;
-    reg dir_pin = 1'b0;
-    reg want = 1'b0;
-    reg due = 1'b0;
-    reg due_back = 1'b0;
-    reg [16:0] busy = 17'd0;
-    reg [15:0] hold = 16'd0;
-    reg [15:0] setup = 16'd119;
+    reg [15:0] setup = DIR_SETUP[15:0] - 16'd1;
     reg [31:0] steps = 32'd0;
     reg [31:0] lost = 32'd0;
     reg late = 1'b0;
@@ -992,7 +589,40 @@ module carrystep_shaper_w240_s240_d120_h120 (
 endmodule
 
 // Six axes on one tick, the door for segments and starts, and the freeze.
-module carrystep_six_axis (
+module carrystep_six_axis #(
+    // Length of a tick in clocks; 13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases
+    parameter [31:0] CLOCKS_PER_TICK = 32'd80,
+    // 1: P starts at half a step; 0: P starts at zero; 0 or 1
+    parameter [31:0] START_HALF = 32'd1,
+    // W, least time in clocks for which STEP is high; 1 to 65536
+    parameter [31:0] STEP_HIGH_0 = 32'd8,
+    parameter [31:0] STEP_HIGH_1 = 32'd80,
+    parameter [31:0] STEP_HIGH_2 = 32'd152,
+    parameter [31:0] STEP_HIGH_3 = 32'd200,
+    parameter [31:0] STEP_HIGH_4 = 32'd8,
+    parameter [31:0] STEP_HIGH_5 = 32'd240,
+    // S, least time in clocks for which STEP is low; 1 to 65536
+    parameter [31:0] STEP_LOW_0 = 32'd8,
+    parameter [31:0] STEP_LOW_1 = 32'd80,
+    parameter [31:0] STEP_LOW_2 = 32'd152,
+    parameter [31:0] STEP_LOW_3 = 32'd200,
+    parameter [31:0] STEP_LOW_4 = 32'd8,
+    parameter [31:0] STEP_LOW_5 = 32'd240,
+    // D, least time in clocks from a change of DIR to a rise of STEP; 1 to 65536
+    parameter [31:0] DIR_SETUP_0 = 32'd2,
+    parameter [31:0] DIR_SETUP_1 = 32'd16,
+    parameter [31:0] DIR_SETUP_2 = 32'd52,
+    parameter [31:0] DIR_SETUP_3 = 32'd400,
+    parameter [31:0] DIR_SETUP_4 = 32'd2,
+    parameter [31:0] DIR_SETUP_5 = 32'd120,
+    // H, least time in clocks from a rise of STEP to a change of DIR; 1 to 65536
+    parameter [31:0] DIR_HOLD_0 = 32'd2,
+    parameter [31:0] DIR_HOLD_1 = 32'd16,
+    parameter [31:0] DIR_HOLD_2 = 32'd52,
+    parameter [31:0] DIR_HOLD_3 = 32'd400,
+    parameter [31:0] DIR_HOLD_4 = 32'd2,
+    parameter [31:0] DIR_HOLD_5 = 32'd120
+) (
     input  wire         clock,
     input  wire         seg_valid,
     input  wire   [2:0] seg_axis,
@@ -1249,14 +879,18 @@ module carrystep_six_axis (
         all_startable = all_startable & (!mask[5] | axis_5_startable);
     end
 
-    carrystep_tick tick (
+    carrystep_tick #(
+        .CLOCKS_PER_TICK(CLOCKS_PER_TICK)
+    ) tick (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
         .phase(tick_phase)
     );
 
-    carrystep_axis axis_0 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_0 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1287,7 +921,9 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_axis axis_1 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_1 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1318,7 +954,9 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_axis axis_2 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_2 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1349,7 +987,9 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_axis axis_3 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_3 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1380,7 +1020,9 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_axis axis_4 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_4 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1411,7 +1053,9 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_axis axis_5 (
+    carrystep_axis #(
+        .START_HALF(START_HALF)
+    ) axis_5 (
         .clock(clock),
         .strobe(tick_strobe),
         .phase_start(tick_phase_start),
@@ -1442,7 +1086,12 @@ module carrystep_six_axis (
         .v()
     );
 
-    carrystep_shaper_w8_s8_d2_h2 shaper_0 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_0),
+        .STEP_LOW(STEP_LOW_0),
+        .DIR_SETUP(DIR_SETUP_0),
+        .DIR_HOLD(DIR_HOLD_0)
+    ) shaper_0 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1458,7 +1107,12 @@ module carrystep_six_axis (
         .overrun(shaper_0_overrun)
     );
 
-    carrystep_shaper_w80_s80_d16_h16 shaper_1 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_1),
+        .STEP_LOW(STEP_LOW_1),
+        .DIR_SETUP(DIR_SETUP_1),
+        .DIR_HOLD(DIR_HOLD_1)
+    ) shaper_1 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1474,7 +1128,12 @@ module carrystep_six_axis (
         .overrun(shaper_1_overrun)
     );
 
-    carrystep_shaper_w152_s152_d52_h52 shaper_2 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_2),
+        .STEP_LOW(STEP_LOW_2),
+        .DIR_SETUP(DIR_SETUP_2),
+        .DIR_HOLD(DIR_HOLD_2)
+    ) shaper_2 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1490,7 +1149,12 @@ module carrystep_six_axis (
         .overrun(shaper_2_overrun)
     );
 
-    carrystep_shaper_w200_s200_d400_h400 shaper_3 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_3),
+        .STEP_LOW(STEP_LOW_3),
+        .DIR_SETUP(DIR_SETUP_3),
+        .DIR_HOLD(DIR_HOLD_3)
+    ) shaper_3 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1506,7 +1170,12 @@ module carrystep_six_axis (
         .overrun(shaper_3_overrun)
     );
 
-    carrystep_shaper_w8_s8_d2_h2 shaper_4 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_4),
+        .STEP_LOW(STEP_LOW_4),
+        .DIR_SETUP(DIR_SETUP_4),
+        .DIR_HOLD(DIR_HOLD_4)
+    ) shaper_4 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),
@@ -1522,7 +1191,12 @@ module carrystep_six_axis (
         .overrun(shaper_4_overrun)
     );
 
-    carrystep_shaper_w240_s240_d120_h120 shaper_5 (
+    carrystep_shaper #(
+        .STEP_HIGH(STEP_HIGH_5),
+        .STEP_LOW(STEP_LOW_5),
+        .DIR_SETUP(DIR_SETUP_5),
+        .DIR_HOLD(DIR_HOLD_5)
+    ) shaper_5 (
         .clock(clock),
         .frozen(frozen),
         .clear(clear_now),

@@ -56,7 +56,9 @@ module carrystep_hx8k_evn_top (
     wire [5:0] culprits;
     wire [5:0] homing;
 
-    carrystep_uart line (
+    carrystep_uart #(
+        .BIT_CLOCKS(32'd25)
+    ) line (
         .received_valid(received_valid),
         .received(received),
         .answer_valid(answer_valid),
@@ -67,7 +69,13 @@ module carrystep_hx8k_evn_top (
         .clock(clock)
     );
 
-    carrystep_link link (
+    carrystep_link #(
+        .BUILD_ID(64'haf6c64cb6e82ac99),
+        .CLOCK_HZ(32'h47868c0),
+        .TICK_NS(32'd1280),
+        .ROUND_TICKS(32'd32),
+        .WATCHDOG_ROUNDS(32'd2443)
+    ) link (
         .received_valid(received_valid),
         .received(received),
         .answer_valid(answer_valid),
@@ -109,7 +117,49 @@ module carrystep_hx8k_evn_top (
 
     wire enabled;
     assign enable_n = !enabled;
-    carrystep_engine engine (
+    carrystep_engine #(
+        .CLOCKS_PER_TICK(32'd96),
+        .START_HALF(32'd1),
+        .STEP_HIGH_0(32'd8),
+        .STEP_HIGH_1(32'd75),
+        .STEP_HIGH_2(32'd143),
+        .STEP_HIGH_3(32'd188),
+        .STEP_HIGH_4(32'd8),
+        .STEP_HIGH_5(32'd225),
+        .STEP_LOW_0(32'd8),
+        .STEP_LOW_1(32'd75),
+        .STEP_LOW_2(32'd143),
+        .STEP_LOW_3(32'd188),
+        .STEP_LOW_4(32'd8),
+        .STEP_LOW_5(32'd225),
+        .DIR_SETUP_0(32'd2),
+        .DIR_SETUP_1(32'd15),
+        .DIR_SETUP_2(32'd49),
+        .DIR_SETUP_3(32'd375),
+        .DIR_SETUP_4(32'd2),
+        .DIR_SETUP_5(32'd113),
+        .DIR_HOLD_0(32'd2),
+        .DIR_HOLD_1(32'd15),
+        .DIR_HOLD_2(32'd49),
+        .DIR_HOLD_3(32'd375),
+        .DIR_HOLD_4(32'd2),
+        .DIR_HOLD_5(32'd113),
+        .STOP_ACCEL_0(64'h15fd7fe17964),
+        .STOP_ACCEL_1(64'h119799812dea),
+        .STOP_ACCEL_2(64'h107e1fe91b0b),
+        .STOP_ACCEL_3(64'h9c5fff26ed7),
+        .STOP_ACCEL_4(64'h186effde151a),
+        .STOP_ACCEL_5(64'h41f87fa46c2),
+        .ROUND_TICKS(32'd32),
+        .WATCHDOG_ROUNDS(32'd2443),
+        .ENABLE_ROUNDS(32'd26),
+        .DEBOUNCE_LOOKS(32'd14),
+        .LIMITS(32'd2),
+        .LIMITS_LOW(32'd0),
+        .LIMIT_FREEZES(32'd0),
+        .ESTOP_LOW(32'd0),
+        .EVENT_MEMORY("block")
+    ) engine (
         .put_valid(put_valid),
         .put_axis(put_axis),
         .put_word(put_word),

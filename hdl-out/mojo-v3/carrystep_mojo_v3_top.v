@@ -58,7 +58,9 @@ module carrystep_mojo_v3_top (
     wire [5:0] homing;
 
     wire uart_tx_out;
-    carrystep_uart line (
+    carrystep_uart #(
+        .BIT_CLOCKS(32'd160)
+    ) line (
         .received_valid(received_valid),
         .received(received),
         .answer_valid(answer_valid),
@@ -82,7 +84,13 @@ module carrystep_mojo_v3_top (
     wire driven = cclk_waited[15];
     assign uart_tx = driven ? uart_tx_out : 1'bz;
 
-    carrystep_link link (
+    carrystep_link #(
+        .BUILD_ID(64'h57336b646218b9ad),
+        .CLOCK_HZ(32'h4c4b400),
+        .TICK_NS(32'd1000),
+        .ROUND_TICKS(32'd32),
+        .WATCHDOG_ROUNDS(32'd3126)
+    ) link (
         .received_valid(received_valid),
         .received(received),
         .answer_valid(answer_valid),
@@ -124,7 +132,49 @@ module carrystep_mojo_v3_top (
 
     wire enabled;
     assign enable_n = !enabled;
-    carrystep_engine engine (
+    carrystep_engine #(
+        .CLOCKS_PER_TICK(32'd80),
+        .START_HALF(32'd1),
+        .STEP_HIGH_0(32'd8),
+        .STEP_HIGH_1(32'd80),
+        .STEP_HIGH_2(32'd152),
+        .STEP_HIGH_3(32'd200),
+        .STEP_HIGH_4(32'd8),
+        .STEP_HIGH_5(32'd240),
+        .STEP_LOW_0(32'd8),
+        .STEP_LOW_1(32'd80),
+        .STEP_LOW_2(32'd152),
+        .STEP_LOW_3(32'd200),
+        .STEP_LOW_4(32'd8),
+        .STEP_LOW_5(32'd240),
+        .DIR_SETUP_0(32'd2),
+        .DIR_SETUP_1(32'd16),
+        .DIR_SETUP_2(32'd52),
+        .DIR_SETUP_3(32'd400),
+        .DIR_SETUP_4(32'd2),
+        .DIR_SETUP_5(32'd120),
+        .DIR_HOLD_0(32'd2),
+        .DIR_HOLD_1(32'd16),
+        .DIR_HOLD_2(32'd52),
+        .DIR_HOLD_3(32'd400),
+        .DIR_HOLD_4(32'd2),
+        .DIR_HOLD_5(32'd120),
+        .STOP_ACCEL_0(64'hd6bf94d5e57),
+        .STOP_ACCEL_1(64'habcc7711846),
+        .STOP_ACCEL_2(64'ha10fafa06c1),
+        .STOP_ACCEL_3(64'h5f71977b826),
+        .STOP_ACCEL_4(64'hee9bfab4c61),
+        .STOP_ACCEL_5(64'h2843ebe81b0),
+        .ROUND_TICKS(32'd32),
+        .WATCHDOG_ROUNDS(32'd3126),
+        .ENABLE_ROUNDS(32'd33),
+        .DEBOUNCE_LOOKS(32'd17),
+        .LIMITS(32'd2),
+        .LIMITS_LOW(32'd0),
+        .LIMIT_FREEZES(32'd0),
+        .ESTOP_LOW(32'd0),
+        .EVENT_MEMORY("block")
+    ) engine (
         .put_valid(put_valid),
         .put_axis(put_axis),
         .put_word(put_word),

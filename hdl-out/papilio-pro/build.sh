@@ -7,7 +7,7 @@ cd "$(dirname "$0")"
 if [ "${SYNTHESIS:-xst}" = yosys ]; then
     # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing; without clean -purge a
     # pin's net may have another name than the pin, and the constraints do not find it.
-    yosys -q -l yosys.log -p 'read_verilog carrystep_papilio_pro_top.v carrystep_clock.v carrystep_uart.v carrystep_link.v carrystep_engine.v; synth_xilinx -family xc6s -ise -nowidelut -flatten -top carrystep_papilio_pro_top; clean -purge; write_edif -pvector bra carrystep_papilio_pro_top.edif'
+    yosys -q -l yosys.log -p 'read_verilog carrystep_papilio_pro_top.v carrystep_clock.v ../core/carrystep_uart.v ../core/carrystep_link.v ../core/carrystep_engine.v; synth_xilinx -family xc6s -ise -nowidelut -flatten -top carrystep_papilio_pro_top; clean -purge; write_edif -pvector bra carrystep_papilio_pro_top.edif'
     # yosys calls a bit of a bus [5], xst calls it <5>.
     sed 's/<\([0-9]*\)>/[\1]/' carrystep_papilio_pro_top.ucf > carrystep_papilio_pro_top_yosys.ucf
     ngdbuild -p xc6slx9-tqg144-2 -uc carrystep_papilio_pro_top_yosys.ucf carrystep_papilio_pro_top.edif carrystep_papilio_pro_top.ngd

@@ -7,7 +7,7 @@ cd "$(dirname "$0")"
 if [ "${SYNTHESIS:-xst}" = yosys ]; then
     # Without -nowidelut four times the cells; without -pvector bra ISE builds wrong adders and says nothing; without clean -purge a
     # pin's net may have another name than the pin, and the constraints do not find it.
-    yosys -q -l yosys.log -p 'read_verilog carrystep_s3board_top.v carrystep_clock.v carrystep_uart.v carrystep_link.v carrystep_engine.v; synth_xilinx -family xc3s -ise -nowidelut -flatten -top carrystep_s3board_top; clean -purge; write_edif -pvector bra carrystep_s3board_top.edif'
+    yosys -q -l yosys.log -p 'read_verilog carrystep_s3board_top.v carrystep_clock.v ../core/carrystep_uart.v ../core/carrystep_link.v ../core/carrystep_engine.v; synth_xilinx -family xc3s -ise -nowidelut -flatten -top carrystep_s3board_top; clean -purge; write_edif -pvector bra carrystep_s3board_top.edif'
     # yosys calls a bit of a bus [5], xst calls it <5>.
     sed 's/<\([0-9]*\)>/[\1]/' carrystep_s3board_top.ucf > carrystep_s3board_top_yosys.ucf
     ngdbuild -p xc3s400-ft256-4 -uc carrystep_s3board_top_yosys.ucf carrystep_s3board_top.edif carrystep_s3board_top.ngd

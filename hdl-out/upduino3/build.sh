@@ -7,7 +7,7 @@ yosys=${YOSYS:-yosys} nextpnr=${NEXTPNR:-nextpnr-ice40} icepack=${ICEPACK:-icepa
 
 # Eight cells of a tile share one enable: enables of fewer than four flip-flops are made of logic, or an HX1K is too small.
 # Names are given before logic is mapped, so that registers can be found again in the netlist.
-"$yosys" -q -l yosys.log -p 'read_verilog carrystep_upduino3_top.v carrystep_clock.v carrystep_uart.v carrystep_link.v carrystep_engine.v; synth_ice40 -dffe_min_ce_use 4 -top carrystep_upduino3_top -run begin:map_luts; autoname; synth_ice40 -dffe_min_ce_use 4 -top carrystep_upduino3_top -run map_luts: -json carrystep_upduino3_top.json'
+"$yosys" -q -l yosys.log -p 'read_verilog carrystep_upduino3_top.v carrystep_clock.v ../core/carrystep_uart.v ../core/carrystep_link.v ../core/carrystep_engine.v; synth_ice40 -dffe_min_ce_use 4 -top carrystep_upduino3_top -run begin:map_luts; autoname; synth_ice40 -dffe_min_ce_use 4 -top carrystep_upduino3_top -run map_luts: -json carrystep_upduino3_top.json'
 # A placement that is not found, or does not reach 37.5 MHz, is tried with another seed: near a part's limits it is luck.
 for seed in 1 2 3 4 5 none; do
     test "$seed" != none || { echo "no placement reaches 37.5 MHz: see nextpnr.log"; exit 1; }

@@ -2,11 +2,15 @@
 //
 // carrystep_link: the host link of an engine. Generated: change the generator, not this file.
 //
-// Made from    machine.toml for Lattice iCE40-HX8K-B-EVN
+// Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
-// Clock        75000000 Hz
-// Line         uart, 25 clocks a bit
-// Build id     af6c64cb6e82ac99
+//
+// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
+// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+//
+// Clock        80000000 Hz
+// Line         uart, 87 clocks a bit
+// Build id     1ebc2175b88c2fbf
 
 `default_nettype none
 
@@ -19,6 +23,7 @@ module carrystep_instructions (
     input  wire  [15:0] write_bits,
     input  wire  [15:0] write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:255];
     reg [15:0] value; // a block RAM gives no value before its first clock
     integer i;
@@ -262,6 +267,7 @@ module carrystep_data (
     input  wire   [7:0] write_bits,
     input  wire   [7:0] write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:255];
     reg [7:0] value; // a block RAM gives no value before its first clock
     integer i;
@@ -312,6 +318,7 @@ module carrystep_ring (
     input  wire   [7:0] write_bits,
     input  wire   [7:0] write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [7:0] words [0:255];
     reg [7:0] value; // a block RAM gives no value before its first clock
     integer i;
@@ -673,7 +680,18 @@ module carrystep_machine (
 endmodule
 
 // Facts of the build, and what the engine has last said of its axes.
-module carrystep_known (
+module carrystep_known #(
+    // Build id, which the host compares before it uses the gateware: whoever overrides any other parameter must override it too; any, but for each set of parameters another one
+    parameter [63:0] BUILD_ID = 64'h1ebc2175b88c2fbf,
+    // Frequency of the clock in Hz, told to the host; 1 to 10^9
+    parameter [31:0] CLOCK_HZ = 32'h4c4b400,
+    // Length of a tick in ns, told to the host; 1 to 2^32 - 1
+    parameter [31:0] TICK_NS = 32'd1000,
+    // Length of a round in ticks: the unit of the times below, and the time between two samples of a limit; a power of two from 2 to 1024
+    parameter [31:0] ROUND_TICKS = 32'd32,
+    // Time in rounds without a valid request after which all axes stop; 0: there is no watchdog; 0 to 4095
+    parameter [31:0] WATCHDOG_ROUNDS = 32'd3126
+) (
     input  wire         clock,
     input  wire   [6:0] read_address,
     output wire  [31:0] read_data,
@@ -681,6 +699,7 @@ module carrystep_known (
     input  wire  [31:0] write_bits,
     input  wire  [31:0] write_data
 );
+    // No word that is read in the clock in which it is written is ever used: no bypass is needed.
     (* no_rw_check, ram_style = "block" *) reg [31:0] words [0:127];
     reg [31:0] value; // a block RAM gives no value before its first clock
     integer i;
@@ -691,13 +710,13 @@ module carrystep_known (
         for (i = 0; i < 128; i = i + 1) words[i] = 0;
         words[0] = 32'h50545343;
         words[1] = 32'h1;
-        words[2] = 32'h6e82ac99;
-        words[3] = 32'haf6c64cb;
+        words[2] = BUILD_ID[31:0];
+        words[3] = BUILD_ID[63:32];
         words[4] = 32'h6;
-        words[5] = 32'h47868c0;
-        words[6] = 32'h500;
+        words[5] = CLOCK_HZ;
+        words[6] = TICK_NS;
         words[7] = 32'h10;
-        words[8] = 32'h13160;
+        words[8] = WATCHDOG_ROUNDS * ROUND_TICKS;
     end
 
     always @(posedge clock) begin
@@ -707,7 +726,18 @@ module carrystep_known (
 endmodule
 
 // What can be read.
-module carrystep_facts (
+module carrystep_facts #(
+    // Build id, which the host compares before it uses the gateware: whoever overrides any other parameter must override it too; any, but for each set of parameters another one
+    parameter [63:0] BUILD_ID = 64'h1ebc2175b88c2fbf,
+    // Frequency of the clock in Hz, told to the host; 1 to 10^9
+    parameter [31:0] CLOCK_HZ = 32'h4c4b400,
+    // Length of a tick in ns, told to the host; 1 to 2^32 - 1
+    parameter [31:0] TICK_NS = 32'd1000,
+    // Length of a round in ticks: the unit of the times below, and the time between two samples of a limit; a power of two from 2 to 1024
+    parameter [31:0] ROUND_TICKS = 32'd32,
+    // Time in rounds without a valid request after which all axes stop; 0: there is no watchdog; 0 to 4095
+    parameter [31:0] WATCHDOG_ROUNDS = 32'd3126
+) (
     input  wire         clock,
     input  wire   [6:0] address,
     output wire  [31:0] data,
@@ -752,7 +782,13 @@ module carrystep_facts (
         end
     end
 
-    carrystep_known known (
+    carrystep_known #(
+        .BUILD_ID(BUILD_ID),
+        .CLOCK_HZ(CLOCK_HZ),
+        .TICK_NS(TICK_NS),
+        .ROUND_TICKS(ROUND_TICKS),
+        .WATCHDOG_ROUNDS(WATCHDOG_ROUNDS)
+    ) known (
         .clock(clock),
         .read_address(address),
         .read_data(known_read_data),
@@ -769,7 +805,18 @@ module carrystep_facts (
 endmodule
 
 // The host link: bytes in, words of segments out.
-module carrystep_link (
+module carrystep_link #(
+    // Build id, which the host compares before it uses the gateware: whoever overrides any other parameter must override it too; any, but for each set of parameters another one
+    parameter [63:0] BUILD_ID = 64'h1ebc2175b88c2fbf,
+    // Frequency of the clock in Hz, told to the host; 1 to 10^9
+    parameter [31:0] CLOCK_HZ = 32'h4c4b400,
+    // Length of a tick in ns, told to the host; 1 to 2^32 - 1
+    parameter [31:0] TICK_NS = 32'd1000,
+    // Length of a round in ticks: the unit of the times below, and the time between two samples of a limit; a power of two from 2 to 1024
+    parameter [31:0] ROUND_TICKS = 32'd32,
+    // Time in rounds without a valid request after which all axes stop; 0: there is no watchdog; 0 to 4095
+    parameter [31:0] WATCHDOG_ROUNDS = 32'd3126
+) (
     input  wire         clock,
     input  wire         received_valid,
     input  wire   [7:0] received,
@@ -877,7 +924,13 @@ module carrystep_link (
         .homing(homing)
     );
 
-    carrystep_facts facts (
+    carrystep_facts #(
+        .BUILD_ID(BUILD_ID),
+        .CLOCK_HZ(CLOCK_HZ),
+        .TICK_NS(TICK_NS),
+        .ROUND_TICKS(ROUND_TICKS),
+        .WATCHDOG_ROUNDS(WATCHDOG_ROUNDS)
+    ) facts (
         .clock(clock),
         .address(machine_x[6:0]),
         .data(facts_data),

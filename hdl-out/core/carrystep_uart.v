@@ -2,26 +2,49 @@
 //
 // carrystep_uart: the line to the host. Generated: change the generator, not this file.
 //
-// Made from    machine.toml for Gadget Factory Papilio One
+// Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
-// Line         uart, 20 clocks a bit
+//
+// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
+// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+//
+// Line         uart, 87 clocks a bit
 
 `default_nettype none
 
 // Bytes from the line.
-module carrystep_uart_in (
+module carrystep_uart_in #(
+    // Length of a bit of the UART in clocks: clock / baud rate; 8 to 40000
+    parameter [31:0] BIT_CLOCKS = 32'd87
+) (
     input  wire         clock,
     input  wire         line,
     output wire   [7:0] data,
     output wire         valid
 );
-    localparam [15:0] TO_FIRST = 16'd29;
-    localparam [15:0] TO_NEXT = 16'd19;
-    localparam [15:0] TIMER_BITS = 16'd31;
+    // All bits of a counter that goes up to `greatest`.
+    function [15:0] used_bits_16(input [15:0] greatest);
+        begin
+            used_bits_16 = greatest;
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 1);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 2);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 4);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
+        end
+    endfunction
+    localparam [15:0] TO_FIRST = (BIT_CLOCKS[15:0] + BIT_CLOCKS[16:1]) - 16'd1;
+    localparam [15:0] TO_NEXT = BIT_CLOCKS[15:0] - 16'd1;
+    localparam [15:0] TIMER_BITS = used_bits_16((BIT_CLOCKS[15:0] + BIT_CLOCKS[16:1]) - 16'd1);
     localparam [15:0] ONE = 16'd1;
     localparam [8:0] MARK = 9'd256;
     localparam [8:0] TOP = 9'd256;
     localparam BY_ONE = 1'b1;
+
+    generate
+        if ((BIT_CLOCKS < 32'd8) | (BIT_CLOCKS > 32'd40000)) begin : bit_clocks_out_of_range
+            carrystep_error_bit_clocks_out_of_range error ();
+        end
+    endgenerate
 
     reg sync = 1'b1;
     reg now = 1'b1;
@@ -60,15 +83,28 @@ module carrystep_uart_in (
 endmodule
 
 // Bytes to the line.
-module carrystep_uart_out (
+module carrystep_uart_out #(
+    // Length of a bit of the UART in clocks: clock / baud rate; 8 to 40000
+    parameter [31:0] BIT_CLOCKS = 32'd87
+) (
     input  wire         clock,
     input  wire   [7:0] data,
     input  wire         valid,
     output wire         take,
     output wire         line
 );
-    localparam [15:0] BIT_CLOCKS = 16'd19;
-    localparam [15:0] TIMER_BITS = 16'd31;
+    // All bits of a counter that goes up to `greatest`.
+    function [15:0] used_bits_16(input [15:0] greatest);
+        begin
+            used_bits_16 = greatest;
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 1);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 2);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 4);
+            used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
+        end
+    endfunction
+    localparam [15:0] LAST_CLOCK = BIT_CLOCKS[15:0] - 16'd1;
+    localparam [15:0] TIMER_BITS = used_bits_16(BIT_CLOCKS[15:0] - 16'd1);
     localparam [15:0] ONE = 16'd1;
     localparam [8:0] STOP = 9'd256;
     localparam BY_ONE = 1'b1;
@@ -88,12 +124,12 @@ module carrystep_uart_out (
             timer <= (timer - ONE) & TIMER_BITS;
         end
         if (due & (bits != 9'd0)) begin
-            timer <= BIT_CLOCKS;
+            timer <= LAST_CLOCK;
             bits <= bits >> BY_ONE;
             pin <= bits[0];
         end
         if (taken) begin
-            timer <= BIT_CLOCKS;
+            timer <= LAST_CLOCK;
             bits <= {1'b0, data} | STOP;
             pin <= 1'b0;
         end
@@ -101,7 +137,10 @@ module carrystep_uart_out (
 endmodule
 
 // A UART, both directions.
-module carrystep_uart (
+module carrystep_uart #(
+    // Length of a bit of the UART in clocks: clock / baud rate; 8 to 40000
+    parameter [31:0] BIT_CLOCKS = 32'd87
+) (
     input  wire         clock,
     input  wire         rx,
     output wire         tx,
@@ -122,14 +161,18 @@ module carrystep_uart (
     assign received_valid = uart_in_valid;
     assign answer_take = uart_out_take;
 
-    carrystep_uart_in uart_in (
+    carrystep_uart_in #(
+        .BIT_CLOCKS(BIT_CLOCKS)
+    ) uart_in (
         .clock(clock),
         .line(rx),
         .data(uart_in_data),
         .valid(uart_in_valid)
     );
 
-    carrystep_uart_out uart_out (
+    carrystep_uart_out #(
+        .BIT_CLOCKS(BIT_CLOCKS)
+    ) uart_out (
         .clock(clock),
         .data(answer),
         .valid(answer_valid),

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// carrystep_spi: the line to the host. Generated: change the generator, not this file.
+//
+// Made from    sim/six-axis.toml
+// Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
+//
+// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
+// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+//
+// Line         spi
+
+`default_nettype none
+
+// SPI mode 0, the host's clock up to a fifth of this one.
+module carrystep_spi (
+    input  wire         clock,
+    input  wire         sck,
+    input  wire         select_n,
+    input  wire         mosi,
+    output wire         miso,
+    output wire   [7:0] received,
+    output wire         received_valid,
+    input  wire   [7:0] answer,
+    input  wire         answer_valid,
+    output wire         answer_take
+);
+    localparam [2:0] ONE = 3'd1;
+    localparam [2:0] NONE = 3'd0;
+    localparam [2:0] FULL = 3'd7;
+    localparam BY_ONE = 1'b1;
+    localparam [7:0] LOW = 8'd1;
+    localparam [7:0] END_BYTE = 8'd192;
+
+    reg sck_1 = 1'b0;
+    reg sck_2 = 1'b0;
+    reg sck_3 = 1'b0;
+    reg mosi_1 = 1'b0;
+    reg mosi_2 = 1'b0;
+    reg rest_1 = 1'b1;
+    reg rest_2 = 1'b1;
+    reg [7:0] bits = 8'd0;
+    reg [7:0] goes = 8'd192;
+    reg [2:0] count = 3'd0;
+    reg ended = 1'b1;
+    reg [7:0] comes;
+
+    wire rise = sck_2 & !sck_3 & !rest_2;
+    wire last = rise & (count == FULL);
+    wire is_end = comes == END_BYTE;
+
+    assign miso = goes[7];
+    assign received = comes;
+    assign received_valid = last & !(is_end & ended);
+    assign answer_take = last & answer_valid;
+
+    always @(*) begin
+        comes = bits << BY_ONE;
+        if (mosi_2) begin
+            comes = (bits << BY_ONE) | LOW;
+        end
+    end
+
+    always @(posedge clock) begin
+        sck_1 <= sck;
+        sck_2 <= sck_1;
+        sck_3 <= sck_2;
+        mosi_1 <= mosi;
+        mosi_2 <= mosi_1;
+        rest_1 <= select_n;
+        rest_2 <= rest_1;
+        if (rise) begin
+            bits <= comes;
+            goes <= goes << BY_ONE;
+            count <= count + ONE;
+        end
+        if (last) begin
+            ended <= is_end;
+            goes <= END_BYTE;
+            if (answer_valid) begin
+                goes <= answer;
+            end
+        end
+        if (rest_2) begin
+            count <= NONE;
+        end
+    end
+endmodule
+
+`default_nettype wire
