@@ -8,11 +8,11 @@
 //                Both cores are exported as a whole.
 //   assumptions  none
 //
-// Each host offers the same segments and starts all axes on one tick. The second segment is marked
-// as the last of its move. Ports that are not connected here are 0.
+// Both hosts offer the same segments, and each starts all axes on one tick. The second segment is
+// marked as the last of its move. Ports that are not connected here are 0.
 //
-// A fault of the parallel axes ends the comparison, because the engine stops in a different way. The
-// engine must then also stop, within a tick.
+// A fault of the parallel axes ends the comparison, because the engine stops in a different way.
+// The engine must then also stop, within a tick.
 
 module promises (
     input wire clock
@@ -98,8 +98,8 @@ module promises (
         equal_stops: assert (faulty <= CLOCKS || fault);
     end
 
-    // ---- Covers: some run reaches each of these situations. `at` is the clock within the tick, and
-    // `tick` is the tick within the move.
+    // ---- Covers: some run reaches each of these situations. `at` is the clock within the tick,
+    // and `tick` is the tick within the move.
 
     reg [31:0] at = 0, tick = 0, faulty = 0;
     reg [`AXES-1:0] was_step = 0, was_dir = 0, forward = 0, backward = 0;
@@ -114,8 +114,8 @@ module promises (
         forward <= forward | rises & ~dir;
         backward <= backward | rises & dir;
     end
-    // STEP rises two ticks after the tick in which the step is computed, in the clock after the
-    // begin of its phase.
+    // STEP rises two ticks after the tick in which the step is computed, one clock after its phase
+    // has begun.
     wire [31:0] of_tick = tick - 2;
     wire in_order = rises != 0 && at % PHASE_CLOCKS == 1;
 

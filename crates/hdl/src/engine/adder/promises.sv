@@ -1,9 +1,9 @@
-// Proves promises 6, 7, 10, 11 and 13 of the adder, without a bound on time: the sums of a time slot
-// are those of the words that the memory delivers in this time slot.
+// Proves promises 6, 7, 10, 11 and 13 of the adder, without a bound on time: the sums of a time
+// slot are those of the words that the memory delivers in this time slot.
 //
 //   parameters   `DUT: the name of the exported adder
-//   assumptions  The beats of a time slot follow one another (proved in turn/promises.sv). From beat
-//                6 on, counts, lost, up, down and wipe do not change within a time slot.
+//   assumptions  The beats of a time slot follow one another (proved in turn/promises.sv). From
+//                beat 6 on, counts, lost, up, down and wipe do not change within a time slot.
 //
 // The memory delivers the low halves of A, J, V and P first and their high halves later. This file
 // joins the halves and computes the expected sums in 64 bits.

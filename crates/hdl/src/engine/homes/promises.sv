@@ -4,8 +4,8 @@
 //   parameters   AXES: number of axes
 //                `DUT: the name of the exported module `homes`
 //   assumptions  A time slot belongs to one axis, whose bit is set in `lane`, and two time slots do
-//                not end in adjacent clocks (proved in turn/promises.sv). Hits occur in the last beat
-//                of a time slot (proved in limits/promises.sv).
+//                not end in adjacent clocks (proved in turn/promises.sv). Hits occur in the last
+//                beat of a time slot (proved in limits/promises.sv).
 //
 // All statements are about one axis, `who`; the solver may choose any.
 
@@ -48,8 +48,8 @@ module promises (
         if (ends) slowing <= caught | slowing & goes_on;
     end
 
-    // ---- The promises. `slows` is a register, which changes one clock after the end of a time slot.
-    // With one axis, that clock already belongs to this axis again.
+    // ---- The promises. `slows` is a register, which follows one clock after the end of a time
+    // slot. With one axis, that clock belongs to this axis again and is left out (`known`).
 
     wire known = `AXES > 1 || !was_turn_ends;
     always_comb begin

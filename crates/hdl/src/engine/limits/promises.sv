@@ -83,8 +83,8 @@ module promises (
     reg [7:0] was_memory = 0;
     always @(posedge clock) {was_looks, was_memory} <= {looks, memory};
 
-    // ---- The invariants that make the promises inductive. `look` is an additional read port for the
-    // word of this switch in memory.
+    // ---- The invariants that make the promises inductive. `look` is an additional read port for
+    // the word of this switch in memory.
 
     wire [7:0] memory;
     look #("\\dut.switches.words", 4, 8) at_switches (1'b0, 1'b1, {who, side}, memory);

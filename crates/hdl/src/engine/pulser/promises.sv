@@ -1,5 +1,5 @@
-// Proves promises 1 to 7, 9, 11 and 13 of the engine's pulser on the pins of one axis, for any inputs
-// and without a bound on time.
+// Proves promises 1 to 7, 9, 11 and 13 of the engine's pulser on the pins of one axis, for any
+// inputs and without a bound on time.
 //
 //   parameters   W, S, D, H: the pin timing in clocks
 //                `DUT: the name of the exported pulser, built with this timing
@@ -87,8 +87,8 @@ module promises (
     wire asked_back = was_request & (!was_owed | rose) ? was_request_back : kept_back;
     reg was_due = 0, was_due_back = 0, was_aim = 0;
     reg [19:0] waits = 1;
-    // Number of clocks for which a step has been held back, this clock included. A step that a freeze
-    // discards is not held back.
+    // Number of clocks for which a step has been held back, this clock included. A step that a
+    // freeze discards is not held back.
     wire [19:0] waited = rose | was_frozen ? 1 : waits;
     wire due = owed | request;
     wire due_back = owed ? asked_back : request_back;
