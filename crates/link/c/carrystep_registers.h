@@ -1,6 +1,8 @@
-/* What the gateware and its clients agree on: constants, the register map, the answer's fields.
+/* The protocol between the gateware and its hosts: constants, the register map, and the fields of
+ * an answer.
  *
- * Generated from crates/core/src/link by `cargo xtask generate`: change that, not this. */
+ * This file is generated from crates/core/src/link by `cargo xtask generate`: change that source
+ * instead. */
 #ifndef CARRYSTEP_REGISTERS_H
 #define CARRYSTEP_REGISTERS_H
 
@@ -51,7 +53,7 @@
 /* Segments that can wait for an axis, beside the one that runs. */
 #define CARRYSTEP_QUEUE_SEGMENTS 0x07u
 
-/* The map; for an axis, its register is CARRYSTEP_OF_AXIS(register, axis). */
+/* The register map. The address of a register of an axis is CARRYSTEP_OF_AXIS(register, axis). */
 #define CARRYSTEP_OF_AXIS(register, axis) ((register) + CARRYSTEP_PER_AXIS * (axis))
 
 /* "CSTP", low byte first: this is carrystep (read) */
@@ -93,7 +95,7 @@
 /* ticks - 1, V, A, J (low half first, 2^-64 step per tick^1, 2, 3), then 1 where it is the last of its move (write, 8 words, axis 0) */
 #define CARRYSTEP_SEGMENT 0x40u
 
-/* Why the axes were stopped, by the number in an answer. */
+/* The causes of a stop, by their number in the field `cause` of an answer. */
 #define CARRYSTEP_CAUSE_ESTOP 0u
 #define CARRYSTEP_CAUSE_OVERRUN 1u
 #define CARRYSTEP_CAUSE_PROTOCOL 2u
@@ -103,7 +105,7 @@
 #define CARRYSTEP_CAUSE_UNDERRUN 6u
 #define CARRYSTEP_CAUSE_STOP 7u
 
-/* Fields of an answer, of its bytes without END and ESC. */
+/* The fields of an answer, in which the bytes END and ESC of the frame have been decoded. */
 
 /* the request's sequence number */
 #define CARRYSTEP_ANSWER_SEQUENCE(answer) ((uint8_t)((answer)[0] >> 0 & 255u))

@@ -1,6 +1,8 @@
-//! What the gateware and its clients agree on: constants, the register map, the answer's fields.
+//! The protocol between the gateware and its hosts: constants, the register map, and the fields of
+//! an answer.
 //!
-//! Generated from `crates/core/src/link` by `cargo xtask generate`: change that, not this.
+//! This file is generated from `crates/core/src/link` by `cargo xtask generate`: change that source
+//! instead.
 
 /// Ends a frame, and begins one.
 pub const END: u8 = 0xc0;
@@ -86,7 +88,7 @@ pub const LATCHED: u8 = 0x44;
 /// ticks - 1, V, A, J (low half first, 2^-64 step per tick^1, 2, 3), then 1 where it is the last of its move (write, 8 words, axis 0).
 pub const SEGMENT: u8 = 0x40;
 
-/// Why the axes were stopped, by the number in an answer.
+/// The causes of a stop, by their number in the field `cause` of an answer.
 pub const CAUSES: [&str; 8] =
     ["e-stop", "overrun", "protocol", "watchdog", "overspeed", "limit", "underrun", "stop"];
 
