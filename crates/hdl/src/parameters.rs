@@ -1,19 +1,22 @@
-//! The parameters of the exported Verilog: the numbers that differ between builds of the same text.
+//! The parameters of the exported Verilog. Builds that share one Verilog text differ only in the
+//! values of these parameters.
 //!
-//! The number of axes, the number of phases and the kind of line are not among them: each has a text of its own.
+//! The number of axes, the number of phases and the kind of line to the host are not parameters:
+//! for each of their values there is a Verilog text of its own.
 
 use crate::primitives::formula::Given;
 
-/// A parameter.
+/// A parameter of the exported Verilog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Described {
-    /// Its name; one of an axis has the axis' number behind it, such as `STEP_HIGH_0`.
+    /// Its name. A parameter of an axis is followed by the number of the axis, as in
+    /// `STEP_HIGH_0`.
     pub name: &'static str,
-    /// There is one for each axis.
+    /// Whether each axis has its own value.
     pub per_axis: bool,
-    /// Its range.
+    /// The values that it may have. The Verilog prints them after `what`.
     pub range: &'static str,
-    /// What it is, with its unit.
+    /// Its meaning and its unit. The Verilog prints this text, with a capital, above the parameter.
     pub what: &'static str,
 }
 
@@ -26,122 +29,127 @@ impl Described {
         Self { name, per_axis: true, range, what }
     }
 
-    /// This parameter with the value that it has in a build. In a module that serves one axis, it is that axis'.
+    /// This parameter with its value in a build. In a module that serves one axis, it is the
+    /// parameter of that axis.
     pub fn of<const N: usize>(&self, value: impl Into<u64>) -> Given<N> {
         Given::new(self.name, value.into())
     }
 
-    /// This parameter of one of the axes that a module serves.
+    /// The parameter of one axis, with its value in a build, in a module that serves several axes.
     pub fn of_axis<const N: usize>(&self, axis: usize, value: impl Into<u64>) -> Given<N> {
         Given::new(format!("{}_{axis}", self.name), value.into())
     }
 }
 
-/// Clocks in a tick.
+/// The length of a tick. The lower bound is that of the engine; the parallel core accepts less.
 pub const CLOCKS_PER_TICK: Described = Described::new(
     "CLOCKS_PER_TICK",
-    "13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases",
-    "length of a tick in clocks",
+    "a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536",
+    "clocks per tick",
 );
-/// Where P starts.
+/// The start value of P.
 pub const START_HALF: Described =
-    Described::new("START_HALF", "0 or 1", "1: P starts at half a step; 0: P starts at zero");
-/// W.
+    Described::new("START_HALF", "0 or 1", "start value of P: 1 half a step, 0 zero");
+/// The pulse width W of STEP.
 pub const STEP_HIGH: Described = Described::per_axis(
     "STEP_HIGH",
     "1 to 65536",
-    "W, least time in clocks for which STEP is high",
+    "W, the minimum time in clocks for which STEP is high",
 );
-/// S.
-pub const STEP_LOW: Described =
-    Described::per_axis("STEP_LOW", "1 to 65536", "S, least time in clocks for which STEP is low");
-/// D.
+/// The gap S between two pulses of STEP.
+pub const STEP_LOW: Described = Described::per_axis(
+    "STEP_LOW",
+    "1 to 65536",
+    "S, the minimum time in clocks for which STEP is low",
+);
+/// The set-up time D of DIR before STEP.
 pub const DIR_SETUP: Described = Described::per_axis(
     "DIR_SETUP",
     "1 to 65536",
-    "D, least time in clocks from a change of DIR to a rise of STEP",
+    "D, the minimum time in clocks from a change of DIR to a rising edge of STEP",
 );
-/// H.
+/// The hold time H of DIR after STEP.
 pub const DIR_HOLD: Described = Described::per_axis(
     "DIR_HOLD",
     "1 to 65536",
-    "H, least time in clocks from a rise of STEP to a change of DIR",
+    "H, the minimum time in clocks from a rising edge of STEP to a change of DIR",
 );
-/// The ramp of a controlled stop.
+/// The acceleration of the ramp in a controlled stop.
 pub const STOP_ACCEL: Described = Described::per_axis(
     "STOP_ACCEL",
     "1 to 2^62",
-    "acceleration of the ramp of a controlled stop, in units of 2^-64 step per tick^2",
+    "acceleration of the ramp in a controlled stop, in 2^-64 step per tick^2",
 );
-/// The unit of the guard's times.
+/// The length of a round, which is the unit of the guard's times. Each limit is sampled once per
+/// round.
 pub const ROUND_TICKS: Described = Described::new(
     "ROUND_TICKS",
     "a power of two from 2 to 1024",
-    "length of a round in ticks: the unit of the times below, and the time between two samples of a limit",
+    "length of a round, the unit of the times below, in ticks",
 );
-/// Debounce of the limits.
+/// The number of samples by which the limits are debounced.
 pub const DEBOUNCE_LOOKS: Described = Described::new(
     "DEBOUNCE_LOOKS",
     "1 to 127",
-    "number of successive samples of the same level after which a limit's level is accepted",
+    "equal consecutive samples, one per round, that change a limit's debounced state",
 );
-/// The watchdog.
+/// The timeout of the watchdog.
 pub const WATCHDOG_ROUNDS: Described = Described::new(
     "WATCHDOG_ROUNDS",
     "0 to 4095",
-    "time in rounds without a valid request after which all axes stop; 0: there is no watchdog",
+    "rounds without a valid frame of the host after which all axes stop; 0: no watchdog",
 );
-/// The drivers' time to wake up.
+/// The time that the drivers need after they have been powered.
 pub const ENABLE_ROUNDS: Described = Described::new(
     "ENABLE_ROUNDS",
     "0 to 4095",
-    "time in rounds from the rise of `enabled` to the first start",
+    "rounds from the rising edge of `enabled` until starts are accepted",
 );
-/// Wiring of the limits.
+/// The wiring of the limit switches.
 pub const LIMITS: Described = Described::new(
     "LIMITS",
     "0 to 3",
-    "limit switches: 0 none, 1 two an axis, 2 one an axis, 3 one for all axes",
+    "limit switches: 0 none, 1 two per axis, 2 one per axis, 3 one for all axes",
 );
-/// Level of the limits.
+/// The active level of the limit switches.
 pub const LIMITS_LOW: Described =
-    Described::new("LIMITS_LOW", "0 or 1", "level at which a limit is reached: 0 high, 1 low");
-/// What a limit does.
+    Described::new("LIMITS_LOW", "0 or 1", "active level of the limit switches: 0 high, 1 low");
+/// The kind of stop that a limit triggers.
 pub const LIMIT_FREEZES: Described = Described::new(
     "LIMIT_FREEZES",
     "0 or 1",
-    "what a limit does: 0 all axes ramp down, 1 all axes freeze",
+    "effect of a limit: 0 all axes ramp down, 1 all axes freeze",
 );
-/// Level of the e-stop.
+/// The active level of the e-stop.
 pub const ESTOP_LOW: Described =
-    Described::new("ESTOP_LOW", "0 or 1", "level at which the e-stop is pressed: 0 high, 1 low");
-/// Where the wheel of events lies.
+    Described::new("ESTOP_LOW", "0 or 1", "active level of the e-stop: 0 high, 1 low");
+/// The kind of memory in which the event wheel keeps its events. The wheel writes single bits of a
+/// word, for which a block RAM needs a write mask.
 pub const EVENT_MEMORY: Described = Described::new(
     "EVENT_MEMORY",
     "\"block\" or \"distributed\"",
-    "where the memory of events lies: in block RAM, or in LUTs for parts whose block RAMs write whole words only",
+    "event memory: block RAM, or LUTs if block RAM has no write mask",
 );
-/// The build id.
+/// The build id, which the host compares before it uses the gateware.
 pub const BUILD_ID: Described = Described::new(
     "BUILD_ID",
-    "any, but for each set of parameters another one",
-    "build id, which the host compares before it uses the gateware: whoever overrides any other parameter must \
-     override it too",
+    "unique per set of parameters",
+    "build id: override it whenever you override another parameter",
 );
-/// The clock.
+/// The frequency of the clock.
 pub const CLOCK_HZ: Described =
-    Described::new("CLOCK_HZ", "1 to 10^9", "frequency of the clock in Hz, told to the host");
-/// The tick.
+    Described::new("CLOCK_HZ", "1 to 10^9", "frequency of the clock in Hz, reported to the host");
+/// The length of a tick as the host reads it.
 pub const TICK_NS: Described =
-    Described::new("TICK_NS", "1 to 2^32 - 1", "length of a tick in ns, told to the host");
-/// The UART's bit.
+    Described::new("TICK_NS", "1 to 2^32 - 1", "length of a tick in ns, reported to the host");
+/// The length of a bit of the UART.
 pub const BIT_CLOCKS: Described = Described::new(
     "BIT_CLOCKS",
     "8 to 40000",
-    "length of a bit of the UART in clocks: clock / baud rate",
+    "length of a UART bit in clocks: clock frequency / baud rate",
 );
 
-/// All of them, in the order in which a module lists them.
+/// All parameters, in the order in which a module lists them.
 pub const PARAMETERS: [Described; 20] = [
     BUILD_ID,
     CLOCK_HZ,
@@ -165,7 +173,7 @@ pub const PARAMETERS: [Described; 20] = [
     EVENT_MEMORY,
 ];
 
-/// The parameter of this name, and the axis whose it is.
+/// The parameter with this name, and the number of its axis if the name ends with one.
 pub fn described(name: &str) -> Option<(&'static Described, Option<usize>)> {
     let find = |name: &str| PARAMETERS.iter().find(|known| known.name == name);
     if let Some(known) = find(name) {

@@ -1,8 +1,9 @@
-// Line, link and engine of a board, without its clock manager and pins.
+// Connects the line to the host (a UART, or an SPI if the macro SPI is defined), the host link and
+// the engine of a board. The clock manager and the pins of the board are left out.
 module board_bench #(parameter AXES = 6) (
     input wire clock,
-    input wire rx,       // or MOSI
-    output wire tx,      // or MISO
+    input wire rx,       // RX of the UART or MOSI of the SPI
+    output wire tx,      // TX of the UART or MISO of the SPI
     input wire sck,
     input wire select_n,
     input wire estop,

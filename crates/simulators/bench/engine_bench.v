@@ -1,6 +1,7 @@
-// Replays the recorded inputs of a host to carrystep_engine in Icarus, and prints every cycle in
-// which any output changed. Then reads the contents of the engine through the get port. Arguments:
-// +stimuli=FILE, -Pengine_bench.AXES=n.
+// Replays the recorded inputs of a host to carrystep_engine in Icarus, and prints the outputs in
+// every cycle in which any of them changed. After the last input it reads P, the position and the
+// discarded steps of each axis through the `get` port. Arguments: +stimuli=FILE,
+// -Pengine_bench.AXES=n.
 `timescale 1ns / 1ps
 module engine_bench;
     parameter AXES = 6;

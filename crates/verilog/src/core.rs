@@ -33,61 +33,113 @@ pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
 const RUST_HDL: &str = "0.46.0";
 
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 33] = [
+const PURPOSES: [(&str, &str); 34] = [
     (
         "carrystep_tick",
-        "The beat: a strobe in the last cycle of each tick, and the phases in between.",
+        "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
     ),
-    ("carrystep_sequencer", "The running and the waiting segment of an axis."),
+    ("carrystep_sequencer", "Holds the running segment of an axis and one waiting segment."),
     (
         "carrystep_step_edge",
-        "When in its tick a step is due: bisection, then the request to the shaper.",
+        "Finds the phase of a step in its tick by bisection; requests the step in that phase.",
     ),
     (
         "carrystep_axis",
-        "One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched.",
+        "One axis: P, V, A, J. Each carry of P is a step. The last five ports are for observation.",
     ),
     (
         "carrystep_shaper",
-        "STEP and DIR with the width, gap, set-up and hold that the driver asks for.",
+        "Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.",
     ),
-    (CORE_NAME, "Six axes on one tick, the door for segments and starts, and the freeze."),
-    ("carrystep_turn", "Whose turn it is: one axis after the other, thirteen beats each."),
+    (
+        CORE_NAME,
+        "Six parallel axes on one tick counter: accepts segments and starts, freezes at a fault.",
+    ),
+    (
+        "carrystep_turn",
+        "The schedule: in each tick every axis has a time slot of thirteen clocks (beats).",
+    ),
     (
         "carrystep_adder",
-        "The one adder: P + V, V + A, A + J, ticks - 1, positions, and the bisection.",
+        "The only adder, 32 bits: P + V, V + A, A + J, remaining ticks, positions, bisection.",
     ),
-    ("carrystep_control", "The control words of the axes."),
-    ("carrystep_lasts", "Which segments are the last of their move."),
-    ("carrystep_queue", "Which segment an axis runs, and which ones wait."),
+    ("carrystep_control", "Memory of the control words: the queue state and flags of each axis."),
+    ("carrystep_lasts", "Memory of one bit per segment: the segment is the last of its move."),
+    (
+        "carrystep_queue",
+        "The segment queue of each axis: which segment runs, and which segments wait.",
+    ),
     (
         "carrystep_segments",
-        "Segments, which are also registers, and what an axis keeps between moves.",
+        "Memory of the segments, also used as registers, and of an axis' state between moves.",
     ),
-    ("carrystep_store", "Where everything is in the memory of the axes."),
-    ("carrystep_rim", "What the pins do in each phase of four ticks."),
-    ("carrystep_wheel", "Events on their way to the pins."),
+    (
+        "carrystep_store",
+        "The segment memory with its address selection: reads and writes the words of a time slot.",
+    ),
+    (
+        "carrystep_rim",
+        "Memory of the event wheel: the steps of all axes in each phase of four ticks.",
+    ),
+    (
+        "carrystep_wheel",
+        "The event wheel: holds the pending steps of all axes, ordered by tick and phase.",
+    ),
     (
         "carrystep_pulser",
-        "STEP and DIR with the width, gap, set-up and hold that the driver asks for.",
+        "Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.",
     ),
-    ("carrystep_switches", "What is believed of each limit switch."),
-    ("carrystep_limits", "The limit switches, one look in a turn."),
-    ("carrystep_stops", "Who stops the axes, and how far the stop has come."),
-    ("carrystep_watch", "The e-stop, the host's signs of life, the drivers' power."),
-    ("carrystep_uart_in", "Bytes from the line."),
-    ("carrystep_uart_out", "Bytes to the line."),
-    ("carrystep_uart", "A UART, both directions."),
-    ("carrystep_spi", "SPI mode 0, the host's clock up to a fifth of this one."),
-    ("carrystep_check", "The CRC of frames."),
-    ("carrystep_machine", "The little machine that reads requests and writes answers."),
-    ("carrystep_instructions", "What it does."),
-    ("carrystep_facts", "What can be read."),
-    ("carrystep_known", "Facts of the build, and what the engine has last said of its axes."),
-    ("carrystep_data", "A request and the answer to it, constants, and what is remembered."),
-    ("carrystep_ring", "Received bytes that wait."),
-    (LINK_NAME, "The host link: bytes in, words of segments out."),
-    (ENGINE_NAME, "Axes on one adder, their queues, starts, and the guard."),
+    (
+        "carrystep_switches",
+        "Memory of the debounced state of each limit switch, and its count of deviating samples.",
+    ),
+    (
+        "carrystep_limits",
+        "Samples and debounces the limit switches, each in the time slot of its axis.",
+    ),
+    (
+        "carrystep_homes",
+        "Homing: which axes wait for their limit, and which ones have reached it and ramp down.",
+    ),
+    (
+        "carrystep_stops",
+        "Latches the first cause of a stop, and controls the stop until the host clears it.",
+    ),
+    (
+        "carrystep_watch",
+        "Monitors the e-stop and the host (watchdog), and times the power of the drivers.",
+    ),
+    ("carrystep_uart_in", "The UART receiver: eight data bits, no parity, one stop bit."),
+    ("carrystep_uart_out", "The UART transmitter: eight data bits, no parity, one stop bit."),
+    ("carrystep_uart", "A UART: receiver and transmitter."),
+    ("carrystep_spi", "An SPI peripheral in mode 0; SCK may be up to a fifth of the clock."),
+    (
+        "carrystep_check",
+        "Computes the CRC-32 of frames, and assembles words from bytes; one bit per clock.",
+    ),
+    (
+        "carrystep_machine",
+        "A small processor that reads the host's requests, executes them and writes the answers.",
+    ),
+    ("carrystep_instructions", "Program memory of the processor carrystep_machine."),
+    (
+        "carrystep_facts",
+        "What the host can read: constants of the build, and the last known state of each axis.",
+    ),
+    (
+        "carrystep_known",
+        "Memory of carrystep_facts: constants of the build, and the last known state of each axis.",
+    ),
+    (
+        "carrystep_data",
+        "Data memory of carrystep_machine: the request, its answer, constants and variables.",
+    ),
+    ("carrystep_ring", "Ring buffer of the received bytes that the processor has not read yet."),
+    (
+        LINK_NAME,
+        "The host link: receives requests, passes segments to the engine and sends answers.",
+    ),
+    (ENGINE_NAME, "The engine: all axes on one adder, with their queues, starts, stops and pins."),
 ];
 
 /// The six-axis core of this build as Verilog-2005 with the top module [`CORE_NAME`]. `description`
@@ -323,13 +375,15 @@ fn header(name: &str, facts: &Facts, description: &str) -> String {
         "\
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// {name}: {title}. Generated: change the generator, not this file.
+// {name}: {title}.
+// This file is generated: change the generator instead.
 //
 // Made from    {description}
 // Made by      carrystep {version}, with Rust-HDL {RUST_HDL}
 //
-// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
-// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
+// the host link too: by this id the host knows the parameters for which it plans moves. With the id
+// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
 //
 {lines}
 `default_nettype none

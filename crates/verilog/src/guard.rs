@@ -9,7 +9,7 @@ pub(crate) fn lines(build: &EngineBuild) -> String {
     let figures = build.guard_figures();
     let between = |time: Between, unit| format!("{} to {} {unit}", time.least, time.most);
     let watchdog = figures.watchdog_ms.map_or("none".into(), |time| {
-        format!("{} without a sign of the host: ramp", between(time, "ms"))
+        format!("{} without a valid frame of the host: ramp", between(time, "ms"))
     });
     let enable =
         figures.enable_ms.map_or("no time from ENABLE to the first start".into(), |time| {
@@ -17,13 +17,13 @@ pub(crate) fn lines(build: &EngineBuild) -> String {
         });
     let wiring = match figures.limits {
         Limits::None => None,
-        Limits::Pair => Some("two an axis"),
-        Limits::Each => Some("one an axis"),
+        Limits::Pair => Some("two per axis"),
+        Limits::Each => Some("one per axis"),
         Limits::One => Some("one for all axes, bit 0 of limit_min"),
     };
     let limits = wiring.zip(figures.debounce_us).map_or("none".into(), |(wiring, time)| {
         let (level, stop) = (figures.limit_level, figures.limit_stop);
-        format!("{wiring}, active {level}, believed after {}: {stop}", between(time, "us"))
+        format!("{wiring}, active {level}, debounced for {}: {stop}", between(time, "us"))
     });
     let mut text = format!(
         "\

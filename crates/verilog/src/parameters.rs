@@ -1,11 +1,12 @@
-//! The parameters of modules: which numbers whoever instantiates a module may override, and how they are passed down.
+//! The parameters of Verilog modules, which an instance may override, and how a module passes them
+//! on to its children.
 //!
 //! ```text
-//! engine #(STEP_HIGH_0, STEP_HIGH_1, ...)     of each axis, with its number
-//!   pulser pulser_0 #(.STEP_HIGH(STEP_HIGH_0))  in an array of instances that of the instance's axis
+//! engine #(STEP_HIGH_0, STEP_HIGH_1, ...)       one parameter per axis, with the axis' number
+//!   pulser pulser_0 #(.STEP_HIGH(STEP_HIGH_0))  each instance receives that of its own axis
 //! ```
 //!
-//! A module has those parameters that its constants name, and those of its children.
+//! A module has the parameters that its own constants use, and those of its children.
 
 use crate::ExportError;
 use crate::names::split_index;
@@ -13,7 +14,10 @@ use crate::netlist::Module;
 use carrystep_hdl::parameters::{Described, PARAMETERS, described};
 use carrystep_hdl::primitives::formula::{Note, ParameterValue};
 
-/// The parameters of a module with the values that they have in this build, in the order of the table.
+/// The parameters of a module with their values in this build, in the order of [`PARAMETERS`].
+///
+/// # Errors
+/// [`ExportError`] if a parameter has two different values in this module.
 pub(crate) fn of(module: &Module) -> Result<Vec<ParameterValue>, ExportError> {
     let mut all: Vec<ParameterValue> = Vec::new();
     let atoms = module.atoms.iter().filter_map(|atom| atom.note.as_ref());
@@ -45,7 +49,7 @@ pub(crate) fn of(module: &Module) -> Result<Vec<ParameterValue>, ExportError> {
     Ok(all)
 }
 
-/// The name that a child's parameter has in its parent.
+/// The name that the parameter of a child has in its parent.
 pub(crate) fn in_parent(instance: &str, name: &str) -> String {
     match (split_index(instance).1, described(name)) {
         (Some(index), Some((known, None))) if known.per_axis => format!("{name}_{index}"),
@@ -53,7 +57,8 @@ pub(crate) fn in_parent(instance: &str, name: &str) -> String {
     }
 }
 
-/// The lines of a module's head. What a parameter is stands before the first one of its kind.
+/// The declarations of the parameters in the head of a module. A comment that describes a parameter
+/// precedes the first one of its kind.
 pub(crate) fn head(parameters: &[ParameterValue]) -> Vec<String> {
     let mut lines = Vec::new();
     let mut before: Option<&Described> = None;
@@ -75,7 +80,8 @@ pub(crate) fn head(parameters: &[ParameterValue]) -> Vec<String> {
     lines
 }
 
-/// The overrides of an instance, `#(.NAME(VALUE), ...)` with a space on each side; a space if there are none.
+/// The overrides of an instance, `#(.NAME(VALUE), ...)` with a space on each side, or one space if
+/// there are none.
 pub(crate) fn overrides(parameters: &[ParameterValue]) -> String {
     if parameters.is_empty() {
         return " ".to_owned();
@@ -84,19 +90,19 @@ pub(crate) fn overrides(parameters: &[ParameterValue]) -> String {
     format!(" #(\n{}\n    ) ", each.collect::<Vec<_>>().join(",\n"))
 }
 
-/// Functions for the constants in a module whose texts these are.
+/// The Verilog functions that the constants of a module use; `texts` are their expressions.
 pub(crate) fn functions(texts: &[&str]) -> Vec<String> {
     let is_used =
         |width: &usize| texts.iter().any(|text| text.contains(&format!("used_bits_{width}(")));
     (1..=64).filter(is_used).flat_map(used_bits).collect()
 }
 
-/// The function that sets all bits below the highest one that is set.
+/// The Verilog function that sets all bits below the highest bit that is 1.
 fn used_bits(width: usize) -> Vec<String> {
     let top = width - 1;
     let name = format!("used_bits_{width}");
     let mut lines = vec![
-        "// All bits of a counter that goes up to `greatest`.".to_owned(),
+        "// A mask of the bits that a counter from 0 to `greatest` uses.".to_owned(),
         format!("function [{top}:0] {name}(input [{top}:0] greatest);"),
         "    begin".to_owned(),
         format!("        {name} = greatest;"),
@@ -107,7 +113,7 @@ fn used_bits(width: usize) -> Vec<String> {
     lines
 }
 
-/// Where a parameter stands in a list: its place in the table, and its axis.
+/// The sort key of a parameter: its index in [`PARAMETERS`], and its axis.
 fn place(name: &str) -> (usize, Option<usize>) {
     match described(name) {
         Some((known, axis)) => {
@@ -118,7 +124,8 @@ fn place(name: &str) -> (usize, Option<usize>) {
 }
 
 impl Module {
-    /// The same without the values of its parameters: two that are equal then have one text.
+    /// The same module without the values of its parameters. Two modules that then have the same
+    /// text differ only in these values.
     pub(crate) fn without_values(&self) -> Self {
         let mut module = self.clone();
         let atoms = module.atoms.iter_mut().filter_map(|atom| atom.note.as_mut());

@@ -1,4 +1,5 @@
-//! The parameters of the exported Verilog: one text for all values, and a refusal of those out of range.
+//! Checks the parameters of the exported Verilog: all values share one text, and the elaboration
+//! refuses values that are out of range.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::engine::Limits;
@@ -34,7 +35,7 @@ fn second() -> EngineBuild {
     second
 }
 
-/// The modules of a text without the values of their parameters.
+/// The modules in a Verilog text, without the values of their parameters.
 fn without_values(text: &str) -> String {
     let (_, modules) = text.split_once("`default_nettype none").unwrap();
     let line = |line: &str| match line
@@ -65,7 +66,7 @@ fn builds_differ_in_the_values_of_parameters_alone() {
     for [one, other] in pairs {
         assert_ne!(one, other);
         assert_eq!(without_values(&one), without_values(&other));
-        // Each module is there once.
+        // The text contains each module once.
         let mut modules: Vec<&str> =
             one.lines().filter(|line| line.starts_with("module ")).collect();
         let count = modules.len();
@@ -75,7 +76,8 @@ fn builds_differ_in_the_values_of_parameters_alone() {
     }
 }
 
-/// What Icarus says of a top with one parameter overridden, and whether it elaborates.
+/// Elaborates a top module with one parameter overridden in Icarus. Returns whether this succeeds,
+/// and the messages of Icarus.
 fn elaborated(folder: &Path, top: &str, parameter: &str, value: &str) -> (bool, String) {
     let change = format!("-P{top}.{parameter}={value}");
     let arguments = ["-g2005", "-s", top, &change, "-o", "out.vvp", "core.v"];
@@ -134,7 +136,7 @@ fn value_out_of_range_is_refused_by_name_and_the_ends_of_the_range_are_not() {
             );
         }
     }
-    // The other parts.
+    // The parameter of the UART.
     let line = Line::Uart(Uart::new(80_000_000, 1_000_000).unwrap());
     std::fs::write(folder.path().join("core.v"), line_verilog(line, "a test").unwrap()).unwrap();
     for (value, fits) in [("7", false), ("8", true), ("40000", true), ("40001", false)] {

@@ -74,10 +74,10 @@ fn the_verilog_says_what_its_guard_does() {
     for line in [
         "// Made from    m.toml",
         "// Guard        counts in rounds of 16 ticks, 16 us",
-        "//   watchdog   50 to 50.017 ms without a sign of the host: ramp",
+        "//   watchdog   50 to 50.017 ms without a valid frame of the host: ramp",
         "//   enable     0.112 to 0.129 ms from ENABLE to the first start",
         "//   e-stop     active low: freeze",
-        "//   limits     one an axis, active low, believed after 112 to 129 us: freeze",
+        "//   limits     one per axis, active low, debounced for 112 to 129 us: freeze",
         "//   axis 0     ramps by 100000 steps/s^2",
     ] {
         assert!(text.lines().any(|found| found == line), "no line {line} in\n{}", &text[..2000]);

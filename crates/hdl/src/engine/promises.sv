@@ -1,9 +1,12 @@
-// The engine: what its parts may count on, and promises 5, 6, 8, 12, 13 and 14 on its own ports. Without bound.
+// Proves promises 5, 6, 8, 12, 13 and 14 on the ports of the engine, and what the proofs of its
+// modules assume, without a bound on time.
 //
-//   from outside   AXES; CLOCKS in a tick, PHASES in a tick; `DUT, the exported engine, whole
-//   assumed        nothing
+//   parameters   AXES: number of axes
+//                CLOCKS, PHASES: clocks and phases in a tick
+//                `DUT: the name of the exported engine, which is proved as a whole
+//   assumptions  none
 //
-// What is said of an axis is said of one, `who`, which may be any.
+// Statements about an axis are about one axis, `who`; the solver may choose any.
 
 module promises (
     input wire clock,
@@ -39,10 +42,11 @@ module promises (
         assume (who < `AXES);
     end
 
-    // What the memory of the segments gives does not matter here: any word in any clock.
+    // The words that the memory of the segments delivers do not matter here: the solver may choose
+    // any word in any clock.
     // (* free = "dut.store.segments_read_data" *)
 
-    // ---- What the parts are told. Bit i is axis i's.
+    // ---- Signals inside the engine. In those with one bit per axis, bit i belongs to axis i.
 
     (* inside = "dut.pulser_*.frozen" *) wire [`AXES-1:0] pulser_frozen;
     (* inside = "dut.pulser_*.request" *) wire [`AXES-1:0] requests;
@@ -78,9 +82,9 @@ module promises (
     (* inside = "dut.queue_empty" *) wire empty;
     (* inside = "dut.queue_running" *) wire running;
 
-    // ---- What the last clock was.
+    // ---- Values of the clock before.
 
-    reg asked = 0;                   // `who` by the start that was taken last
+    reg asked = 0;                   // the start that was taken last includes `who`
     reg first_clock = 1, was_frozen = 0, was_fault = 0, was_enabled = 0, was_breaking = 0, was_cleared = 0;
     reg was_strobe = 0, was_start = 0, was_armed = 0, was_started = 0, was_starts = 0, was_halted = 0, was_ramp = 0;
     reg was_clearing = 0, was_tick_0 = 0, was_tick_1 = 0;
@@ -128,7 +132,7 @@ module promises (
         promise_14_nothing_moves_unasked: assert (!armed || was_armed || was_start);
     end
 
-    // ---- What the parts assume of the engine, in their words.
+    // ---- What the proofs of the modules assume about the engine.
 
     always_comb begin
         assumed_by_stops: assert ((!strobe || !beat[12]) && (!halted || !running));
@@ -141,7 +145,8 @@ module promises (
         assumed_by_turn: assert (!strobe || at == CLOCKS - 1);
     end
 
-    // ---- Why they hold: the beat, the control word of `who`, and what the turns of this tick have found.
+    // ---- The invariants that make the promises inductive. They are about the beats, about the
+    // control word of `who`, and about the results of this tick's time slots.
 
     reg turning = 0;
     reg [7:0] at = 0;
@@ -173,10 +178,10 @@ module promises (
     (* inside = "dut.homes.slowing" *) wire [`AXES-1:0] slowing;
     (* inside = "dut.watch.round" *) wire [9:0] round;
     wire quiet = !word[6] & word[5:3] == word[2:0];
-    // The mask goes round with the turns.
+    // The engine rotates the mask with the time slots: bit `round_by` of it belongs to `who` now.
     wire [3:0] round_by = who >= axis ? who - axis : who + `AXES - axis;
     wire masked = (mask >> round_by) & 1;
-    reg taken = 0;                   // a word, in this tick
+    reg taken = 0;                   // a word has been taken in this tick
     always @(posedge clock) taken <= take | taken & !strobe;
 
 `ifdef INVARIANTS
@@ -207,7 +212,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_6_started: cover (started);

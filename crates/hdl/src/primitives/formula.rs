@@ -1,7 +1,8 @@
-//! Constants that follow from parameters: the number of this build, and the Verilog expression that gives it in any.
+//! Constants that are computed from parameters. Each holds its value in this build, and the Verilog
+//! expression that gives its value in any build.
 //!
-//! A [`Given`] is a parameter: whoever instantiates the Verilog may override it. A [`Formula`] is computed from given
-//! ones and from numbers:
+//! A [`Given`] is a parameter of the Verilog, which an instance may override. A [`Formula`] is
+//! computed from parameters and numbers:
 //!
 //! ```
 //! use carrystep_hdl::primitives::formula::{Formula, Given};
@@ -11,7 +12,8 @@
 //! assert_eq!(last.text(), "WIDTH[16:0] - 17'd1");
 //! ```
 //!
-//! All operands of an operator have N bits and wrap, in Rust and in Verilog, so that both always agree.
+//! Both operands of an operator have N bits, and the result wraps to N bits, in Rust as in Verilog.
+//! The value in Rust and that of the Verilog expression therefore always agree.
 
 use crate::primitives::word::{Word, bit_cast};
 use std::ops::{Add, BitAnd, BitOr, Mul, Not, Sub};
@@ -24,17 +26,17 @@ pub struct Given<const N: usize> {
 }
 
 impl<const N: usize> Given<N> {
-    /// The parameter with this name and value.
+    /// Makes the parameter with this name and value.
     pub fn new(name: impl Into<String>, value: u64) -> Self {
         Self { name: name.into(), value: Word::from(value) }
     }
 
-    /// All bits.
+    /// The whole parameter.
     pub fn whole(&self) -> Formula<N> {
         self.part(self.name.clone())
     }
 
-    /// M bits, from bit `low` up.
+    /// M bits of the parameter, from bit `low` upward.
     pub fn bits<const M: usize>(&self, low: usize) -> Formula<M> {
         let text = match M {
             1 => format!("{}[{low}]", self.name),
@@ -43,7 +45,7 @@ impl<const N: usize> Given<N> {
         self.part(text).with(self.value.get_bits::<M>(low))
     }
 
-    /// Whether it is less than the one number or more than the other.
+    /// 1 if the parameter is less than `least` or greater than `most`.
     pub fn is_outside(&self, least: u64, most: u64) -> Formula<1> {
         let above = self.whole().is_more(&Formula::number(most));
         if least == 0 { above } else { self.whole().is_less(&Formula::number(least)) | above }
@@ -56,29 +58,29 @@ impl<const N: usize> Given<N> {
     }
 }
 
-/// A constant of N bits.
+/// A constant of N bits, with its value in this build and its Verilog expression.
 #[derive(Debug, Clone)]
 pub struct Formula<const N: usize> {
     value: Word<N>,
     text: String,
-    /// Needs no parentheses as an operand.
+    /// The text needs no parentheses as an operand.
     is_closed: bool,
     given: Vec<ParameterValue>,
 }
 
-/// A parameter that a formula uses.
+/// A parameter that a formula uses, with its value in this build.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ParameterValue {
     /// Its name.
     pub name: String,
-    /// Its width; 0: it is a word in quotation marks.
+    /// Its width in bits; 0 if the parameter is a string.
     pub bits: usize,
-    /// Its value in this build, as a Verilog literal without spaces.
+    /// Its value in this build, as a Verilog literal that contains no space.
     pub literal: String,
 }
 
 impl ParameterValue {
-    /// The value as a number; of a word, that of its characters, as Verilog has it.
+    /// The value as a number. A string has the value of its characters, 8 bits each, as in Verilog.
     pub(crate) fn number(&self) -> u64 {
         let Some((_, digits)) = self.literal.split_once('\'') else {
             return self
@@ -97,7 +99,7 @@ impl ParameterValue {
 }
 
 impl<const N: usize> Formula<N> {
-    /// A number, which no parameter changes.
+    /// A number that does not depend on parameters.
     pub fn number(value: u64) -> Self {
         let value = Word::<N>::from(value);
         let text = match N {
@@ -108,7 +110,7 @@ impl<const N: usize> Formula<N> {
         Self { value, text, is_closed: true, given: Vec::new() }
     }
 
-    /// The number of this build.
+    /// The value in this build.
     pub const fn value(&self) -> Word<N> {
         self.value
     }
@@ -118,13 +120,13 @@ impl<const N: usize> Formula<N> {
         &self.text
     }
 
-    /// The parameters in it.
+    /// The parameters that the expression uses.
     pub fn given(&self) -> &[ParameterValue] {
         &self.given
     }
 
-    /// All bits of a counter that goes up to this number. Kernels mask their timers with it: what can never be set is
-    /// then plainly zero, and synthesis drops those flip-flops.
+    /// A mask of the bits that a counter from 0 to this number uses. Kernels mask their timers with
+    /// it, so that all higher bits are constantly 0 and synthesis removes their flip-flops.
     pub fn used_bits(self) -> Self {
         let value = match self.value.value().checked_ilog2() {
             Some(top) => (2 << top) - 1,
@@ -134,27 +136,27 @@ impl<const N: usize> Formula<N> {
         Self { value: Word::new(value), text, is_closed: true, given: self.given }
     }
 
-    /// Whether it is less than the other.
+    /// 1 if this is less than `other`.
     pub fn is_less(&self, other: &Self) -> Formula<1> {
         self.compared("<", other, self.value < other.value)
     }
 
-    /// Whether it is more than the other.
+    /// 1 if this is greater than `other`.
     pub fn is_more(&self, other: &Self) -> Formula<1> {
         self.compared(">", other, self.value > other.value)
     }
 
-    /// Whether it is the other.
+    /// 1 if this equals `other`.
     pub fn is(&self, other: &Self) -> Formula<1> {
         self.compared("==", other, self.value == other.value)
     }
 
-    /// Whether it is not the other.
+    /// 1 if this does not equal `other`.
     pub fn is_not(&self, other: &Self) -> Formula<1> {
         self.compared("!=", other, self.value != other.value)
     }
 
-    /// This where the test holds, otherwise the other.
+    /// This if `test` is 1, otherwise `other`.
     pub fn where_or(self, test: &Formula<1>, other: Self) -> Self {
         let value = if test.value.any() { self.value } else { other.value };
         let text = format!("{} ? {} : {}", test.closed(), self.closed(), other.closed());
@@ -162,13 +164,13 @@ impl<const N: usize> Formula<N> {
         Self { value, text, is_closed: false, given }
     }
 
-    /// The greater of the two.
+    /// The greater one of this and `other`.
     pub fn or_more(self, other: Self) -> Self {
         let test = self.is_more(&other);
         self.where_or(&test, other)
     }
 
-    /// What remains without the other; nothing where that is more.
+    /// This minus `other`, or 0 if `other` is greater.
     pub fn without(self, other: Self) -> Self {
         let test = self.is_more(&other);
         (self - other).where_or(&test, Self::number(0))
@@ -238,15 +240,15 @@ impl<const N: usize> From<Word<N>> for Formula<N> {
     }
 }
 
-/// What a constant says of itself to whoever prints the Verilog. Rust-HDL hands on no more of a constant than its
-/// value and the name of its type: a note is that name.
+/// The description of a constant for the Verilog export. Rust-HDL passes on only the value of a
+/// constant and the name of its type, so a note is encoded as this name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Note {
     /// The expression.
     pub text: String,
-    /// The parameters in it.
+    /// The parameters that the expression uses.
     pub given: Vec<ParameterValue>,
-    /// It says whether parameters are out of range, and nothing else.
+    /// Whether the constant only tells that parameters are out of range.
     pub is_refusal: bool,
 }
 
@@ -258,7 +260,7 @@ impl Note {
         Self { text: formula.text.clone(), given: formula.given.clone(), is_refusal }
     }
 
-    /// The note that a type's name is, if it is one.
+    /// Decodes the note in the name of a type; `None` if the name contains no note.
     pub fn read(name: &str) -> Option<Self> {
         let mut parts = name.split('\t');
         let is_refusal = match parts.next()? {
@@ -279,7 +281,7 @@ impl Note {
         Some(Self { text, given: given.collect::<Option<_>>()?, is_refusal })
     }
 
-    /// The note as a type's name.
+    /// Encodes the note as the name of a type.
     pub(crate) fn written(&self) -> String {
         let kind = if self.is_refusal { REFUSAL } else { CONSTANT };
         let given = self

@@ -1,5 +1,6 @@
-// Connects every port of carrystep_engine to two pins by way of registers. Any package then has
-// enough pins, and only paths within the engine are timed.
+// Connects all ports of carrystep_engine to registers, which shift from one input pin and to one
+// output pin. Any package then has enough pins, and the timing analysis covers only paths that are
+// inside the engine.
 module budget_harness (input wire clock, input wire in, output reg out);
     localparam AXES = 6;
     localparam INPUTS = 53 + 4 * AXES;

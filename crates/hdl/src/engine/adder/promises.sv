@@ -1,9 +1,12 @@
-// The one adder: what a turn makes of its words: promises 6, 7, 11 and 13. Without bound.
+// Proves promises 6, 7, 10, 11 and 13 of the adder, without a bound on time: the sums of a time
+// slot are those of the words that the memory delivers in this time slot.
 //
-//   from outside   `DUT, the exported adder
-//   assumed        what turn/promises.sv proves: beats in a row; and in a turn what is counted stands still
+//   parameters   `DUT: the name of the exported adder
+//   assumptions  The beats of a time slot follow one another (proved in turn/promises.sv). From
+//                beat 6 on, counts, lost, up, down and wipe do not change within a time slot.
 //
-// The memory gives the halves of A, J, V and P in two rows; here they are put together and summed in 64 bits.
+// The memory delivers the low halves of A, J, V and P first and their high halves later. This file
+// joins the halves and computes the expected sums in 64 bits.
 
 module promises (
     input wire clock,
@@ -21,7 +24,7 @@ module promises (
     wire [3:0] q;
     `DUT dut (.*);
 
-    // ---- A turn: a beat after the other; the words that came in each.
+    // ---- The beats of a time slot, one after the other, and the words that arrive in them.
 
     reg first_clock = 1;
     reg [16:0] was_beat = 0;
@@ -81,7 +84,7 @@ module promises (
     reg [3:0] was_q = 0;
     always @(posedge clock) {was_back, was_q} <= {back, q};
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_6_carry_between_the_halves: cover (beat[12] && crosses && low_p + low_v < low_p && high_v == 0);

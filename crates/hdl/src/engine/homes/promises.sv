@@ -1,17 +1,20 @@
-// Homing: promise 12's exception, for any axis: a limit that an axis waits for slows down that axis, and no other. Without bound.
+// Proves the exception of promise 12 for homing, and promise 13, without a bound on time: the limit
+// for which an axis waits slows down this axis and no other.
 //
-//   from outside   AXES; `DUT, the exported homes
-//   assumed        what turn/ and limits/promises.sv prove: a turn is of one axis and ends apart from the next, the
-//                  axis' own bit is set in `lane`, hits come in the last beat of a turn
+//   parameters   AXES: number of axes
+//                `DUT: the name of the exported module `homes`
+//   assumptions  A time slot belongs to one axis, whose bit is set in `lane`, and two time slots do
+//                not end in adjacent clocks (proved in turn/promises.sv). Hits occur in the last
+//                beat of a time slot (proved in limits/promises.sv).
 //
-// All is said of one axis, `who`, which may be any.
+// All statements are about one axis, `who`; the solver may choose any.
 
 module promises (
     input wire clock,
     input wire set,
     input wire [`AXES-1:0] mask,
     input wire turn_ends,
-    input wire [2:0] axis,   // whose turn it is
+    input wire [2:0] axis,   // the axis of the time slot
     input wire hit,
     input wire goes_on
 );
@@ -35,7 +38,7 @@ module promises (
         assume (!turn_ends || !was_turn_ends && !first_clock);
     end
 
-    // ---- Homing, as docs/clock-by-clock.md has it.
+    // ---- Homing as docs/clock-by-clock.md specifies it.
 
     reg waiting = 0, slowing = 0;
     wire ends = turn_ends & axis == who;
@@ -45,7 +48,8 @@ module promises (
         if (ends) slowing <= caught | slowing & goes_on;
     end
 
-    // ---- The promises. With the one axis there may be, its turn has no other before it in which to become known.
+    // ---- The promises. `slows` is a register, which follows one clock after the end of a time
+    // slot. With one axis, that clock belongs to this axis again and is left out (`known`).
 
     wire known = `AXES > 1 || !was_turn_ends;
     always_comb begin
@@ -55,7 +59,7 @@ module promises (
         promise_13_inactive: assert (!first_clock || !slows && axes == 0);
     end
 
-    // ---- Why they hold.
+    // ---- The invariants that make the promises inductive.
 
     (* inside = "dut.slowing" *) wire [`AXES-1:0] dut_slowing;
 
@@ -66,7 +70,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_12_slows: cover (slows && axis == who);

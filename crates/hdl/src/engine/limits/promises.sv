@@ -1,10 +1,15 @@
-// The limit switches: promises 10, 12 and 13 of their debouncer, for any switch. Without bound.
+// Proves promises 10, 12 and 13 of the debouncer of the limit switches, without a bound on time.
 //
-//   from outside   AXES; WIRING: 0 none, 1 a pair an axis, 2 one an axis, 3 one for all; LOW; LOOKS; `DUT, the
-//                  exported limits with these
-//   assumed        what turn/ and watch/promises.sv prove: turns end apart, the first two ticks of a round are two
+//   parameters   AXES: number of axes
+//                WIRING: 0 no switches, 1 two per axis, 2 one per axis, 3 one for all axes
+//                LOW: 1 if a switch is active when its pin is low
+//                LOOKS: number of samples to debounce
+//                `DUT: the name of the exported module `limits`, built with these values
+//   assumptions  Two time slots do not end in adjacent clocks (proved in turn/promises.sv). The
+//                first and the second tick of a round are different (proved in watch/promises.sv).
 //
-// All is said of one switch, `side` of axis `who`, which may be any: the runs of looks at it are counted here without a memory.
+// All statements are about one switch, `side` of axis `who`; the solver may choose any. This file
+// counts the samples of this switch in registers; the module keeps its counts in a memory.
 
 module promises (
     input wire clock,
@@ -37,11 +42,11 @@ module promises (
         assume (!tick_0 || !tick_1);
         assume (who < `AXES && (side == 0 || WIRING == PAIR));
         assume (axis == was_next && (!turn_ends || !was_turn_ends && axis < `AXES));
-        // A round's tick changes in the clock after a strobe, where no turn ends.
+        // tick_0 and tick_1 change in the clock after a strobe, in which no time slot ends.
         assume (!turn_ends || !first_clock && {tick_0, tick_1} == {was_min, was_max});
     end
 
-    // ---- The pin of the axis whose turn it is, as it was two clocks ago.
+    // ---- The pin of the axis of this time slot, as it was two clocks ago.
 
     wire max = tick_1 & WIRING == PAIR;
     wire [`AXES-1:0] pins = max ? limit_max : limit_min;
@@ -49,11 +54,12 @@ module promises (
     reg sync = 0, seen = 0;
     always @(posedge clock) {seen, sync} <= {sync, pin};
 
-    // ---- Looks at the switch, and what is believed of it.
+    // ---- The samples of the switch (`looks`), and its debounced state (`believed`).
 
     wire looks = WIRING != NONE & turn_ends & (max ? side : tick_0 & !side) & axis == who;
     reg believed = 0;
-    reg [7:0] against = 0;           // equal looks that say otherwise, up to now
+    // Number of consecutive samples, up to now, that differ from the debounced state.
+    reg [7:0] against = 0;
     wire differs = seen != believed;
     wire flips = looks & differs & against + 1 == LOOKS;
     wire believed_now = believed ^ flips;
@@ -77,14 +83,15 @@ module promises (
     reg [7:0] was_memory = 0;
     always @(posedge clock) {was_looks, was_memory} <= {looks, memory};
 
-    // ---- Why they hold: its word in memory, seen through a port of its own.
+    // ---- The invariants that make the promises inductive. `look` is an additional read port for
+    // the word of this switch in memory.
 
     wire [7:0] memory;
     look #("\\dut.switches.words", 4, 8) at_switches (1'b0, 1'b1, {who, side}, memory);
     (* inside = "dut.now" *) wire now;
     (* inside = "dut.sync" *) wire dut_sync;
     (* inside = "dut.word" *) wire [7:0] word;
-    // Its word was read in the last clock.
+    // The memory read the word of this switch in the clock before.
     wire looked_up = !first_clock & was_next == who & (was_max & WIRING == PAIR) == side;
 
 `ifdef INVARIANTS
@@ -95,7 +102,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_10_hit: cover (hit && looks);

@@ -1,9 +1,11 @@
-// The engine's pulser: promises 1 to 7, 9, 11 and 13 on the pins of one axis, for any inputs. Without bound.
+// Proves promises 1 to 7, 9, 11 and 13 of the engine's pulser on the pins of one axis, for any
+// inputs and without a bound on time.
 //
-//   from outside   W, S, D, H in clocks; `DUT, the exported pulser with these numbers
-//   assumed        nothing
+//   parameters   W, S, D, H: the pin timing in clocks
+//                `DUT: the name of the exported pulser, built with this timing
+//   assumptions  none
 //
-// A promise speaks of the pins and of what this file counts on them, never of the pulser's own timers.
+// The promises refer to the pins and to counters in this file, not to the counters of the pulser.
 
 module promises (
     input wire clock,
@@ -20,7 +22,7 @@ module promises (
     `DUT dut (.*);
     wire [2:0] position = counts[2:0], discarded = counts[5:3];
 
-    // ---- What the last clock was.
+    // ---- Values of the clock before.
 
     reg first_clock = 1;
     reg was_step = 0, was_dir = 0, was_frozen = 0, was_request = 0, was_request_back = 0, was_owed = 0;
@@ -42,16 +44,17 @@ module promises (
     wire turned = dir != was_dir;
     wire was_second = was_owed & was_request & !was_frozen;
 
-    // ---- Clocks on the pins; each counter stops at LONG, which also stands for never.
+    // ---- Times on the pins, in clocks. Each counter saturates at LONG, which also means `never`.
 
     function [19:0] more(input [19:0] clocks);
         more = clocks == LONG ? LONG : clocks + 1;
     endfunction
 
-    reg [19:0] highs = 0;            // high before this clock
-    reg [19:0] lows = LONG;          // low before this clock
-    reg [19:0] last_rise = LONG;     // since the rising edge before this clock
-    reg [19:0] last_turn = 0;        // since DIR turned before this clock, or since configuration
+    reg [19:0] highs = 0;            // clocks for which STEP was high until the clock before
+    reg [19:0] lows = LONG;          // clocks for which STEP was low until the clock before
+    reg [19:0] last_rise = LONG;     // clocks since STEP rose, before this clock
+    // Clocks since DIR changed, before this clock, or since configuration.
+    reg [19:0] last_turn = 0;
     wire [19:0] since_rise = rose ? 0 : last_rise;
     wire [19:0] since_turn = turned ? 0 : last_turn;
     always @(posedge clock) begin
@@ -61,7 +64,8 @@ module promises (
         last_turn <= more(since_turn);
     end
 
-    // ---- Steps: asked for, made, given up, where they lead. The pulser counts modulo 8.
+    // ---- The numbers of requested, made and discarded steps, and the position. The pulser counts
+    // modulo 8.
 
     reg [31:0] asked = 0, made = 0, given_up = 0, place = 0;
     wire [31:0] made_now = made + rose;
@@ -74,14 +78,17 @@ module promises (
         place <= place_now;
     end
 
-    // ---- Which step is due, where DIR should point, and for how long a step is owed.
+    // ---- The step that is due, the direction that DIR should have, and the number of clocks for
+    // which a step has been held back (`owed`).
 
-    reg shown = 0, sign = 0;         // direction of the last V that was not 0, and as it was a clock ago
-    reg kept_back = 0;               // of the step that is owed: of two the first
+    // The direction of the last V that was not 0, and the same one clock later.
+    reg shown = 0, sign = 0;
+    reg kept_back = 0;               // direction of the step that is held back
     wire asked_back = was_request & (!was_owed | rose) ? was_request_back : kept_back;
     reg was_due = 0, was_due_back = 0, was_aim = 0;
     reg [19:0] waits = 1;
-    // Clocks for which a step has been owed, this one included; what a freeze takes away is not owed.
+    // Number of clocks for which a step has been held back, this clock included. A step that a
+    // freeze discards is not held back.
     wire [19:0] waited = rose | was_frozen ? 1 : waits;
     wire due = owed | request;
     wire due_back = owed ? asked_back : request_back;
@@ -96,7 +103,8 @@ module promises (
     end
     wire [19:0] longest = W + S > D + H ? W + S : D + H;
 
-    // ---- A rate that fits: W + S apart, V turns H after a step and D before the next, no freeze.
+    // ---- A rate that fits the pin timing: requests are W + S apart, V changes its sign at least H
+    // after a step and D before the next one, and there is no freeze.
 
     reg fits = 1;
     reg [19:0] last_request = LONG, last_sign = 0;
@@ -140,7 +148,8 @@ module promises (
         promise_13_inactive: assert (!first_clock || {step, dir, owed, overruns & !request, counts} == 0);
     end
 
-    // ---- Why they hold: the pulser's counters and what is counted above say the same, while they count.
+    // ---- The invariants that make the promises inductive: while the counters of the pulser count,
+    // they agree with the counters above.
 
     (* inside = "dut.since" *) wire [16:0] since;
     (* inside = "dut.after" *) wire [15:0] after;
@@ -171,7 +180,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_1_2_tightest_pulses: cover (rose && lows == S && last_rise == W + S);

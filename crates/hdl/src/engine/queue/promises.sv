@@ -1,11 +1,16 @@
-// Which segment runs and which wait: promises 5, 6, 7, 10, 12 and 13 of the queue, for any axis. Without bound.
+// Proves promises 5, 6, 7, 10, 12 and 13 of the queue, without a bound on time: which segment runs,
+// which segments wait, and how pulses and discarded steps reach the counters in memory.
 //
-//   from outside   `DUT, the exported queue
-//   assumed        what turn/ and engine/promises.sv prove: beats in a row, of one axis; stops change between turns;
-//                  what is taken is taken in beat 7 where there is room, what starts has something to start.
-//                  And at most three pulses more than turns in any time: docs/promises.md says why
+//   parameters   `DUT: the name of the exported queue
+//   assumptions  The beats of a time slot follow one another and belong to one axis (proved in
+//                turn/promises.sv). The inputs for starts and stops do not change within a time
+//                slot; a word is taken only in beat 7 and if there is room; an axis starts only if
+//                a segment waits (proved in engine/promises.sv). In any time there are at most
+//                three pulses more than time slots, and at most seven discarded steps are not
+//                counted in memory yet (docs/promises.md gives the reasons).
 //
-// All is said of one axis, `who`, which may be any; and segments are counted, not numbered modulo 8.
+// All statements are about one axis, `who`; the solver may choose any. This file numbers the
+// segments with 32 bits; the queue numbers them modulo 8.
 
 module promises (
     input wire clock,
@@ -37,12 +42,12 @@ module promises (
     wire full, empty, running, sound, slows, upward, steady, moves, goes_on, too_fast, dry, up, down, lost;
     `DUT dut (.*);
 
-    // ---- The beats of a turn, and what holds still in it.
+    // ---- The beats of a time slot, and the inputs that do not change within it.
 
     wire mine = axis == who;
     wire in_turn = beat[12:0] != 0;
-    wire looks = mine & beat[4];     // at the pulses,
-    wire asked = mine & beat[12:5] != 0;   // and tells what it saw
+    wire looks = mine & beat[4];     // the queue compares the pulses with the counter in memory
+    wire asked = mine & beat[12:5] != 0;   // `up`, `down` and `lost` give the result
     wire ends = mine & beat[12];
     reg first_clock = 1, was_running = 0;
     reg [12:0] was_beat = 0;
@@ -62,11 +67,12 @@ module promises (
         assume (!clear || halted);
     end
 
-    // ---- Segments of `who`, counted: committed, begun. Their marks, by place.
+    // ---- The numbers of segments of `who` that have been committed and begun, and for each of the
+    // eight places of the queue the mark `last of its move`.
 
     reg [31:0] committed = 0, begun = 0;
     reg [7:0] marks = 0;
-    reg adds = 0;                    // committed in this turn
+    reg adds = 0;                    // a segment has been committed in this time slot
     wire begins = mine & in_turn & starts;
     wire [31:0] begun_now = begun + begins;
     wire [31:0] waiting = committed - begun_now;
@@ -76,7 +82,7 @@ module promises (
         assume (!begins || committed != begun && !runs && !halted);
     end
 
-    // ---- What an axis does in its turn, as docs/clock-by-clock.md has it.
+    // ---- The behaviour of an axis in its time slot, as docs/clock-by-clock.md specifies it.
 
     reg runs = 0, unfit = 0, known = 0, known_back = 0;
     wire on = (runs | begins) & !halted;
@@ -102,7 +108,8 @@ module promises (
         end
     end
 
-    // ---- Pulses and discarded steps of `who`, and how many of them were told to the memory.
+    // ---- The position on the pins (`at`) and the discarded steps (`given_up`) of `who`, and the
+    // values that have been transferred to memory (`told` and `written_off`).
 
     reg [31:0] at = 0, told = 0, given_up = 0, written_off = 0;
     reg [1:0] spare = 3;
@@ -164,7 +171,8 @@ module promises (
         end
     end
 
-    // ---- Why they hold: the words of `who` in memory, seen through a port of their own.
+    // ---- The invariants that make the promises inductive. `look` is an additional read port for
+    // the words of `who` in memory.
 
     wire [15:0] control;
     wire [7:0] lasts;
@@ -183,7 +191,7 @@ module promises (
     (* inside = "dut.lasts.write_address" *) wire [5:0] mark_write_at;
     (* inside = "dut.lasts.read_address" *) wire [5:0] mark_read_at;
     (* inside = "dut.lasts_read_data" *) wire mark_read;
-    reg was_clash = 0;               // a word was read as it was written
+    reg was_clash = 0;               // the word that was read was written in the same clock
     always @(posedge clock) was_clash <= write_bits != 0 & write_at == read_at;
 
     wire signed [31:0] slack = {30'd0, spare};
@@ -204,7 +212,8 @@ module promises (
     end
 `endif
 
-    // ---- Where a run is looked for: turns of axis 0 as fast as they may come.
+    // ---- When the solver searches for a run (covers and planted bugs), `who` is axis 0, and its
+    // time slots follow one another as fast as the assumptions permit.
 
 `ifndef INVARIANTS
     reg [3:0] clock_of_turn = 14;
@@ -215,7 +224,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_6_last_is_over: cover (ends && over && fine);

@@ -1,9 +1,13 @@
-// Who stops the axes: promises 5, 10, 12 and 13 of the guard, for any inputs. Without bound.
+// Proves promises 5, 10, 12 and 13 of the module that stops the axes, for any inputs and without a
+// bound on time.
 //
-//   from outside   AXES; LIMIT_FREEZES, 1 where a limit freezes; `DUT, the exported stops
-//   assumed        what engine/promises.sv proves: no turn ends at a strobe; no axis runs where all are halted
+//   parameters   AXES: number of axes
+//                LIMIT_FREEZES: 1 if a limit freezes the axes, 0 if it ramps them down
+//                `DUT: the name of the exported module `stops`
+//   assumptions  No time slot ends at a strobe, and no axis runs while `halted` is 1 (proved in
+//                engine/promises.sv).
 //
-// A stop is one bit for all axes: what is said here of it is said of each of them.
+// The signals of a stop are single bits for all axes, so every statement here holds for each axis.
 
 module promises (
     input wire clock,
@@ -35,7 +39,8 @@ module promises (
         assume (!halted || !runs);
     end
 
-    // ---- What this tick has found so far: of several axes the first.
+    // ---- What this tick has found so far. If several axes have found a cause, that of the first
+    // of them counts.
 
     reg tick_found = 0, tick_freezes = 0, tick_ran = 0;
     reg [2:0] tick_cause = 0;
@@ -52,7 +57,7 @@ module promises (
         end
     end
 
-    // ---- Calls for a stop, the weightiest first, and what they should do.
+    // ---- The calls for a stop, in the order of their priority, and their expected effect.
 
     wire overrun = late != 0;
     wire e_stop = strobe & pressed;
@@ -65,7 +70,7 @@ module promises (
     wire [`AXES-1:0] caller = overrun ? late : !e_stop & !breaks & found ? tick_axis : 0;
     wire cleared = strobe & clearing;
 
-    // ---- What the last clock was, and the clocks since the last strobe.
+    // ---- Values of the clock before, and of the last strobe.
 
     reg first_clock = 1, was_called = 0, was_freezes = 0, was_cleared = 0, was_strobe = 0;
     reg was_fault = 0, was_frozen = 0, was_ramp = 0, was_halted = 0, was_clearing = 0;
@@ -73,8 +78,9 @@ module promises (
     reg [2:0] was_call = 0, was_cause = 0;
     reg [`AXES-1:0] was_caller = 0, was_culprits = 0;
     reg ran = 0, found_before = 0, found_freezing = 0, told = 0, quiet = 0;
-    reg halted_at_strobe = 0;        // the last one
-    reg was_at_rest = 0;             // halted in this clock and at the last strobe
+    reg halted_at_strobe = 0;        // `halted` was 1 at the last strobe
+    // `halted` was 1 in the clock before, and at the strobe before that clock.
+    reg was_at_rest = 0;
     always @(posedge clock) begin
         first_clock <= 0;
         {was_called, was_freezes, was_cleared, was_strobe} <= {called, freezes, cleared, strobe};
@@ -121,7 +127,7 @@ module promises (
         promise_13_inactive: assert (!first_clock || {fault, finds, frozen, ramp, halted, clearing} == 0);
     end
 
-    // ---- Why they hold.
+    // ---- The invariants that make the promises inductive.
 
     (* inside = "dut.kind" *) wire [2:0] kind;
     (* inside = "dut.settled" *) wire settled;
@@ -139,7 +145,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_5_frozen_in_a_ramp: cover (frozen && !was_frozen && cause == WATCHDOG);

@@ -1,9 +1,12 @@
-// Whose turn it is: promises 11, 12 and 13 of the schedule. Without bound.
+// Proves promises 11, 12 and 13 of the schedule of time slots, without a bound on time.
 //
-//   from outside   AXES; CLOCKS, the fewest from strobe to strobe; `DUT, the exported turn
-//   assumed        what wheel/promises.sv proves: a tick is never shorter
+//   parameters   AXES: number of axes
+//                CLOCKS: the least number of clocks from one strobe to the next
+//                `DUT: the name of the exported module `turn`
+//   assumptions  A tick is never shorter than CLOCKS (proved in wheel/promises.sv).
 //
-// In every tick each axis has one turn of 13 beats, axis 0 in the clock after the strobe, and no two at once.
+// In every tick each axis has one time slot of 13 beats. That of axis 0 begins in the clock after
+// the strobe, and the time slots do not overlap.
 
 module promises (
     input wire clock,
@@ -16,9 +19,9 @@ module promises (
     wire [`AXES-1:0] lane;
     `DUT dut (.*);
 
-    // ---- Clocks since the strobe, and what they say.
+    // ---- The clocks since the strobe, and the time slot and the beat that follow from them.
 
-    reg [16:0] at = TURNS;           // TURNS: all turns are over
+    reg [16:0] at = TURNS;           // TURNS means that all time slots are over
     reg [16:0] since = CLOCKS;
     wire in_turn = at < TURNS;
     wire [16:0] number = at / TURN, clock_of_turn = at % TURN;
@@ -26,13 +29,14 @@ module promises (
         at <= strobe ? 0 : at == TURNS ? at : at + 1;
         since <= strobe ? 1 : since == CLOCKS ? since : since + 1;
     end
-    reg [3:0] tail = 0;              // four beats go on into the next turn, or past the strobe
+    // Beats 13 to 16 of a time slot, which overlap the next time slot or follow the last one.
+    reg [3:0] tail = 0;
     always @(posedge clock) tail <= {tail[2:0], in_turn & clock_of_turn == TURN - 1};
     always_comb begin
         assume (!strobe || since == CLOCKS);
     end
 
-    // ---- What holds of beats and axes from clock to clock, as other parts assume it.
+    // ---- Values of the clock before, for promises that the proofs of other modules assume.
 
     reg first_clock = 1;
     reg [12:0] was_beat = 0;
@@ -69,7 +73,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_11_second_turn: cover (beat[0] && beat[13] && axis == 1);

@@ -1,9 +1,14 @@
-// What is watched beside the axes: promises 5, 10, 13 and 14 of e-stop, watchdog and ENABLE. Without bound.
+// Proves promises 5, 10, 12, 13 and 14 of the module that monitors the e-stop, the watchdog and the
+// power of the drivers, without a bound on time.
 //
-//   from outside   ESTOP_LOW; ROUND in ticks; WATCHDOG and WARM in rounds; `DUT, the exported watch with these
-//   assumed        a tick is shorter than 2^24 clocks
+//   parameters   ESTOP_LOW: 1 if the e-stop is active when its pin is low
+//                ROUND: length of a round in ticks
+//                WATCHDOG, WARM: timeout of the watchdog and enable time of the drivers in rounds
+//                `DUT: the name of the exported module `watch`, built with these values
+//   assumptions  A tick is shorter than 2^24 - 1 clocks.
 //
-// The slow times are counted here in ticks, by the module in rounds: so each is told with the round it may be off.
+// This file counts the long times in ticks, while the module counts them in rounds. So each promise
+// about a time allows a difference of up to one round.
 
 module promises (
     input wire clock,
@@ -22,7 +27,8 @@ module promises (
         more = count == LONG ? LONG : count + 1;
     endfunction
 
-    // ---- The e-stop: its pin as it was two clocks ago, for how long it has been active, and how long the tick is.
+    // ---- The e-stop: the level of its pin two clocks ago, the number of clocks for which it has
+    // been active, and the number of clocks since the last strobe.
 
     reg sync = 0, active = 0, seen = 0;
     reg [23:0] actives = 0, clocks = 0;
@@ -36,7 +42,8 @@ module promises (
         assume (clocks != LONG);
     end
 
-    // ---- Ticks: of the round, since the last sign of life, since ENABLE.
+    // ---- The tick within the round, the ticks since the last `kick`, and the ticks since
+    // `enabled` was asserted.
 
     reg first_clock = 1, was_enable = 0, was_idle = 0, was_enabled = 0;
     reg [23:0] tick = 0, silent = 0, powered = 0;
@@ -68,7 +75,8 @@ module promises (
         promise_12_one_round_for_all: assert (tick_0 == (tick == 0) && tick_1 == (tick == 1));
     end
 
-    // ---- Why they hold: whole rounds and the ticks of this one.
+    // ---- The invariants that make the promises inductive: a time in ticks agrees with the
+    // module's whole rounds and the ticks of the present round.
 
     (* inside = "dut.sync" *) wire dut_sync;
     (* inside = "dut.now" *) wire dut_now;
@@ -92,7 +100,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     reg heard = 0, was_warm = 0;
     always @(posedge clock) begin

@@ -1,11 +1,18 @@
-// The wheel: a turn's event is on the pins two ticks later, at its phase, once: promises 6, 11, 12, 13. Without bound.
+// Proves promises 6, 11, 12 and 13 of the event wheel, without a bound on time: an event that a
+// time slot has found is at the outputs once, two ticks later, at its phase.
 //
-//   from outside   AXES; CLOCKS in a tick, PHASES in a tick; `DUT, the exported wheel; carrystep_turn, which gives the turns
-//   assumed        what adder/promises.sv proves: the phase stands from the beat after `phase_known` to the next turn's end,
-//                  the direction from one turn's end to the next
+//   parameters   AXES: number of axes
+//                CLOCKS, PHASES: clocks and phases in a tick
+//                `DUT: the name of the exported module `wheel`
+//                The exported module carrystep_turn generates the time slots.
+//   assumptions  The phase `q` does not change from the beat after `phase_known` to the end of the
+//                next time slot, and the direction `back` does not change from the end of one time
+//                slot to the end of the next one (proved in adder/promises.sv).
 //
-// All is said of one axis, `who`, and one place of the wheel: tick `at_tick` modulo 4, phase `at_phase`, step or sign. Each
-// may be any. In that place there is an event of that axis where its turn has found one, and nowhere else.
+// All statements are about one axis, `who`, and about one word of the event memory, which is
+// given by its tick modulo 4, `at_tick`, its phase, `at_phase`, and its kind: step or sign of V.
+// The solver may choose any of them. The word contains an event of this axis if and only if a time
+// slot of this axis has found the event.
 
 module promises (
     input wire clock,
@@ -28,7 +35,8 @@ module promises (
     carrystep_turn turns (.*);
     `DUT dut (.*);
 
-    // ---- Time: the clock of the tick, the tick modulo 4; clocks since a turn has ended, whose it was, and in which tick.
+    // ---- Time: the clock within the tick, and the tick modulo 4. Of the last time slot that has
+    // ended: the clocks since its end, whether it was that of `who`, and its tick.
 
     reg first_clock = 1, turning = 0;
     reg [7:0] at = 0;
@@ -51,7 +59,7 @@ module promises (
         assume (age < 6 || age == 15 || q == was_q);
     end
 
-    // ---- What is to be in the place.
+    // ---- The event that the word should contain.
 
     reg finds_step = 0, finds_sign = 0, expected = 0, expected_back = 0;
     wire known = whose & (sign ? age == 1 & finds_sign & found_in + 2'd1 == at_tick
@@ -80,7 +88,8 @@ module promises (
         promise_13_inactive: assert (!first_clock || !strobe && !phase_start);
     end
 
-    // ---- Why they hold: the word of the place in memory, seen through a port of its own, and the tick a cycle ahead.
+    // ---- The invariants that make the promises inductive. `look` is an additional read port for
+    // the word in memory. The tick counter inside the wheel runs one clock ahead.
 
     wire [6:0] place = {at_tick, sign, at_phase};
     wire [15:0] word;
@@ -101,13 +110,13 @@ module promises (
     (* inside = "turns.beats" *) wire [16:0] beats;
     wire clash = bits != 0 & write_at == to_read;
     reg was_clash = 0;
-    reg [2:0] wiped = 0;             // in the last clocks
+    reg [2:0] wiped = 0;             // bit i: a word was cleared i + 1 clocks ago
     always @(posedge clock) begin
         was_clash <= clash;
         wiped <= {wiped[1:0], strobe | phase_start};
     end
 
-    // On its way to the place, from a turn that has ended.
+    // A time slot that has ended has an event for the word, which is still to be written.
     wire comes = whose & (sign ? sign_due & when == at_tick
         : step_due & step_known & when + 2'd1 == at_tick & q / (5'd16 / PHASES) == at_phase);
     wire [7:0] next = at == CLOCKS - 1 ? 0 : at + 1;
@@ -154,7 +163,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     reg signed_event = 0, stepped = 0;
     always @(posedge clock) begin

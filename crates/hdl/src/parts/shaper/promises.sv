@@ -1,9 +1,12 @@
-// The shaper: promises 1 to 7, 9, 11 and 13 on the pins of one axis, for any inputs. Without bound.
+// Proves promises 1 to 7, 9, 11 and 13 of the shaper on the pins of one axis, for any inputs and
+// without a bound on time.
 //
-//   from outside   W, S, D, H in clocks; `DUT, the exported shaper with these numbers
-//   assumed        what six_axis/promises.sv proves: an overrun freezes, and only who is frozen is cleared
+//   parameters   W, S, D, H: the pin timing in clocks
+//                `DUT: the name of the exported shaper, built with this timing
+//   assumptions  An overrun freezes the axis, and only a frozen axis is cleared (proved in
+//                six_axis/promises.sv).
 //
-// A promise speaks of the pins and of what this file counts on them, never of the shaper's own timers.
+// The promises refer to the pins and to counters in this file, not to the timers of the shaper.
 
 module promises (
     input wire clock,
@@ -25,7 +28,7 @@ module promises (
         assume (frozen || !clear);
     end
 
-    // ---- What the last clock was.
+    // ---- Values of the clock before.
 
     reg first_clock = 1;
     reg was_step = 0, was_dir = 0, was_frozen = 0, was_request = 0, was_second = 0, was_overrun = 0;
@@ -44,16 +47,17 @@ module promises (
     wire fell = !step & was_step;
     wire turned = dir != was_dir;
 
-    // ---- Clocks on the pins; each counter stops at LONG, which also stands for never.
+    // ---- Times on the pins, in clocks. Each counter saturates at LONG, which also means `never`.
 
     function [19:0] more(input [19:0] clocks);
         more = clocks == LONG ? LONG : clocks + 1;
     endfunction
 
-    reg [19:0] highs = 0;            // high before this clock
-    reg [19:0] lows = LONG;          // low before this clock
-    reg [19:0] last_rise = LONG;     // since the rising edge before this clock
-    reg [19:0] last_turn = 0;        // since DIR turned before this clock, or since configuration
+    reg [19:0] highs = 0;            // clocks for which STEP was high until the clock before
+    reg [19:0] lows = LONG;          // clocks for which STEP was low until the clock before
+    reg [19:0] last_rise = LONG;     // clocks since STEP rose, before this clock
+    // Clocks since DIR changed, before this clock, or since configuration.
+    reg [19:0] last_turn = 0;
     wire [19:0] since_rise = rose ? 0 : last_rise;
     wire [19:0] since_turn = turned ? 0 : last_turn;
     always @(posedge clock) begin
@@ -63,7 +67,7 @@ module promises (
         last_turn <= more(since_turn);
     end
 
-    // ---- Steps: asked for, made, where they lead.
+    // ---- The numbers of requested and made steps, and the position.
 
     reg [31:0] asked = 0, made = 0, place = 0;
     wire [31:0] made_now = made + rose;
@@ -74,13 +78,15 @@ module promises (
         place <= place_now;
     end
 
-    // ---- Which step is due, where DIR should point, and for how long a step is owed.
+    // ---- The step that is due, the direction that DIR should have, and the number of clocks for
+    // which a step has been held back (`owed`).
 
-    reg sign = 0;                    // direction of the last V that was not 0
-    reg asked_back = 0;              // of the last step that was asked for
+    reg sign = 0;                    // the direction of the last V that was not 0
+    reg asked_back = 0;              // the direction of the last step that was requested
     reg was_due = 0, was_due_back = 0, was_aim = 0;
     reg [19:0] waits = 1;
-    wire [19:0] waited = rose ? 1 : waits;   // clocks for which a step has been owed, this one included
+    // Number of clocks for which a step has been held back, this clock included.
+    wire [19:0] waited = rose ? 1 : waits;
     wire sign_now = want_back ? 1 : want_fwd ? 0 : sign;
     wire due = owed | request;
     wire due_back = owed ? asked_back : request_back;
@@ -94,7 +100,8 @@ module promises (
     end
     wire [19:0] longest = W + S > D + H ? W + S : D + H;
 
-    // ---- A rate that fits: W + S apart, V turns H after a step and D before the next, no freeze.
+    // ---- A rate that fits the pin timing: requests are W + S apart, V changes its sign at least H
+    // after a step and D before the next one, and there is no freeze.
 
     reg fits = 1;
     reg [19:0] last_request = LONG, last_sign = 0;
@@ -137,7 +144,8 @@ module promises (
         promise_13_inactive: assert (!first_clock || {step, dir, owed, overrun, position, discarded} == 0);
     end
 
-    // ---- Why they hold: the shaper's timers and what is counted above say the same.
+    // ---- The invariants that make the promises inductive: the timers of the shaper agree with the
+    // counters above.
 
     (* inside = "dut.busy" *) wire [16:0] busy;
     (* inside = "dut.hold" *) wire [15:0] hold;
@@ -165,7 +173,7 @@ module promises (
     end
 `endif
 
-    // ---- None of it is empty.
+    // ---- Covers: some run reaches each of these situations.
 
     always_comb begin
         cover_1_2_tightest_pulses: cover (rose && lows == S && last_rise == W + S);
