@@ -98,6 +98,8 @@ fn episode(axes: usize) -> impl Strategy<Value = Events> {
         1 => Just((Event::Enable(false), Event::Enable(true))),
         6 => (1..=all(axes)).prop_map(|mask| (Event::Home(mask), Event::Home(0))),
         1 => Just((Event::Broken, Event::Kick)),
+        2 => Just((Event::Reset(true), Event::Reset(false))),
+        1 => (1_u8..8).prop_map(|mask| (Event::WordError(mask), Event::WordError(0))),
     ];
     let length = prop_oneof![1 => 1_u64..10, 2 => 100_u64..400, 4 => 500_u64..5000];
     (what, 0_u64..60_000, length)

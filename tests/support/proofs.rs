@@ -26,6 +26,7 @@ mod limits;
 mod promises;
 mod pulser;
 mod queue;
+mod resets;
 mod sequencer;
 mod shaper;
 mod six_axis;
@@ -136,6 +137,7 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         queue::proof(engine),
         limits::proof(engine),
         homes::proof(engine),
+        resets::proof(engine),
         turn::proof(engine),
         wheel::proof(engine),
         adder::proof(engine),

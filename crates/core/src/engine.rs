@@ -106,6 +106,8 @@ pub struct EngineInputs {
     pub start: Option<u8>,
     /// Resume after a stop.
     pub clear: bool,
+    /// Stop the engine and return it to its state at configuration.
+    pub reset: bool,
     /// The host requests a controlled stop.
     pub stop: bool,
     /// The host has violated the segment protocol.
@@ -144,6 +146,8 @@ pub struct EngineOutputs {
     pub fault: Option<(Cause, u8)>,
     /// The stop is over: no axis moves any more.
     pub halted: bool,
+    /// The engine is returning to its state at configuration, after `reset`.
+    pub resetting: bool,
     /// A start is armed.
     pub armed: bool,
     /// The drivers have had power for the guard's `enable` time, and the host still requests it.

@@ -49,6 +49,7 @@ pub mod homes;
 pub mod limits;
 pub mod pulser;
 pub mod queue;
+pub mod resets;
 mod sim;
 pub mod stops;
 pub mod store;
@@ -64,6 +65,7 @@ use homes::Homes;
 use limits::Limits;
 use pulser::Pulser;
 use queue::Queue;
+use resets::Resets;
 use stops::Stops;
 use store::Store;
 use turn::Turn;
@@ -79,7 +81,7 @@ pub struct Engine<const N: usize> {
     pub put_valid: Input<Bit>,
     /// The axis of the offered word. Also the axis whose free queue space `room` reports.
     pub put_axis: Input<Word<3>>,
-    /// The number of the word: 0 is ticks - 1, 1 and 2 V, 3 and 4 A, 5 and 6 J, low half first; 7
+    /// The number of the word. The words of a segment come in order: 0 is ticks - 1, 1 and 2 V, 3 and 4 A, 5 and 6 J, low half first; 7
     /// commits the segment.
     pub put_word: Input<Word<3>>,
     /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
@@ -94,6 +96,9 @@ pub struct Engine<const N: usize> {
     pub start_ready: Signal<Out, Bit>,
     /// Clears a stop. The host holds it until `fault` falls.
     pub clear: Input<Bit>,
+    /// Stops the engine and returns it to its state at configuration; the positions stay. A host
+    /// that does not need it ties it to 0.
+    pub reset: Input<Bit>,
     /// The host requests a controlled stop by a ramp.
     pub stop: Input<Bit>,
     /// The host has broken the segment protocol. The engine freezes all axes.
@@ -141,9 +146,13 @@ pub struct Engine<const N: usize> {
     pub fault: Signal<Out, Bit>,
     /// The stop is complete: no axis moves any more.
     pub halted: Signal<Out, Bit>,
-    /// The first cause of the stop, numbered as [`carrystep_core::engine::Cause`].
+    /// The engine is returning to its state at configuration, after `reset`.
+    pub resetting: Signal<Out, Bit>,
+    /// The first cause of the stop, numbered as [`carrystep_core::engine::Cause`]. It has no
+    /// meaning while `fault` is not asserted.
     pub cause: Signal<Out, Word<3>>,
-    /// The axes that caused the stop; bit i is axis i.
+    /// The axes that caused the stop; bit i is axis i. It has no meaning while `fault` is not
+    /// asserted.
     pub culprits: Signal<Out, Word<N>>,
     /// A start is armed.
     pub armed: Signal<Out, Bit>,
@@ -162,6 +171,7 @@ pub struct Engine<const N: usize> {
     limits: Limits<N>,
     homes: Homes<N>,
     stops: Stops<N>,
+    resets: Resets,
     watch: Watch,
     pulser: Lanes<Pulser, N>,
     waits: Register<Bit>, // `armed`
@@ -169,6 +179,7 @@ pub struct Engine<const N: usize> {
     // slot.
     mask: Register<Word<N>>,
     going: Register<Bit>,
+    // The word of the host was accepted in the present time slot, and is not a commit.
     taken: Register<Bit>,
     taken_word: Register<Word<3>>,
     unfed: Register<Bit>,  // an axis of the mask has no waiting segment

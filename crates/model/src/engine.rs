@@ -12,6 +12,7 @@
 mod guard;
 mod lane;
 mod plain;
+mod reset;
 mod told;
 
 use crate::parts::shaper;
@@ -21,6 +22,7 @@ use carrystep_core::engine::{
 };
 use guard::{Stop, Watch, freezes};
 use lane::{Lane, Look, Segment, Tick};
+use reset::Reset;
 use std::sync::Arc;
 
 /// The beat of an axis' turn (its time slot of 13 clocks) in which the engine outputs the position
@@ -40,6 +42,7 @@ pub struct Engine {
     turns: bool,
     armed: Option<u8>,
     stop: Stop,
+    reset: Reset,
     watch: Watch,
     /// Number of whole ticks, saturating at 2, in which no axis ran and no queue held a segment.
     rest: u32,
@@ -60,6 +63,7 @@ impl Engine {
             turns: false,
             armed: None,
             stop: Stop::default(),
+            reset: Reset::default(),
             watch: Watch::new(),
             rest: 2,
             lanes: build.pins.iter().copied().zip(&build.guard.stop).map(lane).collect(),
@@ -95,6 +99,7 @@ impl Engine {
             idle: self.rest == 2 && self.armed.is_none() && !self.pins_busy(),
             fault: self.stop.fault,
             halted: self.stop.halted,
+            resetting: self.reset.is_resetting(),
             armed: self.armed.is_some(),
             ready: inputs.enable && self.watch.is_warm(guard),
             homing: bits(&self.lanes, |lane| lane.homing.waits),
@@ -113,7 +118,7 @@ impl Engine {
     /// Advances by one cycle.
     pub fn clock(&mut self, inputs: &EngineInputs) {
         let outputs = self.outputs(inputs);
-        let (strobe, before) = (self.strobe(), self.stop);
+        let (strobe, before, reset) = (self.strobe(), self.stop, self.reset);
         let build = Arc::clone(&self.build);
         let guard = &build.guard;
         // The order of these calls is the priority of the causes: the first one is latched.
@@ -131,8 +136,10 @@ impl Engine {
             stop.call(Cause::Protocol, 0, guard);
         }
         self.look(inputs);
-        if let Some(put) = inputs.put.filter(|_| outputs.put_ready && !nobody) {
-            self.put(put);
+        if let Some(put) = inputs.put.filter(|_| outputs.put_ready && !nobody)
+            && !self.put(put)
+        {
+            stop.call(Cause::Protocol, 0, guard);
         }
         let waits = self.rest == 2;
         if strobe {
@@ -141,8 +148,9 @@ impl Engine {
         if strobe && self.watch.misses_the_host(guard) && !waits {
             stop.call(Cause::Watchdog, 0, guard);
         }
-        if inputs.stop {
+        if inputs.stop || reset.ending {
             stop.call(Cause::Stop, 0, guard);
+            stop.frozen |= reset.ending;
         }
         if before.fault.is_some() {
             self.armed = None;
@@ -157,6 +165,11 @@ impl Engine {
         self.stop = stop;
         if strobe && before.clearing {
             self.clear();
+        }
+        self.clock_reset(reset, inputs.reset);
+        if strobe {
+            let free = before.settled && !before.clearing && !busy;
+            self.strobe_reset(reset, inputs.reset, free);
         }
         self.clock = (self.clock + 1) % self.build.timebase.clocks_per_tick();
     }
@@ -203,14 +216,21 @@ impl Engine {
         (self.turns && self.clock % TURN == beat && axis < self.lanes.len()).then_some(axis)
     }
 
-    fn put(&mut self, put: Put) {
+    /// Takes a word. Returns false if it is not the next word of its axis' segment.
+    fn put(&mut self, put: Put) -> bool {
         let lane = &mut self.lanes[usize::from(put.axis)];
         self.rest = 0;
+        if put.word != lane.next_word {
+            return false;
+        }
         if put.word == COMMIT {
             lane.fresh = Some(Segment::of_words(lane.words, put.data & 1 == 1));
+            lane.next_word = 0;
         } else {
             lane.words[usize::from(put.word)] = put.data;
+            lane.next_word += 1;
         }
+        true
     }
 
     /// Samples the limit pin of the axis whose turn it is.
@@ -337,6 +357,7 @@ impl Engine {
             clearing: inputs.clear
                 && before.settled
                 && !before.clearing
+                && !self.reset.ending
                 && !busy
                 && !self.watch.pressed(),
             ..stop
@@ -348,6 +369,7 @@ impl Engine {
         for lane in &mut self.lanes {
             lane.p = self.build.phase.start_value();
             lane.queue.clear();
+            lane.next_word = 0;
         }
     }
 }

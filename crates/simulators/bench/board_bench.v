@@ -34,5 +34,5 @@ module board_bench #(parameter AXES = 6) (
     carrystep_uart line (.*);
 `endif
     carrystep_link link (.*);
-    carrystep_engine engine (.*);
+    carrystep_engine engine (.reset(1'b0), .resetting(), .*);
 endmodule

@@ -26,6 +26,7 @@ uint64_t outputs(const Vcarrystep_engine& core) {
     add(core.idle, 1);
     add(core.fault, 1);
     add(core.halted, 1);
+    add(core.resetting, 1);
     add(core.started, 1);
     add(core.enabled, 1);
     add(core.fault ? core.cause : 0, 3);
@@ -54,11 +55,11 @@ int main(int argc, char** argv) {
     core.clock = 0;
     core.eval();
     uint64_t before = ~uint64_t{0}, cycle = 0, count;
-    unsigned put_valid, put_axis, put_word, put_data, start_valid, start_mask, clear;
+    unsigned put_valid, put_axis, put_word, put_data, start_valid, start_mask, clear, reset;
     unsigned stop, broken, home_valid, home_mask, kick, enable, estop, limit_min, limit_max;
-    while (std::fscanf(file, "%" SCNu64 " %u %x %x %x %u %x %u %u %u %u %x %u %u %u %x %x", &count, &put_valid, &put_axis, &put_word, &put_data,
-                       &start_valid, &start_mask, &clear, &stop, &broken, &home_valid, &home_mask, &kick, &enable, &estop, &limit_min,
-                       &limit_max) == 17) {
+    while (std::fscanf(file, "%" SCNu64 " %u %x %x %x %u %x %u %u %u %u %u %x %u %u %u %x %x", &count, &put_valid, &put_axis, &put_word, &put_data,
+                       &start_valid, &start_mask, &clear, &reset, &stop, &broken, &home_valid, &home_mask, &kick, &enable, &estop, &limit_min,
+                       &limit_max) == 18) {
         core.put_valid = put_valid;
         core.put_axis = put_axis;
         core.put_word = put_word;
@@ -66,6 +67,7 @@ int main(int argc, char** argv) {
         core.start_valid = start_valid;
         core.start_mask = start_mask;
         core.clear = clear;
+        core.reset = reset;
         core.stop = stop;
         core.broken = broken;
         core.home_valid = home_valid;
@@ -83,7 +85,7 @@ int main(int argc, char** argv) {
             tick(core);
         }
     }
-    core.put_valid = core.start_valid = core.clear = core.stop = core.broken = core.home_valid = core.kick = 0;
+    core.put_valid = core.start_valid = core.clear = core.reset = core.stop = core.broken = core.home_valid = core.kick = 0;
     for (int axis = 0; axis < AXES; ++axis)
         for (int item = 0; item < 4; ++item) {
             core.get_axis = axis;

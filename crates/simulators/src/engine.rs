@@ -77,6 +77,11 @@ pub enum Event {
     Home(u8),
     /// The host violates the segment protocol in this cycle.
     Broken,
+    /// The `reset` input is asserted, or released.
+    Reset(bool),
+    /// The host numbers its words wrongly from this cycle on: the bits of this mask are inverted in
+    /// the number of every word. 0 ends it.
+    WordError(u8),
 }
 
 /// Events, in the order of their cycles.
@@ -98,6 +103,7 @@ pub struct EngineHost {
     around: EngineInputs,
     estop_low: bool,
     limits_low: u8,
+    word_error: u8,
 }
 
 impl EngineHost {
@@ -141,6 +147,7 @@ impl EngineHost {
             around,
             estop_low,
             limits_low,
+            word_error: 0,
         };
         host.happen();
         host
@@ -159,6 +166,8 @@ impl EngineHost {
                 Event::Kick => self.around.kick = true,
                 Event::Home(axes) => self.around.home = Some(axes),
                 Event::Broken => self.around.broken = true,
+                Event::Reset(asserted) => self.around.reset = asserted,
+                Event::WordError(mask) => self.word_error = mask,
             }
         }
     }
@@ -172,7 +181,10 @@ impl EngineHost {
             ..self.around
         };
         match self.current {
-            Some(Act::Put(put)) if !fault => EngineInputs { put: Some(put), ..inputs },
+            Some(Act::Put(put)) if !fault => {
+                let put = Put { word: put.word ^ self.word_error, ..put };
+                EngineInputs { put: Some(put), ..inputs }
+            }
             Some(Act::Start(mask)) if !fault => EngineInputs { start: Some(mask), ..inputs },
             Some(Act::Clear) => EngineInputs { clear: true, ..inputs },
             _ => inputs,

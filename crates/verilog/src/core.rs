@@ -33,7 +33,7 @@ pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
 const RUST_HDL: &str = "0.46.0";
 
 /// The purpose of each module, in one line.
-const PURPOSES: [(&str, &str); 34] = [
+const PURPOSES: [(&str, &str); 35] = [
     (
         "carrystep_tick",
         "The tick counter: a strobe in the last clock of each tick, and the phases of a tick.",
@@ -96,6 +96,10 @@ const PURPOSES: [(&str, &str); 34] = [
     (
         "carrystep_limits",
         "Samples and debounces the limit switches, each in the time slot of its axis.",
+    ),
+    (
+        "carrystep_resets",
+        "The reset: freezes the engine, waits for rest, and restores the state at configuration.",
     ),
     (
         "carrystep_homes",

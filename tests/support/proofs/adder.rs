@@ -51,6 +51,11 @@ const BUGS: &[Bug] = &[
     },
     Bug { breaks: "promise_11_phase_stays", text: "bisects | beat[16]", becomes: "1'b1" },
     Bug { breaks: "promise_13_inactive", text: "bits = 4'd0;", becomes: "bits = 4'd1;" },
+    Bug {
+        breaks: "promise_6_ticks_and_discarded",
+        text: "(forgets & beat[6])",
+        becomes: "(forgets & beat[5])",
+    },
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {

@@ -22,8 +22,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_no_such_axis_is_told",
-        text: "((put_valid & nobody) | broken)",
-        becomes: "broken",
+        text: "((put_valid & nobody) | broken | queue_misplaced)",
+        becomes: "(broken | queue_misplaced)",
     },
     Bug {
         breaks: "promise_6_something_to_start",
@@ -64,6 +64,21 @@ const BUGS: &[Bug] = &[
         breaks: "promise_12_a_limit_waited_for_stops_no_other",
         text: "limits_hit & !homes_waits & !homes_slows",
         becomes: "limits_hit & !homes_slows",
+    },
+    Bug {
+        breaks: "promise_6_words_in_order",
+        text: ".put_word(put_word),\n        .last",
+        becomes: ".put_word(turn_axis),\n        .last",
+    },
+    Bug {
+        breaks: "promise_13_reset_freezes",
+        text: ".ending(resets_ending),\n        .stage_2",
+        becomes: ".ending(resets_stage_2),\n        .stage_2",
+    },
+    Bug {
+        breaks: "promise_13_reset_of_an_engine_at_rest",
+        text: ".settled(stops_settles),",
+        becomes: ".settled(1'b1),",
     },
     Bug { breaks: "promise_13_inactive", text: "rest_2 = 1'b1;", becomes: "rest_2 = 1'b0;" },
     Bug { breaks: "promise_14_start_only_warm", text: "enable & watch_warm", becomes: "enable" },

@@ -11,6 +11,11 @@ const BUGS: &[Bug] = &[
         becomes: "waiting <= waiting;",
     },
     Bug {
+        breaks: "promise_12_waits_as_asked",
+        text: "if (resetting) begin",
+        becomes: "if (resetting & set) begin",
+    },
+    Bug {
         breaks: "promise_12_waits_in_its_turn",
         text: "mine = (waiting & lane)",
         becomes: "mine = (waiting)",

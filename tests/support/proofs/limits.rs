@@ -18,13 +18,18 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_10_stops_by_direction",
-        text: "if (differs & !flips) begin",
-        becomes: "if (!flips) begin",
+        text: "if (differs & !flips & !resetting) begin",
+        becomes: "if (!flips & !resetting) begin",
     },
     Bug {
         breaks: "promise_12_own_switch_only",
         text: "(looks & (EXIST",
         becomes: "((looks | goes) & (EXIST",
+    },
+    Bug {
+        breaks: "promise_13_reset_forgets",
+        text: "(word[7] ^ flips) & !resetting",
+        becomes: "(word[7] ^ flips)",
     },
     Bug { breaks: "promise_13_inactive", text: "hit = looks &", becomes: "hit = 1'b1 |" },
 ];

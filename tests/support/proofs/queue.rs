@@ -34,6 +34,16 @@ const BUGS: &[Bug] = &[
         text: "full = fresh_now == live_now",
         becomes: "full = newest == live_now",
     },
+    Bug {
+        breaks: "promise_6_words_in_order",
+        text: "next_due = due + ONE",
+        becomes: "next_due = due",
+    },
+    Bug {
+        breaks: "promise_6_misplaced_is_taken",
+        text: "misplaced = take & !fits_in",
+        becomes: "misplaced = !fits_in",
+    },
     Bug { breaks: "promise_6_runs_as_told", text: "(word[7] | least)", becomes: "word[7]" },
     Bug { breaks: "promise_6_goes_on", text: "over = ended & last_one;", becomes: "over = ended;" },
     Bug { breaks: "promise_6_discarded_are_written_off", text: "& !runs;", becomes: ";" },

@@ -12,7 +12,7 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_5_frozen_until_clear",
-        text: "if (wiping) begin",
+        text: "if (wiping | completes) begin",
         becomes: "if (clear) begin",
     },
     Bug {
@@ -54,6 +54,11 @@ const BUGS: &[Bug] = &[
         becomes: "urgent | by_host",
     },
     Bug { breaks: "promise_12_clear_is_whole", text: "settled & !wiping &", becomes: "settled &" },
+    Bug {
+        breaks: "promise_13_reset_clears_too",
+        text: "clearing = wiping | stage_2",
+        becomes: "clearing = wiping",
+    },
     Bug { breaks: "promise_13_inactive", text: "freeze = 1'b0;", becomes: "freeze = 1'b1;" },
 ];
 

@@ -30,6 +30,16 @@ const BUGS: &[Bug] = &[
         text: "(round + ONE_TICK) & ROUND_BITS",
         becomes: "round ^ ROUND_BITS & {10{idle}}",
     },
+    Bug {
+        breaks: "promise_13_no_power_in_a_reset",
+        text: "(power & !idle)) & !resetting",
+        becomes: "(power & !idle))",
+    },
+    Bug {
+        breaks: "promise_12_one_round_for_all",
+        text: "if (restarts_round) begin",
+        becomes: "if (ending) begin",
+    },
     Bug { breaks: "promise_13_inactive", text: "power = 1'b0;", becomes: "power = 1'b1;" },
     Bug {
         breaks: "promise_14_not_before_the_host",

@@ -1,7 +1,7 @@
 //! The build id: a hash by which a driver recognises the gateware that it was made for.
 
-use super::registers::{PROTOCOL_VERSION, REGISTERS};
-use super::{ANSWER, registers};
+use super::registers::{PROTOCOL_VERSION, REGISTERS, Register};
+use super::{ANSWER, Field, registers};
 use crate::EngineBuild;
 use alloc::borrow::ToOwned;
 use alloc::format;
@@ -38,10 +38,14 @@ impl fmt::Display for BuildId {
     }
 }
 
-/// The register map and the fields of an answer as text.
+/// The register map and the fields of an answer as text: names and places, without descriptions.
 fn protocol() -> String {
-    let registers = REGISTERS.iter().map(|row| format!("{row:?}\n"));
-    let answer = ANSWER.iter().map(|row| format!("{row:?}\n"));
+    let registers = REGISTERS.iter().map(|Register { name, address, access, per_axis, .. }| {
+        format!("{name} {address} {access:?} {per_axis}\n")
+    });
+    let answer = ANSWER
+        .iter()
+        .map(|Field { name, byte, bit, bits, .. }| format!("{name} {byte} {bit} {bits}\n"));
     let version = format!("protocol {PROTOCOL_VERSION}, {} words\n", registers::PER_AXIS);
     [version].into_iter().chain(registers).chain(answer).collect()
 }

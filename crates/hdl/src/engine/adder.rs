@@ -52,6 +52,8 @@ pub struct Adder {
     pub down: Input<Bit>,
     /// The sums that replace P are zero.
     pub wipe: Input<Bit>,
+    /// A reset: the sum that replaces the discarded steps is zero.
+    pub forgets: Input<Bit>,
     /// The sum of the beat before.
     pub sum: Signal<Out, Word<32>>,
     /// From beat 8: the running segment ends with this tick.
@@ -218,8 +220,9 @@ impl Logic for Adder {
         self.wide.next = ((bit_cast::<34, 32>(self.x.val()) << self.by_one.val())
             | self.carry.val())
             + ((bit_cast::<34, 33>(self.extended.val()) << self.by_one.val()) | self.low.val());
-        self.wiping.next =
-            self.wipe.val() & (self.beat.val().get_bit(5) | self.beat.val().get_bit(11));
+        self.wiping.next = (self.wipe.val()
+            & (self.beat.val().get_bit(5) | self.beat.val().get_bit(11)))
+            | (self.forgets.val() & self.beat.val().get_bit(6));
         self.r.d.next = self.wide.val().get_bits::<32>(1);
         if self.beat.val().get_bit(8) {
             self.r.d.next = self.x.val();

@@ -35,6 +35,8 @@ pub struct Homes<const N: usize> {
     pub hit: Input<Bit>,
     /// The axis of the slot runs in the next tick too.
     pub goes_on: Input<Bit>,
+    /// A reset: no axis waits for its limit any more.
+    pub resetting: Input<Bit>,
     /// The axes that wait for their limit; bit i is axis i.
     pub axes: Signal<Out, Word<N>>,
     /// The axis of the slot waits for its limit.
@@ -79,6 +81,9 @@ impl<const N: usize> Logic for Homes<N> {
         }
         if self.set.val() {
             self.waiting.d.next = self.mask.val();
+        }
+        if self.resetting.val() {
+            self.waiting.d.next = self.none.val();
         }
         // The ramp of an axis is over when the axis does not run in the next tick.
         self.slower.next = self.none.val();

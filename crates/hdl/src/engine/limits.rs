@@ -49,6 +49,8 @@ pub struct Limits<const N: usize> {
     pub goes: Input<Bit>,
     /// V < 0 in this tick.
     pub back: Input<Bit>,
+    /// A reset: the switch of this tick becomes inactive, as at configuration.
+    pub resetting: Input<Bit>,
     /// The axis has reached a limit.
     pub hit: Signal<Out, Bit>,
     switches: Memory<4, 8>,
@@ -146,9 +148,9 @@ impl<const N: usize> Logic for Limits<N> {
         self.differs.next = self.now.q.val() ^ self.word.val().get_bit(7);
         self.flips.next =
             self.differs.val() & (self.word.val().get_bits::<7>(0) == self.last_look.val());
-        self.state.next = self.word.val().get_bit(7) ^ self.flips.val();
+        self.state.next = (self.word.val().get_bit(7) ^ self.flips.val()) & !self.resetting.val();
         self.count.next = self.none.val();
-        if self.differs.val() & !self.flips.val() {
+        if self.differs.val() & !self.flips.val() & !self.resetting.val() {
             self.count.next = self.word.val().get_bits::<7>(0) + self.one.val();
         }
         self.next_word.next = bit_cast::<8, 7>(self.count.val());

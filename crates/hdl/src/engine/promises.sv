@@ -17,6 +17,7 @@ module promises (
     input wire start_valid,
     input wire [`AXES-1:0] start_mask,
     input wire clear,
+    input wire reset,
     input wire stop,
     input wire broken,
     input wire home_valid,
@@ -32,7 +33,7 @@ module promises (
     localparam [7:0] CLOCKS = `CLOCKS, PHASES = `PHASES, PHASE_CLOCKS = CLOCKS / PHASES, TURN = 13, TURNS = TURN * `AXES;
     (* anyconst *) reg [2:0] who;
 
-    wire put_ready, start_ready, get_valid, latch, room_valid, enabled, idle, fault, halted, armed, ready, started;
+    wire put_ready, start_ready, get_valid, latch, room_valid, enabled, idle, fault, halted, resetting, armed, ready, started;
     wire [31:0] get_data;
     wire [`AXES-1:0] step, dir, culprits, homing;
     wire [2:0] latch_axis, room, cause;
@@ -72,6 +73,12 @@ module promises (
     (* inside = "dut.stops.limit" *) wire limit;
     (* inside = "dut.stops_clearing" *) wire clearing;
     (* inside = "dut.stops.breaks" *) wire breaks;
+    (* inside = "dut.queue_misplaced" *) wire misplaced;
+    (* inside = "dut.resets_ending" *) wire ending;
+    (* inside = "dut.resets_stage_1" *) wire stage_1;
+    (* inside = "dut.resets_stage_2" *) wire stage_2;
+    (* inside = "dut.resets_completes" *) wire completes;
+    (* inside = "dut.resets_restarts_round" *) wire restarts_round;
     (* inside = "dut.watch_warm" *) wire warm;
     (* inside = "dut.watch_tick_0" *) wire tick_0;
     (* inside = "dut.watch_tick_1" *) wire tick_1;
@@ -87,7 +94,7 @@ module promises (
     reg asked = 0;                   // the start that was taken last includes `who`
     reg first_clock = 1, was_frozen = 0, was_fault = 0, was_enabled = 0, was_breaking = 0, was_cleared = 0;
     reg was_strobe = 0, was_start = 0, was_armed = 0, was_started = 0, was_starts = 0, was_halted = 0, was_ramp = 0;
-    reg was_clearing = 0, was_tick_0 = 0, was_tick_1 = 0;
+    reg was_ending = 0, was_clearing = 0, was_tick_0 = 0, was_tick_1 = 0;
     reg [`AXES-1:0] was_step = 0;
     reg [12:0] was_beat = 0;
     wire start = start_valid & start_ready;
@@ -98,8 +105,9 @@ module promises (
         {was_starts, was_halted, was_ramp, was_clearing} <= {starts, halted, ramp, clearing};
         {was_tick_0, was_tick_1} <= {tick_0, tick_1};
         if (start) asked <= (start_mask >> who) & 1;
-        was_breaking <= (put_valid & put_axis >= `AXES | broken) & !fault;
+        was_breaking <= (put_valid & put_axis >= `AXES | broken | misplaced) & !fault;
         was_cleared <= strobe & clearing;
+        was_ending <= ending;
     end
     wire mine = axis == who & beat[12:0] != 0;
 
@@ -110,9 +118,10 @@ module promises (
         promise_5_every_axis_frozen: assert (pulser_frozen == {`AXES{frozen}});
 
         promise_6_taken_in_its_turn: assert (!take || put_valid && put_ready && axis == put_axis && beat[7] && !full);
+        promise_6_words_in_order: assert (!(take && mine) || misplaced == (put_word != word[18:16]));
         promise_6_nothing_taken_in_a_fault: assert (!fault || !put_ready && !start_ready && !started);
         promise_6_no_such_axis_is_told: assert (!was_breaking || fault || was_cleared);
-        promise_6_start_of_nothing_is_told: assert (!started || !breaks || broken || put_valid && put_axis >= `AXES);
+        promise_6_start_of_nothing_is_told: assert (!started || !breaks || broken || misplaced || put_valid && put_axis >= `AXES);
         promise_6_a_start_is_kept: assert (!was_armed || armed || was_started || was_fault);
         promise_6_something_to_start: assert (!(mine && starts) || !word[6] && word[5:3] != word[2:0]);
 
@@ -128,6 +137,9 @@ module promises (
 
         promise_13_inactive: assert (!first_clock || {step, dir, enabled, fault, halted, started, culprits} == 0 && idle);
 
+        promise_13_reset_freezes: assert (!was_ending || frozen || was_cleared);
+        promise_13_reset_of_an_engine_at_rest: assert (!resetting || halted && owed == 0 && step == 0 && !armed);
+
         promise_14_start_only_warm: assert (!start || enable && enabled && warm && strobe);
         promise_14_nothing_moves_unasked: assert (!armed || was_armed || was_start);
     end
@@ -140,6 +152,8 @@ module promises (
             || {starts, halted, ramp, clearing} == {was_starts, was_halted, was_ramp, was_clearing});
         assumed_by_queue_clear: assert (!clearing || halted);
         assumed_by_queue_starts: assert (!(mine && starts) || !halted);
+        assumed_by_stops_completes: assert (!completes || strobe);
+        assumed_by_watch: assert (ending || !resetting && !restarts_round);
         assumed_by_limits: assert ((!tick_0 || !tick_1)
             && (!beat[12] || {tick_0, tick_1} == {was_tick_0, was_tick_1}));
         assumed_by_turn: assert (!strobe || at == CLOCKS - 1);
@@ -158,9 +172,9 @@ module promises (
     wire in_turn = turning & at < TURNS;
     wire had_turn = turning & at >= TURN * ({5'd0, who} + 1);
 
-    wire [15:0] word;
-    look #("\\dut.queue.control.words", 3, 16) at_control (1'b0, 1'b1, who, word);
-    (* inside = "dut.queue.word" *) wire [15:0] word_read;
+    wire [18:0] word;
+    look #("\\dut.queue.control.words", 3, 19) at_control (1'b0, 1'b1, who, word);
+    (* inside = "dut.queue.word" *) wire [18:0] word_read;
     (* inside = "dut.queue.committed" *) wire committed;
     (* inside = "dut.wheel.tick.sub" *) wire [15:0] sub;
     (* inside = "dut.wheel.tick.phases" *) wire [3:0] phases;
@@ -208,6 +222,9 @@ module promises (
         invariant_19: assert (!(mine && committed && at % TURN >= 8) || word[5:3] + 3'd1 != word[2:0] + {2'd0, starts});
         invariant_21: assert (slows == |(slowing & lane) || (`AXES == 1 && was_beat[12]));
         invariant_22: assert (!was_beat[12] || at % TURN == 0 && at != 0 && at <= TURNS);
+        invariant_23: assert (!(stage_1 | stage_2) || ending && settled && halted && !armed && !(stage_1 && stage_2));
+        invariant_24: assert (!(stage_2 && had_turn) || quiet);
+        invariant_25: assert (turning || !stage_1 && !stage_2 && !settled);
         invariant_18: assert (turning || !{going, taken, armed, active, unfed, held} && quiet);
     end
 `endif
@@ -217,6 +234,7 @@ module promises (
     always_comb begin
         cover_6_started: cover (started);
         cover_14_enabled: cover (enabled && idle);
+        cover_13_reset: cover (stage_2 && completes);
         cover_12_protocol: cover (fault && was_fault && cause == 2);
     end
 endmodule

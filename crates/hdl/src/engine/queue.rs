@@ -14,14 +14,15 @@
 //! last beat. Its fields, from the lowest bit:
 //!
 //! ```text
-//! bits     0-2    3-5      6         7       8-10              11-13              14     15
-//! field    live   newest   running   unfit   position mod 8    discarded mod 8    back   known
+//! bits     0-2    3-5      6         7       8-10             11-13             14     15      16-18
+//! field    live   newest   running   unfit   position mod 8   discarded mod 8   back   known   due
 //! ```
 //!
 //! `unfit` means that the next V does not fit in 64 bits. `back` and `known` belong to a ramp: its
-//! first tick stores the sign of V in `back` and sets `known`.
+//! first tick stores the sign of V in `back` and sets `known`. `due` is the number of the word that
+//! the host must put next: the words of a segment come in order, and word 7 commits it.
 //!
-//! Cost: a memory of 8 words of 16 bits for the control words and one of 64 bits for the marks of
+//! Cost: a memory of 8 words of 19 bits for the control words and one of 64 bits for the marks of
 //! last segments. A transition to the next segment only increments `live`; no segment is copied.
 
 use crate::primitives::constant::Literal;
@@ -53,8 +54,8 @@ pub struct Queue {
     pub empties: Input<Bit>,
     /// The engine accepts the host's word in this clock.
     pub take: Input<Bit>,
-    /// The accepted word commits a segment.
-    pub commit: Input<Bit>,
+    /// The number of that word.
+    pub put_word: Input<Word<3>>,
     /// The committed segment is the last of its move.
     pub last: Input<Bit>,
     /// The running segment ends with this tick.
@@ -75,6 +76,8 @@ pub struct Queue {
     pub live: Signal<Out, Word<3>>,
     /// The slot that the host writes.
     pub fresh: Signal<Out, Word<3>>,
+    /// Fault: the accepted word is not the one that is due.
+    pub misplaced: Signal<Out, Bit>,
     /// No slot is free for the host.
     pub full: Signal<Out, Bit>,
     /// The number of segments for which the queue has space, 0 to 7.
@@ -105,9 +108,9 @@ pub struct Queue {
     pub down: Signal<Out, Bit>,
     /// From beat 5: a discarded step is counted. Asserted only while the axis does not run.
     pub lost: Signal<Out, Bit>,
-    control: Memory<3, 16>,
+    control: Memory<3, 19>,
     lasts: Memory<6, 1>,
-    word: Signal<Local, Word<16>>,
+    word: Signal<Local, Word<19>>,
     old_live: Signal<Local, Word<3>>,
     live_now: Signal<Local, Word<3>>,
     newest: Signal<Local, Word<3>>,
@@ -120,6 +123,10 @@ pub struct Queue {
     over: Signal<Local, Bit>,
     follows: Signal<Local, Bit>,
     stays: Signal<Local, Bit>,
+    due: Signal<Local, Word<3>>,
+    fits_in: Signal<Local, Bit>, // the accepted word is the one that is due
+    commits: Signal<Local, Bit>,
+    took: Register<Bit>, // a word of this axis was accepted in this time slot
     committed: Register<Bit>,
     missing: Signal<Local, Word<3>>,
     unseen: Signal<Local, Word<3>>,
@@ -128,32 +135,35 @@ pub struct Queue {
     gone: Register<Bit>,     // `lost`
     next_live: Signal<Local, Word<3>>,
     next_newest: Signal<Local, Word<3>>,
-    next_running: Signal<Local, Word<16>>,
-    next_unfit: Signal<Local, Word<16>>,
-    next_known: Signal<Local, Word<16>>,
-    next_back: Signal<Local, Word<16>>,
+    next_running: Signal<Local, Word<19>>,
+    next_unfit: Signal<Local, Word<19>>,
+    next_known: Signal<Local, Word<19>>,
+    next_back: Signal<Local, Word<19>>,
+    next_due: Signal<Local, Word<3>>,
     next_seen: Signal<Local, Word<3>>,
     next_lost: Signal<Local, Word<3>>,
     one: Literal<3, 1>,
     minus_one: Literal<3, 7>,
     zero: Literal<3, 0>,
-    no: Literal<16, 0>,
-    running_bit: Literal<16, 64>,
-    unfit_bit: Literal<16, 128>,
-    back_bit: Literal<16, 0x4000>,
-    known_bit: Literal<16, 0x8000>,
-    all: Literal<16, 0xffff>,
+    no: Literal<19, 0>,
+    running_bit: Literal<19, 64>,
+    unfit_bit: Literal<19, 128>,
+    back_bit: Literal<19, 0x4000>,
+    known_bit: Literal<19, 0x8000>,
+    all: Literal<19, 0x7_ffff>,
+    commit: Literal<3, 7>,
     set: Literal<1, 1>,
     unset: Literal<1, 0>,
     at_3: Literal<4, 3>,
     at_8: Literal<4, 8>,
     at_11: Literal<4, 11>,
+    at_16: Literal<5, 16>,
 }
 
 impl Logic for Queue {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, committed, forward, backward, gone);
+        dff_setup!(self, clock, took, committed, forward, backward, gone);
         clock!(self, clock, control, lasts);
 
         // The control word of this time slot.
@@ -198,11 +208,20 @@ impl Logic for Queue {
             self.gone.d.next = self.unseen.val().any() & !self.runs.val();
         }
 
-        // The host's commit.
+        // The host's words and its commit.
+        self.due.next = self.word.val().get_bits::<3>(16);
+        self.fits_in.next = self.put_word.val() == self.due.val();
+        self.misplaced.next = self.take.val() & !self.fits_in.val();
+        self.commits.next =
+            self.take.val() & self.fits_in.val() & (self.due.val() == self.commit.val());
         if self.beat.val().get_bit(0) {
+            self.took.d.next = false;
             self.committed.d.next = false;
         }
-        if self.take.val() & self.commit.val() {
+        if self.take.val() {
+            self.took.d.next = true;
+        }
+        if self.commits.val() {
             self.committed.d.next = true;
         }
         self.lasts.read_address.next = (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val())
@@ -214,7 +233,7 @@ impl Logic for Queue {
             self.lasts.write_data.next = self.set.val();
         }
         self.lasts.write_bits.next = self.unset.val();
-        if self.take.val() & self.commit.val() {
+        if self.commits.val() {
             self.lasts.write_bits.next = self.set.val();
         }
 
@@ -232,9 +251,14 @@ impl Logic for Queue {
         if self.committed.q.val() {
             self.next_newest.next = self.fresh_now.val();
         }
+        self.next_due.next = self.due.val();
+        if self.took.q.val() {
+            self.next_due.next = self.due.val() + self.one.val();
+        }
         if self.clear.val() {
             self.next_live.next = self.zero.val();
             self.next_newest.next = self.zero.val();
+            self.next_due.next = self.zero.val();
         }
         self.next_running.next = self.no.val();
         if self.stays.val() {
@@ -265,14 +289,15 @@ impl Logic for Queue {
         }
         self.control.read_address.next = self.axis_next.val();
         self.control.write_address.next = self.axis.val();
-        self.control.write_data.next = bit_cast::<16, 3>(self.next_live.val())
-            | (bit_cast::<16, 3>(self.next_newest.val()) << self.at_3.val())
+        self.control.write_data.next = bit_cast::<19, 3>(self.next_live.val())
+            | (bit_cast::<19, 3>(self.next_newest.val()) << self.at_3.val())
             | self.next_running.val()
             | self.next_unfit.val()
             | self.next_known.val()
             | self.next_back.val()
-            | (bit_cast::<16, 3>(self.next_seen.val()) << self.at_8.val())
-            | (bit_cast::<16, 3>(self.next_lost.val()) << self.at_11.val());
+            | (bit_cast::<19, 3>(self.next_seen.val()) << self.at_8.val())
+            | (bit_cast::<19, 3>(self.next_lost.val()) << self.at_11.val())
+            | (bit_cast::<19, 3>(self.next_due.val()) << self.at_16.val());
         self.control.write_bits.next = self.no.val();
         if self.beat.val().get_bit(12) {
             self.control.write_bits.next = self.all.val();

@@ -60,6 +60,12 @@ pub struct Stops<const N: usize> {
     pub clear: Input<Bit>,
     /// A step is held back, or a STEP pin is high.
     pub pins_busy: Input<Bit>,
+    /// A reset is under way: all axes freeze, and `clear` has no effect.
+    pub ending: Input<Bit>,
+    /// The second tick of a reset, which clears the state of all axes.
+    pub stage_2: Input<Bit>,
+    /// Asserted in the last clock of a reset: the stop ends.
+    pub completes: Input<Bit>,
     /// A stop has been called and has not been cleared.
     pub fault: Signal<Out, Bit>,
     /// A time slot of this tick has found a cause.
@@ -70,6 +76,8 @@ pub struct Stops<const N: usize> {
     pub ramp: Signal<Out, Bit>,
     /// No axis moves any more.
     pub halted: Signal<Out, Bit>,
+    /// A stop has been complete for a whole tick, and `clear` is not clearing it.
+    pub settles: Signal<Out, Bit>,
     /// This tick clears the state of all axes.
     pub clearing: Signal<Out, Bit>,
     /// The first cause.
@@ -152,7 +160,8 @@ impl<const N: usize> Logic for Stops<N> {
         self.urgent.next =
             self.late.val().any() | (self.strobe.val() & self.pressed.val()) | self.breaks.val();
         self.ripe.next = self.strobe.val() & self.found.q.val();
-        self.by_host.next = (self.strobe.val() & self.missed.val()) | self.asked.val();
+        self.by_host.next =
+            (self.strobe.val() & self.missed.val()) | self.asked.val() | self.ending.val();
         self.calls.next = self.urgent.val() | self.ripe.val() | self.by_host.val();
         if !self.called.q.val() {
             if self.urgent.val() | (self.by_host.val() & !self.ripe.val()) {
@@ -184,7 +193,8 @@ impl<const N: usize> Logic for Stops<N> {
         if self.calls.val() {
             self.called.d.next = true;
         }
-        if self.urgent.val() | (self.strobe.val() & self.found_freezing.q.val()) {
+        if self.urgent.val() | (self.strobe.val() & self.found_freezing.q.val()) | self.ending.val()
+        {
             self.freeze.d.next = true;
         }
         if self.strobe.val() {
@@ -200,8 +210,9 @@ impl<const N: usize> Logic for Stops<N> {
                 & self.settled.q.val()
                 & !self.wiping.q.val()
                 & !self.pins_busy.val()
-                & !self.pressed.val();
-            if self.wiping.q.val() {
+                & !self.pressed.val()
+                & !self.ending.val();
+            if self.wiping.q.val() | self.completes.val() {
                 self.called.d.next = false;
                 self.freeze.d.next = false;
                 self.slow.d.next = false;
@@ -215,7 +226,8 @@ impl<const N: usize> Logic for Stops<N> {
         self.frozen.next = self.freeze.q.val();
         self.ramp.next = self.slow.q.val();
         self.halted.next = self.still.q.val();
-        self.clearing.next = self.wiping.q.val();
+        self.settles.next = self.settled.q.val() & !self.wiping.q.val();
+        self.clearing.next = self.wiping.q.val() | self.stage_2.val();
         self.cause.next = self.first.q.val();
         self.culprits.next = self.axes.q.val();
     }

@@ -38,6 +38,12 @@ pub struct Watch {
     pub enable: Input<Bit>,
     /// All axes are at rest and no start is armed.
     pub idle: Input<Bit>,
+    /// A reset is under way: the watchdog and the warm-up restart.
+    pub ending: Input<Bit>,
+    /// The last two ticks of a reset: the drivers get no power.
+    pub resetting: Input<Bit>,
+    /// A reset: the round restarts.
+    pub restarts_round: Input<Bit>,
     /// At a strobe: the e-stop was active in the whole tick.
     pub pressed: Signal<Out, Bit>,
     /// The watchdog has timed out: no `kick` for the specified number of rounds.
@@ -119,6 +125,9 @@ impl Logic for Watch {
         if self.strobe.val() {
             self.round.d.next = (self.round.q.val() + self.one_tick.val()) & self.round_bits.val();
         }
+        if self.restarts_round.val() {
+            self.round.d.next = self.first_tick.val();
+        }
         self.tick_0.next = self.round.q.val() == self.first_tick.val();
         self.tick_1.next = self.round.q.val() == self.one_tick.val();
 
@@ -128,19 +137,20 @@ impl Logic for Watch {
             self.silence.d.next =
                 (self.silence.q.val() + self.one_round.val()) & self.silence_bits.val();
         }
-        if self.kick.val() {
+        if self.kick.val() | self.ending.val() {
             self.silence.d.next = self.no_round.val();
         }
         self.missed.next = self.silent.val() & self.watchdog.val().any();
 
         // The power of the drivers, and the time since it was switched on.
-        self.power.d.next = self.enable.val() | (self.power.q.val() & !self.idle.val());
+        self.power.d.next =
+            (self.enable.val() | (self.power.q.val() & !self.idle.val())) & !self.resetting.val();
         self.is_warm.next = self.warmth.q.val() == self.warm_at.val();
         if self.round_over.val() & !self.is_warm.val() {
             self.warmth.d.next =
                 (self.warmth.q.val() + self.one_round.val()) & self.warm_bits.val();
         }
-        if !self.power.q.val() {
+        if !self.power.q.val() | self.ending.val() {
             self.warmth.d.next = self.no_round.val();
         }
         self.warm.next = self.is_warm.val() & self.power.q.val();

@@ -21,7 +21,7 @@ impl<const N: usize> Logic for Engine<N> {
         dff_setup!(
             self, clock, waits, mask, going, taken, taken_word, unfed, held, active, rest_1, rest_2
         );
-        clock!(self, clock, turn, adder, queue, store, wheel, limits, homes, stops, watch);
+        clock!(self, clock, turn, adder, queue, store, wheel, limits, homes, stops, resets, watch);
 
         self.strobe.next = self.wheel.strobe.val();
         self.masked.next = self.mask.q.val().get_bit(0);
@@ -87,6 +87,10 @@ impl<const N: usize> Logic for Engine<N> {
             self.rest_1.d.next = false;
             self.rest_2.d.next = false;
         }
+        if self.resets.completes.val() {
+            self.rest_1.d.next = true;
+            self.rest_2.d.next = true;
+        }
 
         // The pins.
         self.counts.next = self.none.val();
@@ -128,7 +132,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.queue.empties.next = self.homes.slows.val() & !self.queue.goes_on.val();
         self.queue.clear.next = self.stops.clearing.val();
         self.queue.take.next = self.take.val();
-        self.queue.commit.next = self.put_word.val() == self.commit.val();
+        self.queue.put_word.next = self.put_word.val();
         self.queue.last.next = self.put_data.val().get_bit(0);
         self.queue.ended.next = self.adder.ended.val();
         self.queue.overflow.next = self.adder.overflow.val();
@@ -146,6 +150,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.adder.up.next = self.queue.up.val();
         self.adder.down.next = self.queue.down.val();
         self.adder.wipe.next = self.stops.clearing.val();
+        self.adder.forgets.next = self.resets.stage_2.val();
 
         self.store.beat.next = self.turn.beat.val();
         self.store.axis.next = self.turn.axis.val();
@@ -186,6 +191,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.limits.limit_max.next = self.limit_max.val();
         self.limits.goes.next = self.queue.moves.val() & !self.adder.still.val();
         self.limits.back.next = self.adder.back.val();
+        self.limits.resetting.next = self.resets.resetting.val();
 
         self.homes.set.next = self.home_valid.val();
         self.homes.mask.next = self.home_mask.val();
@@ -193,6 +199,7 @@ impl<const N: usize> Logic for Engine<N> {
         self.homes.lane.next = self.turn.lane.val();
         self.homes.hit.next = self.limits.hit.val();
         self.homes.goes_on.next = self.queue.goes_on.val();
+        self.homes.resetting.next = self.resets.resetting.val();
 
         self.stops.strobe.next = self.strobe.val();
         self.stops.turn_ends.next = self.turn.beat.val().get_bit(12);
@@ -204,24 +211,38 @@ impl<const N: usize> Logic for Engine<N> {
         self.stops.dry.next = self.queue.dry.val();
         self.stops.late.next = self.late.val();
         self.stops.pressed.next = self.watch.pressed.val();
-        self.stops.breaks.next = (((self.put_valid.val() & self.nobody.val()) | self.broken.val())
+        self.stops.breaks.next = (((self.put_valid.val() & self.nobody.val())
+            | self.broken.val()
+            | self.queue.misplaced.val())
             & !self.stops.fault.val())
             | (self.decides.val() & self.unfed.q.val());
         self.stops.missed.next = self.watch.missed.val() & !self.rest_2.q.val();
         self.stops.asked.next = self.stop.val();
         self.stops.clear.next = self.clear.val();
         self.stops.pins_busy.next = self.pins_busy.val();
+        self.stops.ending.next = self.resets.ending.val();
+        self.stops.stage_2.next = self.resets.stage_2.val();
+        self.stops.completes.next = self.resets.completes.val();
+
+        self.resets.strobe.next = self.strobe.val();
+        self.resets.reset.next = self.reset.val();
+        self.resets.settled.next = self.stops.settles.val();
+        self.resets.pins_busy.next = self.pins_busy.val();
 
         self.watch.strobe.next = self.strobe.val();
         self.watch.estop.next = self.estop.val();
         self.watch.kick.next = self.kick.val();
         self.watch.enable.next = self.enable.val();
         self.watch.idle.next = self.rests.val();
+        self.watch.ending.next = self.resets.ending.val();
+        self.watch.resetting.next = self.resets.resetting.val();
+        self.watch.restarts_round.next = self.resets.restarts_round.val();
 
         self.enabled.next = self.watch.enabled.val();
         self.idle.next = self.rests.val();
         self.fault.next = self.stops.fault.val();
         self.halted.next = self.stops.halted.val();
+        self.resetting.next = self.resets.resetting.val();
         self.cause.next = self.stops.cause.val();
         self.culprits.next = self.stops.culprits.val();
         self.armed.next = self.waits.q.val();

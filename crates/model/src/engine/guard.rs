@@ -49,6 +49,12 @@ impl Watch {
         self.enabled && self.warm == guard.enable
     }
 
+    /// Restarts the time-out of the watchdog and the warm-up of the drivers.
+    pub(super) const fn forget(&mut self) {
+        self.silence = 0;
+        self.warm = 0;
+    }
+
     pub(super) fn clock(&mut self, guard: &Guard, inputs: &EngineInputs, strobe: bool, idle: bool) {
         let round_over = strobe && self.tick_of_round + 1 == guard.round;
         *self = Self {

@@ -71,6 +71,8 @@ pub(super) struct Lane {
     /// The segment that was committed in this tick; the strobe moves it into the queue.
     pub(super) fresh: Option<Segment>,
     pub(super) words: [u32; SEGMENT_WORDS as usize],
+    /// Number of the word of that segment that must come next.
+    pub(super) next_word: u8,
     pub(super) limits: [Limit; 2],
     pub(super) computed: Stage,
     pub(super) emitted: Stage,
@@ -98,6 +100,7 @@ impl Lane {
             queue: VecDeque::new(),
             fresh: None,
             words: [0; SEGMENT_WORDS as usize],
+            next_word: 0,
             limits: [Limit::default(); 2],
             computed: Stage::default(),
             emitted: Stage::default(),

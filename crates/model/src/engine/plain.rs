@@ -53,6 +53,7 @@ impl Engine {
         let idle = self.rest == 2 && self.armed.is_none() && !busy;
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.lanes.len());
         self.turns
+            && !(inputs.reset || self.reset.ending)
             && (fault || !(inputs.stop || inputs.broken || nobody))
             && inputs.home.is_none()
             && !self.lanes.iter().any(|lane| lane.homing.meets || lane.homing.slows)

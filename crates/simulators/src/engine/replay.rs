@@ -86,7 +86,7 @@ impl Recording {
     }
 
     /// The stimuli as text, a line for each: `count put_valid put_axis put_word put_data
-    /// start_valid start_mask clear stop broken home_valid home_mask kick enable estop limit_min
+    /// start_valid start_mask clear reset stop broken home_valid home_mask kick enable estop limit_min
     /// limit_max`.
     fn text(&self) -> String {
         let mut text = String::new();
@@ -95,15 +95,24 @@ impl Recording {
                 inputs.put.map_or((inputs.room_of, 0, 0), |put| (put.axis, put.word, put.data));
             let (put, start) = (u8::from(inputs.put.is_some()), u8::from(inputs.start.is_some()));
             let EngineInputs {
-                clear, stop, broken, kick, enable, estop, limit_min, limit_max, ..
+                clear,
+                reset,
+                stop,
+                broken,
+                kick,
+                enable,
+                estop,
+                limit_min,
+                limit_max,
+                ..
             } = *inputs;
-            let [clear, stop, broken, kick, enable, estop] =
-                [clear, stop, broken, kick, enable, estop].map(u8::from);
+            let [clear, reset, stop, broken, kick, enable, estop] =
+                [clear, reset, stop, broken, kick, enable, estop].map(u8::from);
             let homes = u8::from(inputs.home.is_some());
             let [mask, home, min, max] =
                 [inputs.start.unwrap_or(0), inputs.home.unwrap_or(0), limit_min, limit_max]
                     .map(|mask| u32::from(mask) & ((1 << self.axes()) - 1));
-            let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear}");
+            let host = format!("{put} {axis:x} {word:x} {data:x} {start} {mask:x} {clear} {reset}");
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
@@ -216,12 +225,14 @@ fn packed(outputs: &EngineOutputs, axes: usize) -> u64 {
         idle,
         fault,
         halted,
+        resetting,
         started,
         ..
     } = *outputs;
     let EngineOutputs { armed, ready, homing, latch, room, .. } = *outputs;
     let (cause, culprits) = fault.map_or((0, 0), |(cause, culprits)| (cause as u64, culprits));
-    let flags = [put_ready, start_ready, idle, fault.is_some(), halted, started, enabled];
+    let flags =
+        [put_ready, start_ready, idle, fault.is_some(), halted, resetting, started, enabled];
     let number =
         |place: Option<u8>| u64::from(place.is_some()) << 3 | u64::from(place.unwrap_or(0));
     let host = number(latch) << 6 | number(room) << 2 | u64::from(armed) << 1 | u64::from(ready);

@@ -22,7 +22,7 @@ module budget_harness (input wire clock, input wire in, output reg out);
         .home_mask(inputs[53 + 3 * AXES +: AXES]), .latch(latch), .latch_axis(latch_axis), .room(room),
         .room_valid(room_valid), .armed(armed), .ready(ready), .homing(homing), .get_data(get_data), .get_valid(get_valid), .step(step), .dir(dir),
         .enabled(enabled), .idle(idle), .fault(fault), .halted(halted), .cause(cause), .culprits(culprits),
-        .started(started));
+        .started(started), .reset(1'b0), .resetting());
 
     reg [OUTPUTS - 1:0] outputs = 0;
     always @(posedge clock) begin

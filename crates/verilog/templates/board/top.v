@@ -96,7 +96,9 @@ module {{ top }} (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 {% if led %}
 

@@ -16,7 +16,8 @@ module promises (
     input wire turn_ends,
     input wire [2:0] axis,   // the axis of the time slot
     input wire hit,
-    input wire goes_on
+    input wire goes_on,
+    input wire resetting
 );
     (* anyconst *) reg [2:0] who;
 
@@ -44,7 +45,7 @@ module promises (
     wire ends = turn_ends & axis == who;
     wire caught = ends & hit & waiting;
     always @(posedge clock) begin
-        waiting <= set ? (mask >> who) & 1 : waiting & !caught;
+        waiting <= resetting ? 0 : set ? (mask >> who) & 1 : waiting & !caught;
         if (ends) slowing <= caught | slowing & goes_on;
     end
 

@@ -21,7 +21,8 @@ module promises (
     input wire [`AXES-1:0] limit_min,
     input wire [`AXES-1:0] limit_max,
     input wire goes,
-    input wire back
+    input wire back,
+    input wire resetting
 );
     (* anyconst *) reg [2:0] who;
     (* anyconst *) reg side;
@@ -62,9 +63,9 @@ module promises (
     reg [7:0] against = 0;
     wire differs = seen != believed;
     wire flips = looks & differs & against + 1 == LOOKS;
-    wire believed_now = believed ^ flips;
+    wire believed_now = (believed ^ flips) & !resetting;
     always @(posedge clock) begin
-        if (looks) {believed, against} <= {believed_now, differs & !flips ? against + 8'd1 : 8'd0};
+        if (looks) {believed, against} <= {believed_now, differs & !flips & !resetting ? against + 8'd1 : 8'd0};
     end
     wire any_look = turn_ends & (tick_0 | max);
 
@@ -76,12 +77,13 @@ module promises (
         promise_10_stops_as_it_is_reached: assert (WIRING == PAIR || !looks || hit == (goes & flips & believed_now));
         promise_10_believed_after_equal_looks: assert (against < LOOKS && (!flips || looks));
         promise_12_own_switch_only: assert (memory == was_memory || was_looks);
+        promise_13_reset_forgets: assert (!was_looks || !was_resetting || memory == 0);
         promise_13_inactive: assert (!first_clock || !hit || turn_ends);
     end
 
-    reg was_looks = 0;
+    reg was_looks = 0, was_resetting = 0;
     reg [7:0] was_memory = 0;
-    always @(posedge clock) {was_looks, was_memory} <= {looks, memory};
+    always @(posedge clock) {was_looks, was_memory, was_resetting} <= {looks, memory, resetting};
 
     // ---- The invariants that make the promises inductive. `look` is an additional read port for
     // the word of this switch in memory.

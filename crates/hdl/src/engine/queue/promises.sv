@@ -23,7 +23,7 @@ module promises (
     input wire clear,
     input wire empties,
     input wire take,
-    input wire commit,
+    input wire [2:0] put_word,
     input wire last,
     input wire ended,
     input wire overflow,
@@ -39,7 +39,7 @@ module promises (
     (* anyconst *) reg [2:0] who;
 
     wire [2:0] live, fresh, room;
-    wire full, empty, running, sound, slows, upward, steady, moves, goes_on, too_fast, dry, up, down, lost;
+    wire misplaced, full, empty, running, sound, slows, upward, steady, moves, goes_on, too_fast, dry, up, down, lost;
     `DUT dut (.*);
 
     // ---- The beats of a time slot, and the inputs that do not change within it.
@@ -73,6 +73,9 @@ module promises (
     reg [31:0] committed = 0, begun = 0;
     reg [7:0] marks = 0;
     reg adds = 0;                    // a segment has been committed in this time slot
+    reg takes = 0;                   // a word has been taken in this time slot
+    reg [2:0] due = 0;               // the number of the word that must come next
+    wire commit = put_word == due && due == 7;
     wire begins = mine & in_turn & starts;
     wire [31:0] begun_now = begun + begins;
     wire [31:0] waiting = committed - begun_now;
@@ -93,6 +96,7 @@ module promises (
     wire rests = ramp ? known & turned : over;
     wire [31:0] begun_then = begun_now + (fine & !ramp & follows);
     always @(posedge clock) begin
+        if (mine && take) takes <= 1;
         if (mine && take && commit) begin
             adds <= 1;
             marks <= last ? marks | place : marks & ~place;
@@ -100,7 +104,8 @@ module promises (
         if (ends) begin
             begun <= clear ? 0 : empties ? committed : begun_then;
             committed <= clear ? 0 : committed + adds;
-            adds <= 0;
+            due <= clear ? 0 : due + takes;
+            {adds, takes} <= 0;
             runs <= fine & !rests;
             unfit <= fine & !rests & !ramp & !follows & overflow;
             known <= fine & !rests & ramp;
@@ -135,6 +140,8 @@ module promises (
     always_comb begin
         promise_5_halted_runs_nothing: assert (!halted || !{running, sound, moves, goes_on, too_fast, dry});
 
+        promise_6_words_in_order: assert (!mine || misplaced == (take && put_word != due));
+        promise_6_misplaced_is_taken: assert (!misplaced || take);
         promise_6_never_overtaken: assert (waiting <= 7 && committed - begun <= 7);
         promise_6_in_order: assert (!mine || !in_turn || live == begun_now[2:0] && fresh == committed[2:0] + 3'd1);
         promise_6_full: assert (!mine || !in_turn || full == (waiting == 7));
@@ -160,7 +167,7 @@ module promises (
     end
 
     reg was_unseen = 0, was_ends = 0;
-    reg [15:0] was_control = 0;
+    reg [18:0] was_control = 0;
     reg signed [31:0] was_behind = 0;
     always @(posedge clock) begin
         was_ends <= ends;
@@ -174,17 +181,18 @@ module promises (
     // ---- The invariants that make the promises inductive. `look` is an additional read port for
     // the words of `who` in memory.
 
-    wire [15:0] control;
+    wire [18:0] control;
     wire [7:0] lasts;
-    look #("\\dut.control.words", 3, 16) at_control (1'b0, 1'b1, who, control);
+    look #("\\dut.control.words", 3, 19) at_control (1'b0, 1'b1, who, control);
     genvar slot;
     generate for (slot = 0; slot < 8; slot = slot + 1) begin : each
         look #("\\dut.lasts.words", 6, 1) at_lasts (1'b0, 1'b1, {who, slot[2:0]}, lasts[slot]);
     end endgenerate
 
-    (* inside = "dut.word" *) wire [15:0] word;
+    (* inside = "dut.word" *) wire [18:0] word;
     (* inside = "dut.committed" *) wire dut_committed;
-    (* inside = "dut.control.write_bits" *) wire [15:0] write_bits;
+    (* inside = "dut.took" *) wire dut_took;
+    (* inside = "dut.control.write_bits" *) wire [18:0] write_bits;
     (* inside = "dut.control.write_address" *) wire [2:0] write_at;
     (* inside = "dut.control.read_address" *) wire [2:0] read_at;
     (* inside = "dut.lasts.write_bits" *) wire mark_writes;
@@ -200,6 +208,8 @@ module promises (
     always_comb begin
         invariant_1: assert (control[6:0] == {runs, committed[2:0], begun[2:0]});
         invariant_2: assert (control[7] == unfit && control[15:14] == {known, known_back});
+        invariant_12: assert (control[18:16] == due);
+        invariant_13: assert ((mine && beat[12:1] != 0 ? dut_took == takes : !takes) && (!takes || beat[12:8] != 0));
         invariant_3: assert (control[13:8] == {written_off[2:0], told[2:0]});
         invariant_4: assert (!mine || first_clock || was_ends || word == control);
         invariant_11: assert (!was_ends || first_clock || was_beat[12] && was_axis == who);

@@ -5,7 +5,8 @@
 //                ROUND: length of a round in ticks
 //                WATCHDOG, WARM: timeout of the watchdog and enable time of the drivers in rounds
 //                `DUT: the name of the exported module `watch`, built with these values
-//   assumptions  A tick is shorter than 2^24 - 1 clocks.
+//   assumptions  A tick is shorter than 2^24 - 1 clocks. `resetting` and `restarts_round` occur only
+//                with `ending` (proved in resets/promises.sv).
 //
 // This file counts the long times in ticks, while the module counts them in rounds. So each promise
 // about a time allows a difference of up to one round.
@@ -16,7 +17,10 @@ module promises (
     input wire estop,
     input wire kick,
     input wire enable,
-    input wire idle
+    input wire idle,
+    input wire ending,
+    input wire resetting,
+    input wire restarts_round
 );
     localparam [23:0] ROUND = `ROUND, WATCHDOG = `WATCHDOG, WARM = `WARM, LONG = 24'hffffff;
 
@@ -40,19 +44,21 @@ module promises (
     end
     always_comb begin
         assume (clocks != LONG);
+        assume (ending || !resetting && !restarts_round);
     end
 
     // ---- The tick within the round, the ticks since the last `kick`, and the ticks since
-    // `enabled` was asserted.
+    // `enabled` was asserted. A reset starts all of them anew.
 
-    reg first_clock = 1, was_enable = 0, was_idle = 0, was_enabled = 0;
+    reg first_clock = 1, was_enable = 0, was_idle = 0, was_enabled = 0, was_resetting = 0;
     reg [23:0] tick = 0, silent = 0, powered = 0;
     always @(posedge clock) begin
         first_clock <= 0;
-        {was_enable, was_idle, was_enabled} <= {enable, idle, enabled};
-        if (strobe) tick <= tick == ROUND - 1 ? 0 : tick + 1;
-        silent <= kick ? 0 : strobe ? more(silent) : silent;
-        powered <= !enabled ? 0 : strobe ? more(powered) : powered;
+        {was_enable, was_idle, was_enabled, was_resetting} <= {enable, idle, enabled, resetting};
+        if (restarts_round) tick <= 0;
+        else if (strobe) tick <= tick == ROUND - 1 ? 0 : tick + 1;
+        silent <= kick | ending ? 0 : strobe ? more(silent) : silent;
+        powered <= !enabled | ending ? 0 : strobe ? more(powered) : powered;
     end
 
     // ---- The promises.
@@ -66,8 +72,9 @@ module promises (
         promise_13_inactive: assert (!first_clock || {pressed, missed, enabled} == 0);
 
         promise_14_not_before_the_host: assert (!enabled || was_enable || was_enabled);
-        promise_14_powered_where_asked: assert (!was_enable || enabled);
-        promise_14_powered_until_idle: assert (!was_enabled || enabled || was_idle && !was_enable);
+        promise_14_powered_where_asked: assert (!was_enable || enabled || was_resetting);
+        promise_14_powered_until_idle: assert (!was_enabled || enabled || was_idle && !was_enable || was_resetting);
+        promise_13_no_power_in_a_reset: assert (!was_resetting || !enabled);
         promise_14_warm_not_before_its_time: assert (!warm || WARM == 0 || powered > (WARM - 1) * ROUND);
         promise_14_warm_is_powered: assert (!warm || enabled);
         promise_14_warm_in_time: assert (warm || !enabled || powered < WARM * ROUND);
