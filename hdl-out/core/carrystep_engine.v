@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// carrystep_engine: step and direction for six axes. Generated: change the generator, not this file.
+// carrystep_engine: step and direction for six axes.
+// This file is generated: change the generator instead.
 //
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 //
-// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
-// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
+// the host link too: by this id the host knows the parameters for which it plans moves. With the id
+// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
 //
 // Clock        80000000 Hz
 // Tick         1000 ns, 80 clocks in 16 phases
@@ -20,10 +22,10 @@
 //   axis 4     W 8, S 8, D 2, H 2
 //   axis 5     W 240, S 240, D 120, H 120
 // Guard        counts in rounds of 32 ticks, 32 us
-//   watchdog   100 to 100.033 ms without a sign of the host: ramp
+//   watchdog   100 to 100.033 ms without a valid frame of the host: ramp
 //   enable     1.024 to 1.057 ms from ENABLE to the first start
 //   e-stop     active high: freeze
-//   limits     two an axis, active high, believed after 512 to 545 us: ramp
+//   limits     two per axis, active high, debounced for 512 to 545 us: ramp
 //   axis 0     ramps by 800000 steps/s^2
 //   axis 1     ramps by 640000 steps/s^2
 //   axis 2     ramps by 600000 steps/s^2
@@ -33,7 +35,7 @@
 
 `default_nettype none
 
-// Whose turn it is: one axis after the other, thirteen beats each.
+// The schedule: in each tick every axis has a time slot of thirteen clocks (beats).
 module carrystep_turn (
     input  wire         clock,
     input  wire         strobe,
@@ -85,7 +87,7 @@ module carrystep_turn (
     end
 endmodule
 
-// The one adder: P + V, V + A, A + J, ticks - 1, positions, and the bisection.
+// The only adder, 32 bits: P + V, V + A, A + J, remaining ticks, positions, bisection.
 module carrystep_adder (
     input  wire         clock,
     input  wire  [16:0] beat,
@@ -96,6 +98,7 @@ module carrystep_adder (
     input  wire         up,
     input  wire         down,
     input  wire         wipe,
+    input  wire         forgets,
     output wire  [31:0] sum,
     output wire         ended,
     output wire         overflow,
@@ -152,7 +155,7 @@ module carrystep_adder (
     wire odd = halves_on & b[0];
     wire odd_beyond = odd & bisects & crosses_now;
     wire [33:0] wide = (({2'b0, x} << BY_ONE) | CARRY) + (({1'b0, extended} << BY_ONE) | low);
-    wire wiping = wipe & (beat[5] | beat[11]);
+    wire wiping = (wipe & (beat[5] | beat[11])) | (forgets & beat[6]);
     wire empty = (b & ~SIGN) == 32'd0;
 
     assign sum = r;
@@ -260,18 +263,18 @@ module carrystep_adder (
     end
 endmodule
 
-// The control words of the axes.
+// Memory of the control words: the queue state and flags of each axis.
 module carrystep_control (
     input  wire         clock,
     input  wire   [2:0] read_address,
-    output wire  [15:0] read_data,
+    output wire  [18:0] read_data,
     input  wire   [2:0] write_address,
-    input  wire  [15:0] write_bits,
-    input  wire  [15:0] write_data
+    input  wire  [18:0] write_bits,
+    input  wire  [18:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
-    (* no_rw_check, ram_style = "block" *) reg [15:0] words [0:7];
-    reg [15:0] value; // a block RAM gives no value before its first clock
+    (* no_rw_check, ram_style = "block" *) reg [18:0] words [0:7];
+    reg [18:0] value; // a block RAM gives no value before its first clock
     integer i;
 
     assign read_data = value;
@@ -286,7 +289,7 @@ module carrystep_control (
     end
 endmodule
 
-// Which segments are the last of their move.
+// Memory of one bit per segment: the segment is the last of its move.
 module carrystep_lasts (
     input  wire         clock,
     input  wire   [5:0] read_address,
@@ -312,7 +315,7 @@ module carrystep_lasts (
     end
 endmodule
 
-// Which segment an axis runs, and which ones wait.
+// The segment queue of each axis: which segment runs, and which segments wait.
 module carrystep_queue (
     input  wire         clock,
     input  wire  [16:0] beat,
@@ -324,7 +327,7 @@ module carrystep_queue (
     input  wire         clear,
     input  wire         empties,
     input  wire         take,
-    input  wire         commit,
+    input  wire   [2:0] put_word,
     input  wire         last,
     input  wire         ended,
     input  wire         overflow,
@@ -335,6 +338,7 @@ module carrystep_queue (
     input  wire   [2:0] losses,
     output wire   [2:0] live,
     output wire   [2:0] fresh,
+    output wire         misplaced,
     output wire         full,
     output wire   [2:0] room,
     output wire         empty,
@@ -354,18 +358,21 @@ module carrystep_queue (
     localparam [2:0] ONE = 3'd1;
     localparam [2:0] MINUS_ONE = 3'd7;
     localparam [2:0] ZERO = 3'd0;
-    localparam [15:0] NO = 16'd0;
-    localparam [15:0] RUNNING_BIT = 16'd64;
-    localparam [15:0] UNFIT_BIT = 16'd128;
-    localparam [15:0] BACK_BIT = 16'd16384;
-    localparam [15:0] KNOWN_BIT = 16'd32768;
-    localparam [15:0] ALL = 16'd65535;
+    localparam [18:0] NO = 19'd0;
+    localparam [18:0] RUNNING_BIT = 19'd64;
+    localparam [18:0] UNFIT_BIT = 19'd128;
+    localparam [18:0] BACK_BIT = 19'd16384;
+    localparam [18:0] KNOWN_BIT = 19'd32768;
+    localparam [18:0] ALL = 19'h7ffff;
+    localparam [2:0] COMMIT = 3'd7;
     localparam SET = 1'b1;
     localparam UNSET = 1'b0;
     localparam [3:0] AT_3 = 4'd3;
     localparam [3:0] AT_8 = 4'd8;
     localparam [3:0] AT_11 = 4'd11;
+    localparam [4:0] AT_16 = 5'd16;
 
+    reg took = 1'b0;
     reg committed = 1'b0;
     reg forward = 1'b0;
     reg backward = 1'b0;
@@ -376,18 +383,19 @@ module carrystep_queue (
     reg lasts_write_bits;
     reg [2:0] next_live;
     reg [2:0] next_newest;
-    reg [15:0] next_running;
-    reg [15:0] next_unfit;
-    reg [15:0] next_known;
-    reg [15:0] next_back;
+    reg [2:0] next_due;
+    reg [18:0] next_running;
+    reg [18:0] next_unfit;
+    reg [18:0] next_known;
+    reg [18:0] next_back;
     reg [2:0] next_seen;
     reg [2:0] next_lost;
-    reg [15:0] control_write_bits;
+    reg [18:0] control_write_bits;
 
-    wire [15:0] control_read_data;
+    wire [18:0] control_read_data;
     wire lasts_read_data;
 
-    wire [15:0] word = control_read_data;
+    wire [18:0] word = control_read_data;
     wire [2:0] old_live = word[2:0];
     wire [2:0] newest = word[5:3];
     wire [2:0] fresh_now = newest + ONE;
@@ -400,9 +408,13 @@ module carrystep_queue (
     wire stays = moves & !over;
     wire [2:0] missing = pulses - word[10:8];
     wire [2:0] unseen = losses ^ word[13:11];
+    wire [2:0] due = word[18:16];
+    wire fits_in = put_word == due;
+    wire commits = take & fits_in & (due == COMMIT);
 
     assign live = live_now;
     assign fresh = fresh_now;
+    assign misplaced = take & !fits_in;
     assign full = fresh_now == live_now;
     assign room = live_now + ~newest;
     assign empty = none;
@@ -442,7 +454,7 @@ module carrystep_queue (
 
     always @(*) begin
         lasts_write_bits = UNSET;
-        if (take & commit) begin
+        if (commits) begin
             lasts_write_bits = SET;
         end
     end
@@ -459,9 +471,14 @@ module carrystep_queue (
         if (committed) begin
             next_newest = fresh_now;
         end
+        next_due = due;
+        if (took) begin
+            next_due = due + ONE;
+        end
         if (clear) begin
             next_live = ZERO;
             next_newest = ZERO;
+            next_due = ZERO;
         end
     end
 
@@ -522,7 +539,7 @@ module carrystep_queue (
         .read_data(control_read_data),
         .write_address(axis),
         .write_bits(control_write_bits),
-        .write_data({13'b0, next_live} | ({13'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({13'b0, next_seen} << AT_8) | ({13'b0, next_lost} << AT_11))
+        .write_data({16'b0, next_live} | ({16'b0, next_newest} << AT_3) | next_running | next_unfit | next_known | next_back | ({16'b0, next_seen} << AT_8) | ({16'b0, next_lost} << AT_11) | ({16'b0, next_due} << AT_16))
     );
 
     carrystep_lasts lasts (
@@ -541,19 +558,23 @@ module carrystep_queue (
             gone <= (unseen != 3'd0) & !runs;
         end
         if (beat[0]) begin
+            took <= 1'b0;
             committed <= 1'b0;
         end
-        if (take & commit) begin
+        if (take) begin
+            took <= 1'b1;
+        end
+        if (commits) begin
             committed <= 1'b1;
         end
     end
 endmodule
 
-// Segments, which are also registers, and what an axis keeps between moves.
+// Memory of the segments, also used as registers, and of an axis' state between moves.
 module carrystep_segments #(
-    // 1: P starts at half a step; 0: P starts at zero; 0 or 1
+    // Start value of P: 1 half a step, 0 zero; 0 or 1
     parameter [31:0] START_HALF = 32'd1,
-    // Acceleration of the ramp of a controlled stop, in units of 2^-64 step per tick^2; 1 to 2^62
+    // Acceleration of the ramp in a controlled stop, in 2^-64 step per tick^2; 1 to 2^62
     parameter [63:0] STOP_ACCEL_0 = 64'hd6bf94d5e57,
     parameter [63:0] STOP_ACCEL_1 = 64'habcc7711846,
     parameter [63:0] STOP_ACCEL_2 = 64'ha10fafa06c1,
@@ -615,11 +636,11 @@ module carrystep_segments #(
     end
 endmodule
 
-// Where everything is in the memory of the axes.
+// The segment memory with its address selection: reads and writes the words of a time slot.
 module carrystep_store #(
-    // 1: P starts at half a step; 0: P starts at zero; 0 or 1
+    // Start value of P: 1 half a step, 0 zero; 0 or 1
     parameter [31:0] START_HALF = 32'd1,
-    // Acceleration of the ramp of a controlled stop, in units of 2^-64 step per tick^2; 1 to 2^62
+    // Acceleration of the ramp in a controlled stop, in 2^-64 step per tick^2; 1 to 2^62
     parameter [63:0] STOP_ACCEL_0 = 64'hd6bf94d5e57,
     parameter [63:0] STOP_ACCEL_1 = 64'habcc7711846,
     parameter [63:0] STOP_ACCEL_2 = 64'ha10fafa06c1,
@@ -842,9 +863,9 @@ module carrystep_store #(
     );
 endmodule
 
-// The beat: a strobe in the last cycle of each tick, and the phases in between.
+// The tick counter: a strobe in the last clock of each tick, and the phases of a tick.
 module carrystep_tick #(
-    // Length of a tick in clocks; 13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases
+    // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
     parameter [31:0] CLOCKS_PER_TICK = 32'd80
 ) (
     input  wire         clock,
@@ -852,7 +873,7 @@ module carrystep_tick #(
     output wire         phase_start,
     output wire   [3:0] phase
 );
-    // All bits of a counter that goes up to `greatest`.
+    // A mask of the bits that a counter from 0 to `greatest` uses.
     function [15:0] used_bits_16(input [15:0] greatest);
         begin
             used_bits_16 = greatest;
@@ -898,9 +919,9 @@ module carrystep_tick #(
     end
 endmodule
 
-// What the pins do in each phase of four ticks.
+// Memory of the event wheel: the steps of all axes in each phase of four ticks.
 module carrystep_rim #(
-    // Where the memory of events lies: in block RAM, or in LUTs for parts whose block RAMs write whole words only; "block" or "distributed"
+    // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
     input  wire         clock,
@@ -938,11 +959,11 @@ module carrystep_rim #(
     end
 endmodule
 
-// Events on their way to the pins.
+// The event wheel: holds the pending steps of all axes, ordered by tick and phase.
 module carrystep_wheel #(
-    // Length of a tick in clocks; 13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases
+    // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
     parameter [31:0] CLOCKS_PER_TICK = 32'd80,
-    // Where the memory of events lies: in block RAM, or in LUTs for parts whose block RAMs write whole words only; "block" or "distributed"
+    // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
     input  wire         clock,
@@ -1086,7 +1107,7 @@ module carrystep_wheel #(
     end
 endmodule
 
-// What is believed of each limit switch.
+// Memory of the debounced state of each limit switch, and its count of deviating samples.
 module carrystep_switches (
     input  wire         clock,
     input  wire   [3:0] read_address,
@@ -1112,13 +1133,13 @@ module carrystep_switches (
     end
 endmodule
 
-// The limit switches, one look in a turn.
+// Samples and debounces the limit switches, each in the time slot of its axis.
 module carrystep_limits #(
-    // Number of successive samples of the same level after which a limit's level is accepted; 1 to 127
+    // Equal consecutive samples, one per round, that change a limit's debounced state; 1 to 127
     parameter [31:0] DEBOUNCE_LOOKS = 32'd17,
-    // Limit switches: 0 none, 1 two an axis, 2 one an axis, 3 one for all axes; 0 to 3
+    // Limit switches: 0 none, 1 two per axis, 2 one per axis, 3 one for all axes; 0 to 3
     parameter [31:0] LIMITS = 32'd1,
-    // Level at which a limit is reached: 0 high, 1 low; 0 or 1
+    // Active level of the limit switches: 0 high, 1 low; 0 or 1
     parameter [31:0] LIMITS_LOW = 32'd0
 ) (
     input  wire         clock,
@@ -1132,6 +1153,7 @@ module carrystep_limits #(
     input  wire   [5:0] limit_max,
     input  wire         goes,
     input  wire         back,
+    input  wire         resetting,
     output wire         hit
 );
     localparam EXIST = LIMITS != 32'd0;
@@ -1177,7 +1199,7 @@ module carrystep_limits #(
     wire [7:0] word = switches_read_data;
     wire differs = now ^ word[7];
     wire flips = differs & (word[6:0] == LAST_LOOK);
-    wire state = word[7] ^ flips;
+    wire state = (word[7] ^ flips) & !resetting;
 
     assign hit = looks & (EXIST != 1'b0) & goes & state & (((PAIR != 1'b0) & (back ^ max)) | ((PAIR == 1'b0) & flips));
 
@@ -1204,7 +1226,7 @@ module carrystep_limits #(
 
     always @(*) begin
         count = NONE;
-        if (differs & !flips) begin
+        if (differs & !flips & !resetting) begin
             count = word[6:0] + ONE;
         end
     end
@@ -1238,7 +1260,7 @@ module carrystep_limits #(
     end
 endmodule
 
-// 
+// Homing: which axes wait for their limit, and which ones have reached it and ramp down.
 module carrystep_homes (
     input  wire         clock,
     input  wire         set,
@@ -1247,6 +1269,7 @@ module carrystep_homes (
     input  wire   [5:0] lane,
     input  wire         hit,
     input  wire         goes_on,
+    input  wire         resetting,
     output wire   [5:0] axes,
     output wire         waits,
     output wire         slows
@@ -1290,6 +1313,9 @@ module carrystep_homes (
         if (set) begin
             waiting <= mask;
         end
+        if (resetting) begin
+            waiting <= NONE;
+        end
         if (turn_ends) begin
             slowing <= slowing | slower;
             if (!goes_on) begin
@@ -1299,9 +1325,9 @@ module carrystep_homes (
     end
 endmodule
 
-// Who stops the axes, and how far the stop has come.
+// Latches the first cause of a stop, and controls the stop until the host clears it.
 module carrystep_stops #(
-    // What a limit does: 0 all axes ramp down, 1 all axes freeze; 0 or 1
+    // Effect of a limit: 0 all axes ramp down, 1 all axes freeze; 0 or 1
     parameter [31:0] LIMIT_FREEZES = 32'd0
 ) (
     input  wire         clock,
@@ -1319,11 +1345,15 @@ module carrystep_stops #(
     input  wire         asked,
     input  wire         clear,
     input  wire         pins_busy,
+    input  wire         ending,
+    input  wire         stage_2,
+    input  wire         completes,
     output wire         fault,
     output wire         finds,
     output wire         frozen,
     output wire         ramp,
     output wire         halted,
+    output wire         settles,
     output wire         clearing,
     output wire   [2:0] cause,
     output wire   [5:0] culprits
@@ -1360,7 +1390,7 @@ module carrystep_stops #(
     wire finds_now = turn_ends & (too_fast | limit | dry);
     wire urgent = (late != 6'd0) | (strobe & pressed) | breaks;
     wire ripe = strobe & found;
-    wire by_host = (strobe & missed) | asked;
+    wire by_host = (strobe & missed) | asked | ending;
     wire calls = urgent | ripe | by_host;
 
     assign fault = called;
@@ -1368,7 +1398,8 @@ module carrystep_stops #(
     assign frozen = freeze;
     assign ramp = slow;
     assign halted = still;
-    assign clearing = wiping;
+    assign settles = settled & !wiping;
+    assign clearing = wiping | stage_2;
     assign cause = first;
     assign culprits = axes;
 
@@ -1419,7 +1450,7 @@ module carrystep_stops #(
         if (calls) begin
             called <= 1'b1;
         end
-        if (urgent | (strobe & found_freezing)) begin
+        if (urgent | (strobe & found_freezing) | ending) begin
             freeze <= 1'b1;
         end
         if (strobe) begin
@@ -1429,8 +1460,8 @@ module carrystep_stops #(
             slow <= called | found;
             still <= freeze | found_freezing | (slow & !ran);
             settled <= still;
-            wiping <= clear & settled & !wiping & !pins_busy & !pressed;
-            if (wiping) begin
+            wiping <= clear & settled & !wiping & !pins_busy & !pressed & !ending;
+            if (wiping | completes) begin
                 called <= 1'b0;
                 freeze <= 1'b0;
                 slow <= 1'b0;
@@ -1441,15 +1472,57 @@ module carrystep_stops #(
     end
 endmodule
 
-// The e-stop, the host's signs of life, the drivers' power.
+// The reset: freezes the engine, waits for rest, and restores the state at configuration.
+module carrystep_resets (
+    input  wire         clock,
+    input  wire         strobe,
+    input  wire         reset,
+    input  wire         settled,
+    input  wire         pins_busy,
+    output wire         ending,
+    output wire         stage_1,
+    output wire         stage_2,
+    output wire         resetting,
+    output wire         completes,
+    output wire         restarts_round
+);
+
+    reg asked = 1'b0;
+    reg first = 1'b0;
+    reg second = 1'b0;
+
+    wire over = strobe & second & !reset;
+
+    assign ending = asked;
+    assign stage_1 = first;
+    assign stage_2 = second;
+    assign resetting = first | second;
+    assign completes = over;
+    assign restarts_round = asked & !first & (!second | strobe);
+
+    always @(posedge clock) begin
+        if (over) begin
+            asked <= 1'b0;
+        end
+        if (reset) begin
+            asked <= 1'b1;
+        end
+        if (strobe) begin
+            first <= asked & settled & !pins_busy & !first & !second;
+            second <= first | (second & reset);
+        end
+    end
+endmodule
+
+// Monitors the e-stop and the host (watchdog), and times the power of the drivers.
 module carrystep_watch #(
-    // Length of a round in ticks: the unit of the times below, and the time between two samples of a limit; a power of two from 2 to 1024
+    // Length of a round, the unit of the times below, in ticks; a power of two from 2 to 1024
     parameter [31:0] ROUND_TICKS = 32'd32,
-    // Time in rounds without a valid request after which all axes stop; 0: there is no watchdog; 0 to 4095
+    // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
     parameter [31:0] WATCHDOG_ROUNDS = 32'd3126,
-    // Time in rounds from the rise of `enabled` to the first start; 0 to 4095
+    // Rounds from the rising edge of `enabled` until starts are accepted; 0 to 4095
     parameter [31:0] ENABLE_ROUNDS = 32'd33,
-    // Level at which the e-stop is pressed: 0 high, 1 low; 0 or 1
+    // Active level of the e-stop: 0 high, 1 low; 0 or 1
     parameter [31:0] ESTOP_LOW = 32'd0
 ) (
     input  wire         clock,
@@ -1458,6 +1531,9 @@ module carrystep_watch #(
     input  wire         kick,
     input  wire         enable,
     input  wire         idle,
+    input  wire         ending,
+    input  wire         resetting,
+    input  wire         restarts_round,
     output wire         pressed,
     output wire         missed,
     output wire         enabled,
@@ -1465,7 +1541,7 @@ module carrystep_watch #(
     output wire         tick_0,
     output wire         tick_1
 );
-    // All bits of a counter that goes up to `greatest`.
+    // A mask of the bits that a counter from 0 to `greatest` uses.
     function [11:0] used_bits_12(input [11:0] greatest);
         begin
             used_bits_12 = greatest;
@@ -1527,31 +1603,34 @@ module carrystep_watch #(
         if (strobe) begin
             round <= (round + ONE_TICK) & ROUND_BITS;
         end
+        if (restarts_round) begin
+            round <= FIRST_TICK;
+        end
         if (round_over & !silent) begin
             silence <= (silence + ONE_ROUND) & SILENCE_BITS;
         end
-        if (kick) begin
+        if (kick | ending) begin
             silence <= NO_ROUND;
         end
-        power <= enable | (power & !idle);
+        power <= (enable | (power & !idle)) & !resetting;
         if (round_over & !is_warm) begin
             warmth <= (warmth + ONE_ROUND) & WARM_BITS;
         end
-        if (!power) begin
+        if (!power | ending) begin
             warmth <= NO_ROUND;
         end
     end
 endmodule
 
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+// Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.
 module carrystep_pulser #(
-    // W, least time in clocks for which STEP is high; 1 to 65536
+    // W, the minimum time in clocks for which STEP is high; 1 to 65536
     parameter [31:0] STEP_HIGH = 32'd8,
-    // S, least time in clocks for which STEP is low; 1 to 65536
+    // S, the minimum time in clocks for which STEP is low; 1 to 65536
     parameter [31:0] STEP_LOW = 32'd8,
-    // D, least time in clocks from a change of DIR to a rise of STEP; 1 to 65536
+    // D, the minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
     parameter [31:0] DIR_SETUP = 32'd2,
-    // H, least time in clocks from a rise of STEP to a change of DIR; 1 to 65536
+    // H, the minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
     parameter [31:0] DIR_HOLD = 32'd2
 ) (
     input  wire         clock,
@@ -1566,7 +1645,7 @@ module carrystep_pulser #(
     output wire   [5:0] counts,
     output wire         overruns
 );
-    // All bits of a counter that goes up to `greatest`.
+    // A mask of the bits that a counter from 0 to `greatest` uses.
     function [15:0] used_bits_16(input [15:0] greatest);
         begin
             used_bits_16 = greatest;
@@ -1576,7 +1655,7 @@ module carrystep_pulser #(
             used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
         end
     endfunction
-    // All bits of a counter that goes up to `greatest`.
+    // A mask of the bits that a counter from 0 to `greatest` uses.
     function [16:0] used_bits_17(input [16:0] greatest);
         begin
             used_bits_17 = greatest;
@@ -1700,64 +1779,64 @@ module carrystep_pulser #(
     end
 endmodule
 
-// Axes on one adder, their queues, starts, and the guard.
+// The engine: all axes on one adder, with their queues, starts, stops and pins.
 module carrystep_engine #(
-    // Length of a tick in clocks; 13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases
+    // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
     parameter [31:0] CLOCKS_PER_TICK = 32'd80,
-    // 1: P starts at half a step; 0: P starts at zero; 0 or 1
+    // Start value of P: 1 half a step, 0 zero; 0 or 1
     parameter [31:0] START_HALF = 32'd1,
-    // W, least time in clocks for which STEP is high; 1 to 65536
+    // W, the minimum time in clocks for which STEP is high; 1 to 65536
     parameter [31:0] STEP_HIGH_0 = 32'd8,
     parameter [31:0] STEP_HIGH_1 = 32'd80,
     parameter [31:0] STEP_HIGH_2 = 32'd152,
     parameter [31:0] STEP_HIGH_3 = 32'd200,
     parameter [31:0] STEP_HIGH_4 = 32'd8,
     parameter [31:0] STEP_HIGH_5 = 32'd240,
-    // S, least time in clocks for which STEP is low; 1 to 65536
+    // S, the minimum time in clocks for which STEP is low; 1 to 65536
     parameter [31:0] STEP_LOW_0 = 32'd8,
     parameter [31:0] STEP_LOW_1 = 32'd80,
     parameter [31:0] STEP_LOW_2 = 32'd152,
     parameter [31:0] STEP_LOW_3 = 32'd200,
     parameter [31:0] STEP_LOW_4 = 32'd8,
     parameter [31:0] STEP_LOW_5 = 32'd240,
-    // D, least time in clocks from a change of DIR to a rise of STEP; 1 to 65536
+    // D, the minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
     parameter [31:0] DIR_SETUP_0 = 32'd2,
     parameter [31:0] DIR_SETUP_1 = 32'd16,
     parameter [31:0] DIR_SETUP_2 = 32'd52,
     parameter [31:0] DIR_SETUP_3 = 32'd400,
     parameter [31:0] DIR_SETUP_4 = 32'd2,
     parameter [31:0] DIR_SETUP_5 = 32'd120,
-    // H, least time in clocks from a rise of STEP to a change of DIR; 1 to 65536
+    // H, the minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
     parameter [31:0] DIR_HOLD_0 = 32'd2,
     parameter [31:0] DIR_HOLD_1 = 32'd16,
     parameter [31:0] DIR_HOLD_2 = 32'd52,
     parameter [31:0] DIR_HOLD_3 = 32'd400,
     parameter [31:0] DIR_HOLD_4 = 32'd2,
     parameter [31:0] DIR_HOLD_5 = 32'd120,
-    // Acceleration of the ramp of a controlled stop, in units of 2^-64 step per tick^2; 1 to 2^62
+    // Acceleration of the ramp in a controlled stop, in 2^-64 step per tick^2; 1 to 2^62
     parameter [63:0] STOP_ACCEL_0 = 64'hd6bf94d5e57,
     parameter [63:0] STOP_ACCEL_1 = 64'habcc7711846,
     parameter [63:0] STOP_ACCEL_2 = 64'ha10fafa06c1,
     parameter [63:0] STOP_ACCEL_3 = 64'h5f71977b826,
     parameter [63:0] STOP_ACCEL_4 = 64'hee9bfab4c61,
     parameter [63:0] STOP_ACCEL_5 = 64'h2843ebe81b0,
-    // Length of a round in ticks: the unit of the times below, and the time between two samples of a limit; a power of two from 2 to 1024
+    // Length of a round, the unit of the times below, in ticks; a power of two from 2 to 1024
     parameter [31:0] ROUND_TICKS = 32'd32,
-    // Time in rounds without a valid request after which all axes stop; 0: there is no watchdog; 0 to 4095
+    // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
     parameter [31:0] WATCHDOG_ROUNDS = 32'd3126,
-    // Time in rounds from the rise of `enabled` to the first start; 0 to 4095
+    // Rounds from the rising edge of `enabled` until starts are accepted; 0 to 4095
     parameter [31:0] ENABLE_ROUNDS = 32'd33,
-    // Number of successive samples of the same level after which a limit's level is accepted; 1 to 127
+    // Equal consecutive samples, one per round, that change a limit's debounced state; 1 to 127
     parameter [31:0] DEBOUNCE_LOOKS = 32'd17,
-    // Limit switches: 0 none, 1 two an axis, 2 one an axis, 3 one for all axes; 0 to 3
+    // Limit switches: 0 none, 1 two per axis, 2 one per axis, 3 one for all axes; 0 to 3
     parameter [31:0] LIMITS = 32'd1,
-    // Level at which a limit is reached: 0 high, 1 low; 0 or 1
+    // Active level of the limit switches: 0 high, 1 low; 0 or 1
     parameter [31:0] LIMITS_LOW = 32'd0,
-    // What a limit does: 0 all axes ramp down, 1 all axes freeze; 0 or 1
+    // Effect of a limit: 0 all axes ramp down, 1 all axes freeze; 0 or 1
     parameter [31:0] LIMIT_FREEZES = 32'd0,
-    // Level at which the e-stop is pressed: 0 high, 1 low; 0 or 1
+    // Active level of the e-stop: 0 high, 1 low; 0 or 1
     parameter [31:0] ESTOP_LOW = 32'd0,
-    // Where the memory of events lies: in block RAM, or in LUTs for parts whose block RAMs write whole words only; "block" or "distributed"
+    // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
     input  wire         clock,
@@ -1770,6 +1849,7 @@ module carrystep_engine #(
     input  wire   [5:0] start_mask,
     output wire         start_ready,
     input  wire         clear,
+    input  wire         reset,
     input  wire         stop,
     input  wire         broken,
     input  wire         home_valid,
@@ -1793,6 +1873,7 @@ module carrystep_engine #(
     output wire         idle,
     output wire         fault,
     output wire         halted,
+    output wire         resetting,
     output wire   [2:0] cause,
     output wire   [5:0] culprits,
     output wire         armed,
@@ -1860,6 +1941,7 @@ module carrystep_engine #(
     wire [3:0] adder_q;
     wire [2:0] queue_live;
     wire [2:0] queue_fresh;
+    wire queue_misplaced;
     wire queue_full;
     wire [2:0] queue_room;
     wire queue_empty;
@@ -1889,9 +1971,15 @@ module carrystep_engine #(
     wire stops_frozen;
     wire stops_ramp;
     wire stops_halted;
+    wire stops_settles;
     wire stops_clearing;
     wire [2:0] stops_cause;
     wire [5:0] stops_culprits;
+    wire resets_ending;
+    wire resets_stage_2;
+    wire resets_resetting;
+    wire resets_completes;
+    wire resets_restarts_round;
     wire watch_pressed;
     wire watch_missed;
     wire watch_enabled;
@@ -1964,6 +2052,7 @@ module carrystep_engine #(
     assign idle = rests;
     assign fault = stops_fault;
     assign halted = stops_halted;
+    assign resetting = resets_resetting;
     assign cause = stops_cause;
     assign culprits = stops_culprits;
     assign armed = waits;
@@ -2104,6 +2193,7 @@ module carrystep_engine #(
         .up(queue_up),
         .down(queue_down),
         .wipe(stops_clearing),
+        .forgets(resets_stage_2),
         .sum(adder_sum),
         .ended(adder_ended),
         .overflow(adder_overflow),
@@ -2126,7 +2216,7 @@ module carrystep_engine #(
         .clear(stops_clearing),
         .empties(homes_slows & !queue_goes_on),
         .take(take),
-        .commit(put_word == COMMIT),
+        .put_word(put_word),
         .last(put_data[0]),
         .ended(adder_ended),
         .overflow(adder_overflow),
@@ -2137,6 +2227,7 @@ module carrystep_engine #(
         .losses(counts[5:3]),
         .live(queue_live),
         .fresh(queue_fresh),
+        .misplaced(queue_misplaced),
         .full(queue_full),
         .room(queue_room),
         .empty(queue_empty),
@@ -2217,6 +2308,7 @@ module carrystep_engine #(
         .limit_max(limit_max),
         .goes(queue_moves & !adder_still),
         .back(adder_back),
+        .resetting(resets_resetting),
         .hit(limits_hit)
     );
 
@@ -2228,6 +2320,7 @@ module carrystep_engine #(
         .lane(turn_lane),
         .hit(limits_hit),
         .goes_on(queue_goes_on),
+        .resetting(resets_resetting),
         .axes(homes_axes),
         .waits(homes_waits),
         .slows(homes_slows)
@@ -2246,19 +2339,37 @@ module carrystep_engine #(
         .dry(queue_dry),
         .late(late),
         .pressed(watch_pressed),
-        .breaks((((put_valid & nobody) | broken) & !stops_fault) | (decides & unfed)),
+        .breaks((((put_valid & nobody) | broken | queue_misplaced) & !stops_fault) | (decides & unfed)),
         .missed(watch_missed & !rest_2),
         .asked(stop),
         .clear(clear),
         .pins_busy(pins_busy),
+        .ending(resets_ending),
+        .stage_2(resets_stage_2),
+        .completes(resets_completes),
         .fault(stops_fault),
         .finds(stops_finds),
         .frozen(stops_frozen),
         .ramp(stops_ramp),
         .halted(stops_halted),
+        .settles(stops_settles),
         .clearing(stops_clearing),
         .cause(stops_cause),
         .culprits(stops_culprits)
+    );
+
+    carrystep_resets resets (
+        .clock(clock),
+        .strobe(strobe),
+        .reset(reset),
+        .settled(stops_settles),
+        .pins_busy(pins_busy),
+        .ending(resets_ending),
+        .stage_1(),
+        .stage_2(resets_stage_2),
+        .resetting(resets_resetting),
+        .completes(resets_completes),
+        .restarts_round(resets_restarts_round)
     );
 
     carrystep_watch #(
@@ -2273,6 +2384,9 @@ module carrystep_engine #(
         .kick(kick),
         .enable(enable),
         .idle(rests),
+        .ending(resets_ending),
+        .resetting(resets_resetting),
+        .restarts_round(resets_restarts_round),
         .pressed(watch_pressed),
         .missed(watch_missed),
         .enabled(watch_enabled),
@@ -2431,6 +2545,10 @@ module carrystep_engine #(
         if (take) begin
             rest_1 <= 1'b0;
             rest_2 <= 1'b0;
+        end
+        if (resets_completes) begin
+            rest_1 <= 1'b1;
+            rest_2 <= 1'b1;
         end
     end
 endmodule

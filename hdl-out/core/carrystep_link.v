@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// carrystep_link: the host link of an engine. Generated: change the generator, not this file.
+// carrystep_link: the host link of an engine.
+// This file is generated: change the generator instead.
 //
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 //
-// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
-// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
+// the host link too: by this id the host knows the parameters for which it plans moves. With the id
+// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
 //
 // Clock        80000000 Hz
 // Line         uart, 87 clocks a bit
-// Build id     1ebc2175b88c2fbf
+// Build id     1fe1f986e7ca9793
 
 `default_nettype none
 
-// What it does.
+// Program memory of the processor carrystep_machine.
 module carrystep_instructions (
     input  wire         clock,
     input  wire   [7:0] read_address,
@@ -258,7 +260,7 @@ module carrystep_instructions (
     end
 endmodule
 
-// A request and the answer to it, constants, and what is remembered.
+// Data memory of carrystep_machine: the request, its answer, constants and variables.
 module carrystep_data (
     input  wire         clock,
     input  wire   [7:0] read_address,
@@ -309,7 +311,7 @@ module carrystep_data (
     end
 endmodule
 
-// Received bytes that wait.
+// Ring buffer of the received bytes that the processor has not read yet.
 module carrystep_ring (
     input  wire         clock,
     input  wire   [7:0] read_address,
@@ -335,7 +337,7 @@ module carrystep_ring (
     end
 endmodule
 
-// The CRC of frames.
+// Computes the CRC-32 of frames, and assembles words from bytes; one bit per clock.
 module carrystep_check (
     input  wire         clock,
     input  wire         begins,
@@ -383,7 +385,7 @@ module carrystep_check (
     end
 endmodule
 
-// The little machine that reads requests and writes answers.
+// A small processor that reads the host's requests, executes them and writes the answers.
 module carrystep_machine (
     input  wire         clock,
     input  wire         received,
@@ -679,17 +681,17 @@ module carrystep_machine (
     end
 endmodule
 
-// Facts of the build, and what the engine has last said of its axes.
+// Memory of carrystep_facts: constants of the build, and the last known state of each axis.
 module carrystep_known #(
-    // Build id, which the host compares before it uses the gateware: whoever overrides any other parameter must override it too; any, but for each set of parameters another one
-    parameter [63:0] BUILD_ID = 64'h1ebc2175b88c2fbf,
-    // Frequency of the clock in Hz, told to the host; 1 to 10^9
+    // Build id: override it whenever you override another parameter; unique per set of parameters
+    parameter [63:0] BUILD_ID = 64'h1fe1f986e7ca9793,
+    // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
-    // Length of a tick in ns, told to the host; 1 to 2^32 - 1
+    // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
     parameter [31:0] TICK_NS = 32'd1000,
-    // Length of a round in ticks: the unit of the times below, and the time between two samples of a limit; a power of two from 2 to 1024
+    // Length of a round, the unit of the times below, in ticks; a power of two from 2 to 1024
     parameter [31:0] ROUND_TICKS = 32'd32,
-    // Time in rounds without a valid request after which all axes stop; 0: there is no watchdog; 0 to 4095
+    // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
     parameter [31:0] WATCHDOG_ROUNDS = 32'd3126
 ) (
     input  wire         clock,
@@ -725,17 +727,17 @@ module carrystep_known #(
     end
 endmodule
 
-// What can be read.
+// What the host can read: constants of the build, and the last known state of each axis.
 module carrystep_facts #(
-    // Build id, which the host compares before it uses the gateware: whoever overrides any other parameter must override it too; any, but for each set of parameters another one
-    parameter [63:0] BUILD_ID = 64'h1ebc2175b88c2fbf,
-    // Frequency of the clock in Hz, told to the host; 1 to 10^9
+    // Build id: override it whenever you override another parameter; unique per set of parameters
+    parameter [63:0] BUILD_ID = 64'h1fe1f986e7ca9793,
+    // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
-    // Length of a tick in ns, told to the host; 1 to 2^32 - 1
+    // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
     parameter [31:0] TICK_NS = 32'd1000,
-    // Length of a round in ticks: the unit of the times below, and the time between two samples of a limit; a power of two from 2 to 1024
+    // Length of a round, the unit of the times below, in ticks; a power of two from 2 to 1024
     parameter [31:0] ROUND_TICKS = 32'd32,
-    // Time in rounds without a valid request after which all axes stop; 0: there is no watchdog; 0 to 4095
+    // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
     parameter [31:0] WATCHDOG_ROUNDS = 32'd3126
 ) (
     input  wire         clock,
@@ -804,17 +806,17 @@ module carrystep_facts #(
     end
 endmodule
 
-// The host link: bytes in, words of segments out.
+// The host link: receives requests, passes segments to the engine and sends answers.
 module carrystep_link #(
-    // Build id, which the host compares before it uses the gateware: whoever overrides any other parameter must override it too; any, but for each set of parameters another one
-    parameter [63:0] BUILD_ID = 64'h1ebc2175b88c2fbf,
-    // Frequency of the clock in Hz, told to the host; 1 to 10^9
+    // Build id: override it whenever you override another parameter; unique per set of parameters
+    parameter [63:0] BUILD_ID = 64'h1fe1f986e7ca9793,
+    // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
-    // Length of a tick in ns, told to the host; 1 to 2^32 - 1
+    // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
     parameter [31:0] TICK_NS = 32'd1000,
-    // Length of a round in ticks: the unit of the times below, and the time between two samples of a limit; a power of two from 2 to 1024
+    // Length of a round, the unit of the times below, in ticks; a power of two from 2 to 1024
     parameter [31:0] ROUND_TICKS = 32'd32,
-    // Time in rounds without a valid request after which all axes stop; 0: there is no watchdog; 0 to 4095
+    // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
     parameter [31:0] WATCHDOG_ROUNDS = 32'd3126
 ) (
     input  wire         clock,

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// carrystep_six_axis: step and direction for six axes. Generated: change the generator, not this file.
+// carrystep_six_axis: step and direction for six axes.
+// This file is generated: change the generator instead.
 //
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 //
-// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
-// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
+// the host link too: by this id the host knows the parameters for which it plans moves. With the id
+// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
 //
 // Clock        80000000 Hz
 // Tick         1000 ns, 80 clocks in 16 phases
@@ -22,9 +24,9 @@
 
 `default_nettype none
 
-// The beat: a strobe in the last cycle of each tick, and the phases in between.
+// The tick counter: a strobe in the last clock of each tick, and the phases of a tick.
 module carrystep_tick #(
-    // Length of a tick in clocks; 13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases
+    // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
     parameter [31:0] CLOCKS_PER_TICK = 32'd80
 ) (
     input  wire         clock,
@@ -32,7 +34,7 @@ module carrystep_tick #(
     output wire         phase_start,
     output wire   [3:0] phase
 );
-    // All bits of a counter that goes up to `greatest`.
+    // A mask of the bits that a counter from 0 to `greatest` uses.
     function [15:0] used_bits_16(input [15:0] greatest);
         begin
             used_bits_16 = greatest;
@@ -78,7 +80,7 @@ module carrystep_tick #(
     end
 endmodule
 
-// The running and the waiting segment of an axis.
+// Holds the running segment of an axis and one waiting segment.
 module carrystep_sequencer (
     input  wire         clock,
     input  wire         strobe,
@@ -157,7 +159,7 @@ module carrystep_sequencer (
     end
 endmodule
 
-// When in its tick a step is due: bisection, then the request to the shaper.
+// Finds the phase of a step in its tick by bisection; requests the step in that phase.
 module carrystep_step_edge (
     input  wire         clock,
     input  wire         strobe,
@@ -247,9 +249,9 @@ module carrystep_step_edge (
     end
 endmodule
 
-// One axis: P, V, A and J. Every carry is a step. The last five ports are there to be watched.
+// One axis: P, V, A, J. Each carry of P is a step. The last five ports are for observation.
 module carrystep_axis #(
-    // 1: P starts at half a step; 0: P starts at zero; 0 or 1
+    // Start value of P: 1 half a step, 0 zero; 0 or 1
     parameter [31:0] START_HALF = 32'd1
 ) (
     input  wire         clock,
@@ -423,15 +425,15 @@ module carrystep_axis #(
     end
 endmodule
 
-// STEP and DIR with the width, gap, set-up and hold that the driver asks for.
+// Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.
 module carrystep_shaper #(
-    // W, least time in clocks for which STEP is high; 1 to 65536
+    // W, the minimum time in clocks for which STEP is high; 1 to 65536
     parameter [31:0] STEP_HIGH = 32'd8,
-    // S, least time in clocks for which STEP is low; 1 to 65536
+    // S, the minimum time in clocks for which STEP is low; 1 to 65536
     parameter [31:0] STEP_LOW = 32'd8,
-    // D, least time in clocks from a change of DIR to a rise of STEP; 1 to 65536
+    // D, the minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
     parameter [31:0] DIR_SETUP = 32'd2,
-    // H, least time in clocks from a rise of STEP to a change of DIR; 1 to 65536
+    // H, the minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
     parameter [31:0] DIR_HOLD = 32'd2
 ) (
     input  wire         clock,
@@ -448,7 +450,7 @@ module carrystep_shaper #(
     output wire  [31:0] discarded,
     output wire         overrun
 );
-    // All bits of a counter that goes up to `greatest`.
+    // A mask of the bits that a counter from 0 to `greatest` uses.
     function [15:0] used_bits_16(input [15:0] greatest);
         begin
             used_bits_16 = greatest;
@@ -458,7 +460,7 @@ module carrystep_shaper #(
             used_bits_16 = used_bits_16 | (used_bits_16 >> 8);
         end
     endfunction
-    // All bits of a counter that goes up to `greatest`.
+    // A mask of the bits that a counter from 0 to `greatest` uses.
     function [16:0] used_bits_17(input [16:0] greatest);
         begin
             used_bits_17 = greatest;
@@ -588,34 +590,34 @@ module carrystep_shaper #(
     end
 endmodule
 
-// Six axes on one tick, the door for segments and starts, and the freeze.
+// Six parallel axes on one tick counter: accepts segments and starts, freezes at a fault.
 module carrystep_six_axis #(
-    // Length of a tick in clocks; 13 for each axis and 1, and 2 for each phase, to 65536; a multiple of the phases
+    // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
     parameter [31:0] CLOCKS_PER_TICK = 32'd80,
-    // 1: P starts at half a step; 0: P starts at zero; 0 or 1
+    // Start value of P: 1 half a step, 0 zero; 0 or 1
     parameter [31:0] START_HALF = 32'd1,
-    // W, least time in clocks for which STEP is high; 1 to 65536
+    // W, the minimum time in clocks for which STEP is high; 1 to 65536
     parameter [31:0] STEP_HIGH_0 = 32'd8,
     parameter [31:0] STEP_HIGH_1 = 32'd80,
     parameter [31:0] STEP_HIGH_2 = 32'd152,
     parameter [31:0] STEP_HIGH_3 = 32'd200,
     parameter [31:0] STEP_HIGH_4 = 32'd8,
     parameter [31:0] STEP_HIGH_5 = 32'd240,
-    // S, least time in clocks for which STEP is low; 1 to 65536
+    // S, the minimum time in clocks for which STEP is low; 1 to 65536
     parameter [31:0] STEP_LOW_0 = 32'd8,
     parameter [31:0] STEP_LOW_1 = 32'd80,
     parameter [31:0] STEP_LOW_2 = 32'd152,
     parameter [31:0] STEP_LOW_3 = 32'd200,
     parameter [31:0] STEP_LOW_4 = 32'd8,
     parameter [31:0] STEP_LOW_5 = 32'd240,
-    // D, least time in clocks from a change of DIR to a rise of STEP; 1 to 65536
+    // D, the minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
     parameter [31:0] DIR_SETUP_0 = 32'd2,
     parameter [31:0] DIR_SETUP_1 = 32'd16,
     parameter [31:0] DIR_SETUP_2 = 32'd52,
     parameter [31:0] DIR_SETUP_3 = 32'd400,
     parameter [31:0] DIR_SETUP_4 = 32'd2,
     parameter [31:0] DIR_SETUP_5 = 32'd120,
-    // H, least time in clocks from a rise of STEP to a change of DIR; 1 to 65536
+    // H, the minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
     parameter [31:0] DIR_HOLD_0 = 32'd2,
     parameter [31:0] DIR_HOLD_1 = 32'd16,
     parameter [31:0] DIR_HOLD_2 = 32'd52,

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// carrystep_spi: the line to the host. Generated: change the generator, not this file.
+// carrystep_spi: the line to the host.
+// This file is generated: change the generator instead.
 //
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 //
-// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
-// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
+// the host link too: by this id the host knows the parameters for which it plans moves. With the id
+// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
 //
 // Line         spi
 
 `default_nettype none
 
-// SPI mode 0, the host's clock up to a fifth of this one.
+// An SPI peripheral in mode 0; SCK may be up to a fifth of the clock.
 module carrystep_spi (
     input  wire         clock,
     input  wire         sck,

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// carrystep_uart: the line to the host. Generated: change the generator, not this file.
+// carrystep_uart: the line to the host.
+// This file is generated: change the generator instead.
 //
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 //
-// Numbers are parameters. Whoever overrides one must override BUILD_ID of the host link too: the host plans moves for
-// the parameters that it knows by this id, so with an id of other parameters it is unsafe. The defaults:
+// The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
+// the host link too: by this id the host knows the parameters for which it plans moves. With the id
+// of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
 //
 // Line         uart, 87 clocks a bit
 
 `default_nettype none
 
-// Bytes from the line.
+// The UART receiver: eight data bits, no parity, one stop bit.
 module carrystep_uart_in #(
-    // Length of a bit of the UART in clocks: clock / baud rate; 8 to 40000
+    // Length of a UART bit in clocks: clock frequency / baud rate; 8 to 40000
     parameter [31:0] BIT_CLOCKS = 32'd87
 ) (
     input  wire         clock,
@@ -22,7 +24,7 @@ module carrystep_uart_in #(
     output wire   [7:0] data,
     output wire         valid
 );
-    // All bits of a counter that goes up to `greatest`.
+    // A mask of the bits that a counter from 0 to `greatest` uses.
     function [15:0] used_bits_16(input [15:0] greatest);
         begin
             used_bits_16 = greatest;
@@ -82,9 +84,9 @@ module carrystep_uart_in #(
     end
 endmodule
 
-// Bytes to the line.
+// The UART transmitter: eight data bits, no parity, one stop bit.
 module carrystep_uart_out #(
-    // Length of a bit of the UART in clocks: clock / baud rate; 8 to 40000
+    // Length of a UART bit in clocks: clock frequency / baud rate; 8 to 40000
     parameter [31:0] BIT_CLOCKS = 32'd87
 ) (
     input  wire         clock,
@@ -93,7 +95,7 @@ module carrystep_uart_out #(
     output wire         take,
     output wire         line
 );
-    // All bits of a counter that goes up to `greatest`.
+    // A mask of the bits that a counter from 0 to `greatest` uses.
     function [15:0] used_bits_16(input [15:0] greatest);
         begin
             used_bits_16 = greatest;
@@ -136,9 +138,9 @@ module carrystep_uart_out #(
     end
 endmodule
 
-// A UART, both directions.
+// A UART: receiver and transmitter.
 module carrystep_uart #(
-    // Length of a bit of the UART in clocks: clock / baud rate; 8 to 40000
+    // Length of a UART bit in clocks: clock frequency / baud rate; 8 to 40000
     parameter [31:0] BIT_CLOCKS = 32'd87
 ) (
     input  wire         clock,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The top level for Lattice iCEstick: clock, host link and engine on its pins. Generated: change the generator, not this file.
+// The top level for this board: Lattice iCEstick.
+// It connects the clock, the line to the host, the host link and the engine to the pins. This file
+// is generated: change the generator instead.
 
 `default_nettype none
 
@@ -15,7 +17,8 @@ module carrystep_icestick_top (
     output wire [5:0] step,
     output wire [5:0] dir
 );
-    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    // No module has a reset. Every register keeps the initial value that the bitstream gives it
+    // until this clock starts.
     wire clock;
     carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
 
@@ -70,7 +73,7 @@ module carrystep_icestick_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h989248c194cc5f5a),
+        .BUILD_ID(64'he0223e5f83e2d4ef),
         .CLOCK_HZ(32'h2dc6c00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -198,10 +201,12 @@ module carrystep_icestick_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 
-    // Lit: the gateware is loaded, and no stop has been called.
+    // The LED is lit while the gateware is loaded and no stop is latched.
     assign led = !fault;
 endmodule
 

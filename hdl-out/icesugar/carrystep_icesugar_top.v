@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The top level for Muselab iCESugar v1.5: clock, host link and engine on its pins. Generated: change the generator, not this file.
+// The top level for this board: Muselab iCESugar v1.5.
+// It connects the clock, the line to the host, the host link and the engine to the pins. This file
+// is generated: change the generator instead.
 
 `default_nettype none
 
@@ -15,7 +17,8 @@ module carrystep_icesugar_top (
     output wire [5:0] step,
     output wire [5:0] dir
 );
-    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    // No module has a reset. Every register keeps the initial value that the bitstream gives it
+    // until this clock starts.
     wire clock;
     carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
 
@@ -70,7 +73,7 @@ module carrystep_icesugar_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h425c404767c938c1),
+        .BUILD_ID(64'h100d37a0fa7e0dbe),
         .CLOCK_HZ(32'h1c9c380),
         .TICK_NS(32'd3200),
         .ROUND_TICKS(32'd8),
@@ -198,10 +201,12 @@ module carrystep_icesugar_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 
-    // Lit: the gateware is loaded, and no stop has been called.
+    // The LED is lit while the gateware is loaded and no stop is latched.
     assign led = fault;
 endmodule
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The top level for Embedded Micro (Alchitry) Mojo v3: clock, host link and engine on its pins. Generated: change the generator, not this file.
+// The top level for this board: Embedded Micro (Alchitry) Mojo v3.
+// It connects the clock, the line to the host, the host link and the engine to the pins. This file
+// is generated: change the generator instead.
 
 `default_nettype none
 
@@ -16,7 +18,8 @@ module carrystep_mojo_v3_top (
     output wire [5:0] step,
     output wire [5:0] dir
 );
-    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    // No module has a reset. Every register keeps the initial value that the bitstream gives it
+    // until this clock starts.
     wire clock;
     carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
 
@@ -72,8 +75,8 @@ module carrystep_mojo_v3_top (
     );
 
     // cclk: the AVR configures the FPGA over these lines: nothing drives them before it says that it is done.
-    // cclk has been 1 for 32768 clocks before the lines to the host are driven, and they have high
-    // impedance again as soon as it is 0.
+    // The outputs to the host are driven only after cclk has been 1 for this number of
+    // clocks: 32768. They have high impedance again as soon as it is 0.
     reg [1:0] cclk_seen = 2'd0;
     reg [15:0] cclk_waited = 16'd0;
     always @(posedge clock) begin
@@ -85,7 +88,7 @@ module carrystep_mojo_v3_top (
     assign uart_tx = driven ? uart_tx_out : 1'bz;
 
     carrystep_link #(
-        .BUILD_ID(64'h57336b646218b9ad),
+        .BUILD_ID(64'hff2ba82297bf515f),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),
@@ -213,10 +216,12 @@ module carrystep_mojo_v3_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 
-    // Lit: the gateware is loaded, and no stop has been called.
+    // The LED is lit while the gateware is loaded and no stop is latched.
     assign led = !fault;
 endmodule
 

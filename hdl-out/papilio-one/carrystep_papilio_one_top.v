@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The top level for Gadget Factory Papilio One: clock, host link and engine on its pins. Generated: change the generator, not this file.
+// The top level for this board: Gadget Factory Papilio One.
+// It connects the clock, the line to the host, the host link and the engine to the pins. This file
+// is generated: change the generator instead.
 
 `default_nettype none
 
@@ -14,7 +16,8 @@ module carrystep_papilio_one_top (
     output wire [5:0] step,
     output wire [5:0] dir
 );
-    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    // No module has a reset. Every register keeps the initial value that the bitstream gives it
+    // until this clock starts.
     wire clock;
     carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
 
@@ -69,7 +72,7 @@ module carrystep_papilio_one_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'hcddabf5010e0b680),
+        .BUILD_ID(64'h725c0f2b297fa6fe),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -197,7 +200,9 @@ module carrystep_papilio_one_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 endmodule
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The top level for TinyFPGA BX: clock, host link and engine on its pins. Generated: change the generator, not this file.
+// The top level for this board: TinyFPGA BX.
+// It connects the clock, the line to the host, the host link and the engine to the pins. This file
+// is generated: change the generator instead.
 
 `default_nettype none
 
@@ -16,7 +18,8 @@ module carrystep_tinyfpga_bx_top (
     output wire [5:0] step,
     output wire [5:0] dir
 );
-    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    // No module has a reset. Every register keeps the initial value that the bitstream gives it
+    // until this clock starts.
     wire clock;
     carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
 
@@ -71,7 +74,7 @@ module carrystep_tinyfpga_bx_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'hcddabf5010e0b680),
+        .BUILD_ID(64'h725c0f2b297fa6fe),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -199,10 +202,12 @@ module carrystep_tinyfpga_bx_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 
-    // Lit: the gateware is loaded, and no stop has been called.
+    // The LED is lit while the gateware is loaded and no stop is latched.
     assign led = !fault;
 
     assign usb_pullup = 1'b0; // low: the board is no USB device while the gateware runs

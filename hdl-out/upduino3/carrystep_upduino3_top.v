@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The top level for tinyVision UPduino v3.0 and v3.1: clock, host link and engine on its pins. Generated: change the generator, not this file.
+// The top level for this board: tinyVision UPduino v3.0 and v3.1.
+// It connects the clock, the line to the host, the host link and the engine to the pins. This file
+// is generated: change the generator instead.
 
 `default_nettype none
 
@@ -16,7 +18,8 @@ module carrystep_upduino3_top (
     output wire [5:0] step,
     output wire [5:0] dir
 );
-    // Nothing has a reset: all comes up as the bitstream says, and stays so until this clock begins.
+    // No module has a reset. Every register keeps the initial value that the bitstream gives it
+    // until this clock starts.
     wire clock;
     carrystep_clock clock_of_all (.oscillator(oscillator), .clock(clock));
 
@@ -71,7 +74,7 @@ module carrystep_upduino3_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h1086d52cd6b55a1b),
+        .BUILD_ID(64'ha127af722b2a6c66),
         .CLOCK_HZ(32'h23c3460),
         .TICK_NS(32'd2560),
         .ROUND_TICKS(32'd16),
@@ -199,10 +202,12 @@ module carrystep_upduino3_top (
         .step(step),
         .dir(dir),
         .enabled(enabled),
-        .started()
+        .started(),
+        .reset(1'b0), // the host stops and clears; it needs no reset
+        .resetting()
     );
 
-    // Lit: the gateware is loaded, and no stop has been called.
+    // The LED is lit while the gateware is loaded and no stop is latched.
     assign led = fault;
 
     assign flash_cs_n = 1'b1; // high: the UART shares two pins with the flash, which must not listen
