@@ -9,7 +9,10 @@
 //! ```
 //!
 //! Interface: the host sets the mask of waiting axes; [`super::limits`] reports a reached limit;
-//! the queue ramps the axis down while `slows` is asserted in its time slot.
+//! the queue ramps the axis down while `slows` is asserted in its time slot. The ramp begins with
+//! the tick after the one in which the limit was reached: in that tick's slot, `slows` is still low.
+//! So an armed start waits for an axis in its ramp, but not for an axis that reaches its limit in
+//! the last tick that it executes.
 //!
 //! Cost: two flip-flops per axis, and one that provides `slows` from the first beat of a slot on.
 
@@ -39,7 +42,7 @@ pub struct Homes<const N: usize> {
     pub axes: Signal<Out, Word<N>>,
     /// The axis of the slot waits for its limit.
     pub waits: Signal<Out, Bit>,
-    /// The axis of the slot has reached its limit and ramps down.
+    /// The axis of the slot has reached its limit in an earlier tick and ramps down.
     pub slows: Signal<Out, Bit>,
     waiting: Register<Word<N>>,
     slowing: Register<Word<N>>,
