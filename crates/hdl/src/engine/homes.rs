@@ -11,8 +11,8 @@
 //! Interface: the host sets the mask of waiting axes; [`super::limits`] reports a reached limit;
 //! the queue ramps the axis down while `slows` is asserted in its time slot. The ramp begins in the
 //! tick after the one in which the limit was reached, because `slows` is still low in that tick's
-//! slot. So an armed start waits for an axis in its ramp, but not for an axis that reaches its limit
-//! in the last tick that it executes.
+//! slot. So an armed start waits for an axis in its ramp, but not for an axis that reaches its
+//! limit in the last tick that it executes.
 //!
 //! Cost: two flip-flops per axis, and one that provides `slows` from the first beat of a slot on.
 

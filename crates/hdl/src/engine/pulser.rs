@@ -10,8 +10,8 @@
 //!
 //! W is the pulse width, S the gap between pulses, D the set-up of DIR before STEP and H the hold
 //! of DIR after STEP rises, each in clocks. A step that this timing delays is held back (`due` in
-//! the code, `owed` at the output), at most one. A second one calls the stop `overrun`. In the code,
-//! `turn` means that DIR changes.
+//! the code, `owed` at the output), at most one. A second one calls the stop `overrun`. In the
+//! code, `turn` means that DIR changes.
 //!
 //! Two free-running counters measure the time: `since` counts clocks since STEP rose, `after`
 //! clocks since DIR changed. A counter that reaches a limit only ends a condition (the pulse, the
