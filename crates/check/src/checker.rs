@@ -1,4 +1,6 @@
-//! The checker of pulse trains. It knows the float profile and the pin edges, and nothing else.
+//! The checker of pulse trains. It judges the pin edges only by the float profile and by what
+//! [`Setup`] requires (clock and tick, start phase, pin timing of the drivers, straight lines). It
+//! knows nothing of the plan's segments.
 //!
 //! For the k-th rising edge of STEP of an axis, e = m - t, where m is the time of the edge minus
 //! the origin, and t the time at which the profile crosses the k-th step. The capture is judged as
@@ -23,7 +25,8 @@ pub enum Origin {
         ps: i64,
     },
     /// The origin of a foreign capture: one offset for all axes, chosen as the midpoint of the
-    /// least and the greatest error. An offset for each axis would hide an axis that is late.
+    /// least and the greatest error of all axes together. An offset for each axis would hide an
+    /// axis that is late.
     Midpoint,
     /// An origin that the user gives.
     Fixed {
@@ -55,8 +58,8 @@ pub struct Checker<'a> {
     axes: Vec<AxisCheck<'a>>,
     lines: LinesCheck,
     origin: Origin,
-    /// The origin of all errors until the end of the capture, ps. For a foreign capture it is
-    /// estimated from the first pulse.
+    /// The origin from which errors are counted while the capture is read, ps. For a foreign
+    /// capture it is estimated from the first pulse, and `finish` corrects it at the end.
     base_ps: Option<i64>,
     slack_ps: u64,
     phase_ns: f64,

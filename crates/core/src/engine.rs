@@ -154,8 +154,9 @@ pub struct EngineOutputs {
     pub ready: bool,
     /// Mask of the axes that wait for their limit.
     pub homing: u8,
-    /// The axis whose position is latched in this cycle, because the limit that it waits for was
-    /// reached.
+    /// The axis whose position `get_data` shows in this cycle: an axis that waits for its limit
+    /// shows its position once in every tick. The last position that it shows is that of the tick
+    /// in which the limit was found.
     pub latch: Option<u8>,
     /// Free queue space, in segments, of the axis of `put` (or of `room_of`), in the cycles in
     /// which that axis reports it.

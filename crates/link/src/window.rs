@@ -51,9 +51,11 @@ pub struct Window<const N: usize> {
     sent: usize,
     /// Number of writes that were sent at least once.
     reached: usize,
-    /// Time when the round began or the last write was acknowledged, ms.
+    /// Time of the latest of these events, ms: a round's first write was sent, a write was
+    /// acknowledged, or a refusal ended a round.
     since: u32,
-    /// Distance from the missing write to the last refused write of this round.
+    /// How many writes behind the missing one the last refused write was; 0 is the missing one
+    /// itself. `None` if no write was refused since the last acknowledgement or timeout.
     refused: Option<u8>,
     /// Whether the gateware refused the write as busy, so that the next round must wait.
     busy: bool,
@@ -144,7 +146,6 @@ impl<const N: usize> Window<N> {
     ///
     /// # Errors
     /// [`Foreign`] if the number was never sent, or was sent with another address.
-    /// [`Foreign`]: its number was never sent from here, or with another address.
     pub fn own(&self, answer: &Answer) -> Result<(), Foreign> {
         let behind = answer.sequence.wrapping_sub(self.first);
         if answer.address & WRITE == 0 || behind > WINDOW {
@@ -164,7 +165,8 @@ impl<const N: usize> Window<N> {
     /// `executed` is called with each of them once, in order.
     ///
     /// # Errors
-    /// [`OutOfStep`] if the answer acknowledges writes that were never sent.
+    /// [`OutOfStep`] if the answer acknowledges writes that were never sent, or if its `next` is
+    /// older than the first unacknowledged write.
     pub fn answer(
         &mut self,
         answer: &Answer,
@@ -199,7 +201,8 @@ impl<const N: usize> Window<N> {
     }
 
     /// Processes a refusal. The gateware refuses every write behind a missing one, so one loss
-    /// causes many refusals with rising numbers. Only the first of them begins a new round.
+    /// causes many refusals with rising numbers. A new round begins with the first of them, and
+    /// with one whose number does not rise: then a write of the new round was refused too.
     fn refusal(&mut self, behind: u8, now: u32) {
         if self.refused.is_some_and(|before| behind > before) {
             self.refused = Some(behind);

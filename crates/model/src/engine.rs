@@ -3,10 +3,11 @@
 //! The contract is the section "engine" of docs/clock-by-clock.md; change both together.
 //!
 //! ```text
-//! strobe      ^ n - 1        ^ n            ^ n + 1        ^
+//! strobe      ^ n - 1        ^ n            ^ n + 1        ^ n + 2
 //! words put   |--------------| seen by tick n + 1
 //! tick n      |  worked out  |
-//! its step    |              |              | at phase q, on the pin one clock later
+//! its step    |              |              | requested in tick n + 2, at phase q;
+//!                                             on the pin one clock later
 //! ```
 
 mod guard;
@@ -121,7 +122,8 @@ impl Engine {
         let (strobe, before, reset) = (self.strobe(), self.stop, self.reset);
         let build = Arc::clone(&self.build);
         let guard = &build.guard;
-        // The order of these calls is the priority of the causes: the first one is latched.
+        // The order of these calls is the priority of the causes: the first one is latched. It is
+        // overrun, e-stop, protocol, the causes found in the tick (`end_tick`), watchdog, stop.
         let mut stop = before;
         let busy = self.pins_busy();
         let late = self.shape();
@@ -289,7 +291,9 @@ impl Engine {
         (lanes.collect(), found)
     }
 
-    /// Decides at this strobe about the armed start.
+    /// Decides at this strobe about the armed start. It waits for an axis that runs on, and for one
+    /// that `slows` since an earlier tick. An axis that meets its limit in this very tick does not
+    /// hold it back, because `self.lanes` has `slows` as it was before the tick.
     fn decision(&self, (ticked, found): &(Vec<Lane>, Vec<(Cause, usize)>)) -> Decision {
         let free = self.stop.fault.is_none() && found.is_empty();
         let Some(mask) = self.armed.filter(|_| free) else { return Decision::Wait };

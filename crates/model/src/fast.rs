@@ -2,21 +2,22 @@
 //! [`SixAxis`] and [`Engine`](crate::Engine); only the way to compute them may change here.
 //!
 //! Between two loads of a segment, the position of an axis is a cubic with integer coefficients. A
-//! *window* is a run of clocks in which nothing but STEP, DIR and the positions can change. The
-//! fast model passes a window at once, axis by axis:
+//! *window* is a run of clocks in which the axes only repeat their additions, so that on the pins
+//! nothing but STEP and DIR can change. The fast model passes a window at once, axis by axis:
 //!
 //! - It divides the window into stretches in which V keeps its sign, and finds the ticks of each
 //!   stretch that step. Where edges are far apart, it jumps from edge to edge: it guesses each root
 //!   in floating point and corrects it in integers.
-//! - Where it expects more than one edge in [a few ticks](crossings), it adds tick by tick, because
-//!   one addition per tick is then cheaper than one root per edge.
+//! - Where it expects more than one edge in six ticks ([`crossings`]), it adds tick by tick,
+//!   because one addition per tick is then cheaper than one root per edge.
 //! - Vector instructions work on several edges of one axis, both in jumps and in phases. Running
 //!   the axes side by side was not faster (docs/decisions/0024).
 //! - The shaper goes from request to request while nothing is held back.
 //!
-//! All other events (a load, a start, a fault, a frozen core, a held-back step) are executed by the
-//! clock-by-clock code; a window ends before them. If a fault occurs in a window, the window is
-//! undone and passed again up to the fault.
+//! All other events (a load, a start, a fault, a frozen core whose pins still move) are executed by
+//! the clock-by-clock code; a window ends before them. While a step is held back, the shaper of
+//! that axis alone is executed clock by clock within the window. If a fault occurs in a window, the
+//! window is undone and passed again up to the fault.
 
 mod crossings;
 mod edges;
@@ -73,7 +74,7 @@ impl Fast {
     }
 
     /// Skips as many cycles as possible, up to `most`, and returns how many they were. In these
-    /// cycles nothing changes but STEP, DIR and the positions, provided that the inputs stay the
+    /// cycles no output changes but STEP, DIR and the positions, provided that the inputs stay the
     /// same. If the result is 0, the caller must execute the next cycle with [`Fast::clock`].
     pub fn leap(&mut self, inputs: &Inputs, most: u64, to: &mut impl Edges) -> u64 {
         let mut clocks = most;

@@ -1,9 +1,9 @@
 //! Plans a move file: for each move it finds the time and the profiles, shares the distance out,
-//! writes the segments, adds the rest that DIR needs, and runs the exact check.
+//! writes the segments, runs the exact check, and adds the rest that DIR needs.
 //!
 //! This file holds the order of these steps; each step has a module of its own. The two constants
-//! below may be tuned: the exact check (`check.rs`) decides whether a plan leaves this crate. A
-//! unit is 2^-64 step throughout the crate.
+//! below may be changed without harm, because the exact check (`check.rs`) decides whether a plan
+//! leaves this crate. A unit is 2^-64 step throughout the crate.
 
 use crate::check::{Duty, check};
 use crate::corridor::{self, Corridor};
@@ -45,8 +45,8 @@ pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
     Ok(Plan { build: planner.build, moves })
 }
 
-/// Least length of a fitted piece in multiples of the tolerance: in a short piece the tolerance is
-/// reduced to the length in ticks divided by this number.
+/// A fitted piece is at least this many tolerances long: in a shorter one the tolerance is its
+/// length in ticks divided by this number.
 const LEAST_RATIO: f64 = 64.0;
 
 /// The fraction of the tolerance by which rounding a breakpoint to a whole tick may move an edge.
@@ -298,8 +298,10 @@ impl<'a> Planner<'a> {
         ExactLimits { start_speed: units::toward_zero(per_tick).unwrap_or(0), ..limits }
     }
 
-    /// Puts the rest before the motion, marks the last segment, runs the exact check on the result,
-    /// and updates the recorded state of the axis' pins.
+    /// Finishes an axis of a move, in this order: plans the motion again where the rest has already
+    /// travelled a unit of it, runs the exact check on the motion alone, tests that the rest
+    /// travels what it has borrowed, updates the recorded state of the axis' pins, puts the rest
+    /// before the motion, and marks the last segment.
     fn finish<F: Real>(
         &mut self,
         place: Place,

@@ -168,7 +168,9 @@ fn compiler_refuses_a_header_for_another_clock_or_memory() {
     let plain = Bench::of(&table).flag("-DCARRYSTEP_PROGMEM");
     plain.write("avr/pgmspace.h", "#define pgm_read_word(word) (*(word))\n");
     assert!(words(plain).contains("compile all files without CARRYSTEP_PROGMEM"));
-    // A line lost from the array would leave a hole, which C fills with zeros without a message.
+    // A declared length that is not the number of entries would leave a hole, which C fills with
+    // zeros without a message. (Values that are missing from an array of the right length are not
+    // noticed.)
     let header = table.header(&options());
     let holed = header.replace("ramp_compare[20]", "ramp_compare[21]");
     assert!(words(Bench::new(&holed)).contains("ramp_check_length"));

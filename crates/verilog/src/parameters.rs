@@ -80,8 +80,8 @@ pub(crate) fn head(parameters: &[ParameterValue]) -> Vec<String> {
     lines
 }
 
-/// The overrides of an instance, `#(.NAME(VALUE), ...)` with a space on each side, or one space if
-/// there are none.
+/// The overrides of an instance, `#(.NAME(VALUE), ...)` with one parameter per line, or one space
+/// if there are none.
 pub(crate) fn overrides(parameters: &[ParameterValue]) -> String {
     if parameters.is_empty() {
         return " ".to_owned();

@@ -9,7 +9,10 @@
 //! ```
 //!
 //! Interface: the host sets the mask of waiting axes; [`super::limits`] reports a reached limit;
-//! the queue ramps the axis down while `slows` is asserted in its time slot.
+//! the queue ramps the axis down while `slows` is asserted in its time slot. The ramp begins in the
+//! tick after the one in which the limit was reached, because `slows` is still low in that tick's
+//! slot. So an armed start waits for an axis in its ramp, but not for an axis that reaches its
+//! limit in the last tick that it executes.
 //!
 //! Cost: two flip-flops per axis, and one that provides `slows` from the first beat of a slot on.
 
@@ -41,7 +44,7 @@ pub struct Homes<const N: usize> {
     pub axes: Signal<Out, Word<N>>,
     /// The axis of the slot waits for its limit.
     pub waits: Signal<Out, Bit>,
-    /// The axis of the slot has reached its limit and ramps down.
+    /// The axis of the slot has reached its limit in an earlier tick and ramps down.
     pub slows: Signal<Out, Bit>,
     waiting: Register<Word<N>>,
     slowing: Register<Word<N>>,

@@ -9,9 +9,9 @@
 //! ```
 //!
 //! W is the pulse width, S the gap between pulses, D the set-up of DIR before STEP and H the hold
-//! of DIR after STEP rises, each in clocks. A step that this timing delays is held back (`owed` in
-//! the code), at most one. A second one calls the stop `overrun`. In the code, `turn` means that
-//! DIR changes.
+//! of DIR after STEP rises, each in clocks. A step that this timing delays is held back (`due` in
+//! the code, `owed` at the output), at most one. A second one calls the stop `overrun`. In the
+//! code, `turn` means that DIR changes.
 //!
 //! Two free-running counters measure the time: `since` counts clocks since STEP rose, `after`
 //! clocks since DIR changed. A counter that reaches a limit only ends a condition (the pulse, the
@@ -21,8 +21,8 @@
 //! Pulses and discarded steps are counted modulo eight; the queue and the adder transfer these
 //! counts to the 32-bit counters in memory, one step per tick.
 //!
-//! Cost: this is the only module that exists once per axis. Its counters are as wide as the pin
-//! timing requires.
+//! Cost: there is one pulser per axis; every other module of the engine exists once. The counters
+//! of a pulser are as wide as its pin timing requires.
 
 use crate::HdlError;
 use crate::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
@@ -45,9 +45,10 @@ pub struct Pulser {
     pub request: Input<Bit>,
     /// The requested step is backward.
     pub request_back: Input<Bit>,
-    /// V != 0 in the tick whose steps are made next.
+    /// Valid at the strobe: V != 0 in the tick whose steps are made in the tick that begins. The
+    /// register `want` keeps the direction.
     pub has_sign: Input<Bit>,
-    /// V < 0 in the tick whose steps are made next.
+    /// V < 0 in that tick; valid with `has_sign`.
     pub sign_back: Input<Bit>,
     /// The STEP pin.
     pub step: Signal<Out, Bit>,
@@ -119,7 +120,7 @@ impl Pulser {
         let pulse_over = width.bits::<17>(0) - Formula::number(1);
         let gap_over = (width.bits::<17>(0) + gap.bits::<17>(0)) - Formula::number(2);
         let hold_over = hold.bits::<17>(0).without(Formula::number(2));
-        // In 16 bits 65536 is 0, and two less than it what it should be.
+        // A set-up of 65536 clocks is 0 in 16 bits, and 0 - 2 wraps to 65534, the right limit.
         let at_once = setup.whole().is(&Formula::number(1));
         let setup_over =
             Formula::number(0).where_or(&at_once, setup.bits::<16>(0) - Formula::number(2));

@@ -10,10 +10,11 @@
 //! ```
 //!
 //! The bisection of an axis needs four further beats, 13 to 16, which overlap the slot of the next
-//! axis. The slots begin in the clock after the strobe. After the last slot no beat is asserted
-//! until the next strobe.
+//! axis. The slots begin in the clock after the strobe. After the last slot, beats 13 to 16 of its
+//! axis follow; beats 0 to 12 are not asserted until the clock after the next strobe.
 //!
-//! Interface: every module of the engine derives its schedule from `beat`.
+//! Interface: all modules that work in time slots take their schedule from `beat` or from single
+//! bits of it. The pulsers and the watch do not: they work with the strobe and with the phases.
 //!
 //! Cost: one flip-flop per beat, in a shift register of 17 bits, so that no module needs to decode
 //! a beat counter; one flip-flop per axis for `lane`; and 3 bits for the number of the axis.

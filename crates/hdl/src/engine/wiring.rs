@@ -3,13 +3,14 @@
 //! ```text
 //! start_valid  _/^^^^^^^\______________________
 //! strobe       _______/^\_____/^\_____/^\______
-//! armed        _________/^^^^^^^^^^^^^^^\______   until no axis of the mask runs on
+//! armed        _________/^^^^^^^^^^^^^^^\______   until no axis of the mask runs on or ramps down
 //! started      _______________________/^\______
 //! going        _________________________/^^^^^   the axes start in their time slots of this tick
 //! ```
 //!
-//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on. An axis of
-//! the mask without a waiting segment is a breach of the protocol.
+//! A start is accepted at a strobe. It stays armed until no axis of its mask runs on, and none was
+//! in the ramp after its limit when the tick began (`homes.slows`). An axis of the mask without a
+//! waiting segment is a breach of the protocol.
 
 use super::Engine;
 use crate::primitives::word::bit_cast;
@@ -43,8 +44,8 @@ impl<const N: usize> Logic for Engine<N> {
             self.taken_word.d.next = self.put_word.val();
         }
 
-        // A start is armed at a strobe. It takes effect at the first later strobe at which every
-        // axis of its mask is at rest or comes to rest, and has a waiting segment.
+        // A start is armed at a strobe. It takes effect at the first later strobe at which no axis
+        // of its mask runs on or was in the ramp after its limit, and each has a waiting segment.
         self.may_start.next = self.enable.val() & self.watch.warm.val();
         self.start_ready.next = self.strobe.val()
             & !self.waits.q.val()
