@@ -142,7 +142,7 @@ pub struct EngineOutputs {
     /// The latched stop cause and the mask of the axes that caused it; `None` while no stop is in
     /// force.
     pub fault: Option<(Cause, u8)>,
-    /// The stop is over: no axis moves any more.
+    /// The stop is complete: no axis moves any more.
     pub halted: bool,
     /// A start is armed.
     pub armed: bool,
@@ -150,8 +150,9 @@ pub struct EngineOutputs {
     pub ready: bool,
     /// Mask of the axes that wait for their limit.
     pub homing: u8,
-    /// The axis whose position is latched in this cycle, because the limit that it waits for was
-    /// reached.
+    /// The axis whose position is the item that the host reads in this cycle, because the axis
+    /// waits for its limit. The last such position is that of the tick in which the limit was
+    /// found.
     pub latch: Option<u8>,
     /// Free queue space, in segments, of the axis of `put` (or of `room_of`), in the cycles in
     /// which that axis reports it.
