@@ -7,14 +7,14 @@
 //! and its drivers have kept their power. Three values detect a change:
 //!
 //! ```text
-//! next        the number of the next write: any command of another host changes it
+//! next        the number of the next write: any write of another host changes it
 //! positions   of all axes: any move changes them
 //! ready       0 after a configuration until a host switches the drivers on: detects a restart
 //! ```
 //!
 //! If one of them differs from the stored value, the content is discarded. One case is not
-//! detected: a restart, after which another host makes a multiple of 256 writes and leaves every
-//! register at its old position.
+//! detected: a restart, after which another host switches the drivers on, makes as many writes as
+//! bring `next` back to its old value (modulo 256), and leaves every position at its old value.
 
 use crate::connection::{Board, Connection};
 use crate::found;

@@ -144,7 +144,7 @@ pub struct EngineOutputs {
     /// The latched stop cause and the mask of the axes that caused it; `None` while no stop is in
     /// force.
     pub fault: Option<(Cause, u8)>,
-    /// The stop is over: no axis moves any more.
+    /// The stop is complete: no axis moves any more.
     pub halted: bool,
     /// The engine is returning to its state at configuration, after `reset`.
     pub resetting: bool,

@@ -108,7 +108,7 @@ pub const ANSWER: [Field; 13] = [
         2,
         0,
         8,
-        "sequence number that the next write must have; all before it have been executed",
+        "number of the next write; all before it were executed, or dropped during a fault",
     ),
     field(
         "fault",
@@ -118,13 +118,19 @@ pub const ANSWER: [Field; 13] = [
         "a stop has been triggered; segments and starts are dropped until a clear",
     ),
     field("halted", 3, 1, 1, "the stop is complete: no axis moves any more"),
-    field("idle", 3, 2, 1, "all axes are done, and no start is armed"),
-    field("ready", 3, 3, 1, "the drivers have had power for the enable time: starts are accepted"),
+    field("idle", 3, 2, 1, "no axis moves, no queue holds a segment, and no start is armed"),
+    field("ready", 3, 3, 1, "the drivers have had power for the enable time, as a start requires"),
     field("armed", 3, 4, 1, "a start is armed; another start is refused as busy"),
     field("cause", 3, 5, 3, "the cause of the stop, if `fault` is set"),
     field("free", 4, 0, 3, "number of segments for which the queue of the addressed axis has room"),
     field("refused", 4, 3, 1, "this write was not executed: out of sequence, or busy"),
-    field("culprits", 5, 0, 8, "the axes that caused the stop, one bit each, if `fault` is set"),
+    field(
+        "culprits",
+        5,
+        0,
+        8,
+        "the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0",
+    ),
     field("homing", 6, 0, 8, "the axes that still wait for their limit, one bit each"),
 ];
 

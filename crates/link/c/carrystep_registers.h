@@ -76,7 +76,7 @@
 #define CARRYSTEP_WATCHDOG_TICKS 0x08u
 /* Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write) */
 #define CARRYSTEP_CONTROL 0x20u
-/* Axes, one bit each, to start on the first tick at which all rest and have a segment (write) */
+/* Axes, one bit each, to start together once all of them rest; an empty queue is a fault (write) */
 #define CARRYSTEP_START 0x21u
 /* Any value ends a stop: it empties the queues and resets P, but not the position (write) */
 #define CARRYSTEP_CLEAR 0x22u
@@ -88,7 +88,7 @@
 #define CARRYSTEP_P_HIGH 0x41u
 /* Position: steps forward minus steps backward, two's complement (read, axis 0) */
 #define CARRYSTEP_POSITION 0x42u
-/* Number of steps that freezes have discarded (read, axis 0) */
+/* Number of steps that freezes have discarded since configuration (read, axis 0) */
 #define CARRYSTEP_DISCARDED 0x43u
 /* Position in steps at which the limit was reached in homing (read, axis 0) */
 #define CARRYSTEP_LATCHED 0x44u
@@ -111,15 +111,15 @@
 #define CARRYSTEP_ANSWER_SEQUENCE(answer) ((uint8_t)((answer)[0] >> 0 & 255u))
 /* the address of the request */
 #define CARRYSTEP_ANSWER_ADDRESS(answer) ((uint8_t)((answer)[1] >> 0 & 255u))
-/* sequence number that the next write must have; all before it have been executed */
+/* number of the next write; all before it were executed, or dropped during a fault */
 #define CARRYSTEP_ANSWER_NEXT(answer) ((uint8_t)((answer)[2] >> 0 & 255u))
 /* a stop has been triggered; segments and starts are dropped until a clear */
 #define CARRYSTEP_ANSWER_FAULT(answer) ((uint8_t)((answer)[3] >> 0 & 1u))
 /* the stop is complete: no axis moves any more */
 #define CARRYSTEP_ANSWER_HALTED(answer) ((uint8_t)((answer)[3] >> 1 & 1u))
-/* all axes are done, and no start is armed */
+/* no axis moves, no queue holds a segment, and no start is armed */
 #define CARRYSTEP_ANSWER_IDLE(answer) ((uint8_t)((answer)[3] >> 2 & 1u))
-/* the drivers have had power for the enable time: starts are accepted */
+/* the drivers have had power for the enable time, as a start requires */
 #define CARRYSTEP_ANSWER_READY(answer) ((uint8_t)((answer)[3] >> 3 & 1u))
 /* a start is armed; another start is refused as busy */
 #define CARRYSTEP_ANSWER_ARMED(answer) ((uint8_t)((answer)[3] >> 4 & 1u))
@@ -129,7 +129,7 @@
 #define CARRYSTEP_ANSWER_FREE(answer) ((uint8_t)((answer)[4] >> 0 & 7u))
 /* this write was not executed: out of sequence, or busy */
 #define CARRYSTEP_ANSWER_REFUSED(answer) ((uint8_t)((answer)[4] >> 3 & 1u))
-/* the axes that caused the stop, one bit each, if `fault` is set */
+/* the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0 */
 #define CARRYSTEP_ANSWER_CULPRITS(answer) ((uint8_t)((answer)[5] >> 0 & 255u))
 /* the axes that still wait for their limit, one bit each */
 #define CARRYSTEP_ANSWER_HOMING(answer) ((uint8_t)((answer)[6] >> 0 & 255u))

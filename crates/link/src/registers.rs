@@ -69,7 +69,7 @@ pub const PHASES: u8 = 0x07;
 pub const WATCHDOG_TICKS: u8 = 0x08;
 /// Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write).
 pub const CONTROL: u8 = 0x20;
-/// Axes, one bit each, to start on the first tick at which all rest and have a segment (write).
+/// Axes, one bit each, to start together once all of them rest; an empty queue is a fault (write).
 pub const START: u8 = 0x21;
 /// Any value ends a stop: it empties the queues and resets P, but not the position (write).
 pub const CLEAR: u8 = 0x22;
@@ -81,7 +81,7 @@ pub const P_LOW: u8 = 0x40;
 pub const P_HIGH: u8 = 0x41;
 /// Position: steps forward minus steps backward, two's complement (read, axis 0).
 pub const POSITION: u8 = 0x42;
-/// Number of steps that freezes have discarded (read, axis 0).
+/// Number of steps that freezes have discarded since configuration (read, axis 0).
 pub const DISCARDED: u8 = 0x43;
 /// Position in steps at which the limit was reached in homing (read, axis 0).
 pub const LATCHED: u8 = 0x44;
@@ -102,7 +102,7 @@ pub const fn address(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[1]
 }
 
-/// Of an answer: sequence number that the next write must have; all before it have been executed.
+/// Of an answer: number of the next write; all before it were executed, or dropped during a fault.
 pub const fn next(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[2]
 }
@@ -117,12 +117,12 @@ pub const fn halted(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 1 & 1 == 1
 }
 
-/// Of an answer: all axes are done, and no start is armed.
+/// Of an answer: no axis moves, no queue holds a segment, and no start is armed.
 pub const fn idle(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 2 & 1 == 1
 }
 
-/// Of an answer: the drivers have had power for the enable time: starts are accepted.
+/// Of an answer: the drivers have had power for the enable time, as a start requires.
 pub const fn ready(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[3] >> 3 & 1 == 1
 }
@@ -147,7 +147,7 @@ pub const fn refused(answer: &[u8; ANSWER_BYTES]) -> bool {
     answer[4] >> 3 & 1 == 1
 }
 
-/// Of an answer: the axes that caused the stop, one bit each, if `fault` is set.
+/// Of an answer: the axes that caused overrun, overspeed, limit or underrun, one bit each; else 0.
 pub const fn culprits(answer: &[u8; ANSWER_BYTES]) -> u8 {
     answer[5]
 }

@@ -65,7 +65,7 @@ registers! {
         "Ticks without a valid frame after which all axes are stopped; 0: no watchdog";
     CONTROL      = 0x20 Write "Bit 0: power the drivers; bit 1: stop all axes, each with its ramp";
     START        = 0x21 Write
-        "Axes, one bit each, to start on the first tick at which all rest and have a segment";
+        "Axes, one bit each, to start together once all of them rest; an empty queue is a fault";
     CLEAR        = 0x22 Write
         "Any value ends a stop: it empties the queues and resets P, but not the position";
     HOME         = 0x23 Write
@@ -73,7 +73,7 @@ registers! {
     P_LOW        = 0x40 Read "P, the fraction of a step in units of 2^-64 step, low half";
     P_HIGH       = 0x41 Read "P, high half";
     POSITION     = 0x42 Read "Position: steps forward minus steps backward, two's complement";
-    DISCARDED    = 0x43 Read "Number of steps that freezes have discarded";
+    DISCARDED    = 0x43 Read "Number of steps that freezes have discarded since configuration";
     LATCHED      = 0x44 Read "Position in steps at which the limit was reached in homing";
     SEGMENT      = 0x40 WriteSegment
         "Ticks - 1; V, A, J in 2^-64 step per tick, tick^2, tick^3, low half first; 1 if last of \

@@ -12,9 +12,10 @@
 //!           ': high halves      n: ticks - 1, or at rest the discarded steps
 //! ```
 //!
-//! Each sum is written four beats after its word was read. Beat 9 writes the word that the host has
-//! put. In a ramp the memory returns -s or s in place of A, so that a ramp needs no additional
-//! adder.
+//! A word that is read in beat k is added in beat k + 2, and the sum is written in beat k + 3. For
+//! A + J both words come from this memory, so one of them (A, then J') is read a beat earlier. Beat
+//! 9 writes the word that the host has put. In a ramp the memory returns -s or s in place of A, so
+//! that a ramp needs no additional adder.
 //!
 //! Cost: one memory of 512 words of 32 bits.
 

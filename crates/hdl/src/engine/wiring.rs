@@ -44,8 +44,9 @@ impl<const N: usize> Logic for Engine<N> {
             self.taken_word.d.next = self.put_word.val();
         }
 
-        // A start is armed at a strobe. It takes effect at the first later strobe at which no axis
-        // of its mask runs on or was in the ramp after its limit, and each has a waiting segment.
+        // A start is armed at a strobe. It takes effect at the first later strobe at which every
+        // axis of its mask is at rest or comes to rest. Until then an axis of the mask without a
+        // waiting segment triggers the stop `protocol`.
         self.may_start.next = self.enable.val() & self.watch.warm.val();
         self.start_ready.next = self.strobe.val()
             & !self.waits.q.val()
