@@ -49,8 +49,8 @@ const BUGS: &[Bug] = &[
     Bug { breaks: "promise_14_powered_until_idle", text: "power & !idle", becomes: "power & idle" },
     Bug {
         breaks: "promise_14_warm_not_before_its_time",
-        text: "if (!power) begin",
-        becomes: "if (!power & idle) begin",
+        text: "if (!power | ending) begin",
+        becomes: "if ((!power & idle) | ending) begin",
     },
     Bug { breaks: "promise_14_warm_is_powered", text: "is_warm & power;", becomes: "is_warm;" },
 ];
