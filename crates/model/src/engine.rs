@@ -20,7 +20,7 @@ use carrystep_core::engine::{
     COMMIT, Cause, EngineInputs, EngineOutputs, Limits, PUT_BEAT, Put, TURN,
 };
 use guard::{Stop, Watch, freezes};
-use lane::{Lane, Look, Segment, Tick};
+use lane::{Lane, Look, Queued, Tick};
 use std::sync::Arc;
 
 /// The beat of an axis' turn (its time slot of 13 clocks) in which the engine outputs the position
@@ -207,7 +207,7 @@ impl Engine {
         let lane = &mut self.lanes[usize::from(put.axis)];
         self.rest = 0;
         if put.word == COMMIT {
-            lane.fresh = Some(Segment::of_words(lane.words, put.data & 1 == 1));
+            lane.fresh = Some(Queued::of_words(lane.words, put.data & 1 == 1));
         } else {
             lane.words[usize::from(put.word)] = put.data;
         }
