@@ -397,7 +397,8 @@ impl Reader<'_> {
         ) {
             (0 | 2, 4) | (2, 0) => {}
             _ => {
-                return self.refuse(0..0, "a host needs both pins of a UART, or all four of an SPI");
+                return self
+                    .refuse(0..0, "a host needs both pins of a UART, or all four of an SPI");
             }
         }
         match count(&["estop"]) {

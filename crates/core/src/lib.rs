@@ -35,7 +35,7 @@ pub mod tick;
 
 #[cfg(feature = "alloc")]
 pub use self::{
-    build::{AXES, Build, PinTiming, Timebase},
+    build::{AXES, Build, PinTimes, PinTiming, Timebase},
     engine::EngineBuild,
     fault::Faults,
     fixed::StartPhase,
