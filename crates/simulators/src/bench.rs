@@ -29,7 +29,13 @@ pub(crate) fn board() -> Result<String, LevelError> {
 fn rendered(template: &str) -> Result<String, LevelError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
-    environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).build().unwrap_or_default());
+    environment.set_syntax(
+        SyntaxConfig::builder()
+            .trim_blocks(true)
+            .keep_trailing_newline(true)
+            .build()
+            .unwrap_or_default(),
+    );
     let rows = |direction| recorded_ports(direction).map(row).collect::<Vec<_>>();
     let values = context! {
         ports => ENGINE_PORTS.iter().map(row).collect::<Vec<_>>(),
