@@ -4,10 +4,11 @@
 mod board;
 mod frames;
 mod hosts;
-pub mod ports;
+mod ports;
 
 pub use board::BoardPins;
 pub use frames::{Said, frame, on_the_line, unframe};
+pub use ports::Both;
 
 use hosts::{Receiver, Sender, SpiHost};
 
@@ -16,7 +17,6 @@ use carrystep_core::engine::{EngineInputs, EngineOutputs};
 use carrystep_core::link::{END, Line, LinkInputs, LinkOutputs, Uart};
 use carrystep_hdl::{AnyLink, EngineSim, LinkSim, SpiSim, link};
 use carrystep_model::Link;
-use carrystep_simulators::vectors::{Bits, Vectors};
 use std::collections::VecDeque;
 
 /// Both modules, the line and the host's end of it.
@@ -37,15 +37,6 @@ pub struct LinkBench {
     pub vectors: Option<Both>,
     /// The recorded pins of a board, if they are recorded.
     pub board: Option<BoardPins>,
-}
-
-/// The recorded cycles of link and line.
-#[derive(Debug, Clone)]
-pub struct Both {
-    /// Cycles of the link.
-    pub link: Vectors,
-    /// Cycles of its line.
-    pub line: Vectors,
 }
 
 /// The link with its line, and the host's end of that line.
@@ -187,18 +178,16 @@ impl Wire {
             Self::Uart { link, .. } => link.bytes(),
             Self::Spi { link, line, .. } => (line.last(), link.offered()),
         };
-        both.link.add(ports::link_inputs(seen, bytes), ports::link_outputs(shown, offered));
-        let told = match self {
-            Self::Uart { .. } => Bits::default().and(1, u64::from(seen.rx)),
-            Self::Spi { host, .. } => host
-                .pins()
-                .into_iter()
-                .fold(Bits::default(), |bits, pin| bits.and(1, u64::from(pin))),
-        };
-        both.line.add(
-            told.and(1, u64::from(offered.is_some())).and(8, offered.map_or(0, u64::from)),
-            ports::line_outputs(bytes, level),
-        );
+        match self {
+            Self::Uart { .. } => {
+                both.add(seen, shown, (bytes, offered), &[("rx", seen.rx), ("tx", level)]);
+            }
+            Self::Spi { host, .. } => {
+                let [sck, select_n, mosi] = host.pins();
+                let pins = [("sck", sck), ("select_n", select_n), ("mosi", mosi), ("miso", level)];
+                both.add(seen, shown, (bytes, offered), &pins);
+            }
+        }
     }
 
     /// Advances by one cycle and returns the byte that the host has received.

@@ -1,6 +1,6 @@
 //! Generates random moves of random machines, as move files.
 
-use carrystep_core::ProfileKind;
+use carrystep_core::{PinTimes, ProfileKind};
 use carrystep_files::{MoveFile, Source};
 use carrystep_plan::plan;
 use proptest::prelude::*;
@@ -32,7 +32,7 @@ struct RandomAxis {
     /// The jerk limit as a multiple of the acceleration limit, in 1/s.
     jerk: f64,
     per_unit: f64,
-    pins: [u64; 4],
+    pins: PinTimes,
 }
 
 /// Some moves of one machine.
@@ -66,12 +66,12 @@ impl RandomMoves {
             self.tick_ns, self.phases
         );
         for (i, axis) in self.axes.iter().enumerate() {
-            let [step, gap, setup, hold] = axis.pins;
+            let PinTimes { width, gap, setup, hold } = axis.pins;
             // The greatest speed that tick, phases, width and gap allow; dividing by the units
             // makes it fractional.
             let clocks = |ns: u64| ((ns * CLOCK_HZ).div_ceil(1_000_000_000)).max(1) as f64;
             let phase = (self.tick_ns * CLOCK_HZ / 1_000_000_000) as f64 / f64::from(self.phases);
-            let period = (clocks(step) + clocks(gap) + phase) / CLOCK_HZ as f64;
+            let period = (clocks(width) + clocks(gap) + phase) / CLOCK_HZ as f64;
             let most = (1.0 / period).min(0.4999e9 / self.tick_ns as f64);
             let speed = axis.speed.min(most * 0.999999);
             let accel = axis.accel.min(0.49e18 / (self.tick_ns * self.tick_ns) as f64);
@@ -79,7 +79,7 @@ impl RandomMoves {
             write!(
                 text,
                 "[[machine.axis]]\nname = \"a{i}\"\nsteps_per_unit = {u:?}\nspeed_limit = {:?}\nstart_speed = {:?}\n\
-                 accel_limit = {:?}\njerk_limit = {:?}\nstep_ns = {step}\ngap_ns = {gap}\nsetup_ns = {setup}\n\
+                 accel_limit = {:?}\njerk_limit = {:?}\nstep_ns = {width}\ngap_ns = {gap}\nsetup_ns = {setup}\n\
                  hold_ns = {hold}\n",
                 speed / u,
                 speed * axis.start / u * 0.9999999,
@@ -152,13 +152,13 @@ fn axis(pace: Pace) -> impl Strategy<Value = RandomAxis> {
     let pins = [1_u64..3000, 1_u64..3000, 1_u64..40_000, 1_u64..40_000];
     let unit = prop_oneof![Just(1.0), Just(80.0), decades(0.01, 1000.0)];
     (speed, start, accel, jerk, unit, pins).prop_map(
-        |(speed, start, accel, jerk, per_unit, pins)| RandomAxis {
+        |(speed, start, accel, jerk, per_unit, [width, gap, setup, hold])| RandomAxis {
             speed,
             start,
             accel,
             jerk,
             per_unit,
-            pins,
+            pins: PinTimes { width, gap, setup, hold },
         },
     )
 }

@@ -5,8 +5,7 @@ use carrystep_core::engine::{Cause, Limits};
 use carrystep_core::link::registers::{CLEAR, CONTROL, HOME, POSITION, SEGMENT, START, of_axis};
 use carrystep_core::link::{Line, Uart};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
-use carrystep_simulators::vectors::Vectors;
-use carrystep_tests::link_bench::{Both, LinkBench, Said, frame, on_the_line, ports, unframe};
+use carrystep_tests::link_bench::{Both, LinkBench, Said, frame, on_the_line, unframe};
 use carrystep_verilog::{LINK_NAME, line_name, line_verilog, link_verilog};
 
 /// Number of cycles within which an answer must come.
@@ -304,8 +303,8 @@ fn segments_over_spi_are_all_accepted() {
 
 /// Runs a session that uses every function, then replays its inputs on the exported Verilog of each
 /// module and compares the outputs with Rust-HDL.
-fn replayed(mut bench: LinkBench, line: Line, vectors: Vectors) {
-    bench.vectors = Some(Both { link: ports::link(), line: vectors });
+fn replayed(mut bench: LinkBench, line: Line) {
+    bench.vectors = Some(Both::new(line));
     let mut next = 0;
     powered(&mut bench, &mut next);
     let damaged = on_the_line(&frame(next, 0x80 | of_axis(SEGMENT, 0), &cruise(100, QUARTER))[1..]);
@@ -352,10 +351,10 @@ fn replayed(mut bench: LinkBench, line: Line, vectors: Vectors) {
 #[test]
 fn exported_verilog_of_link_and_uart_equals_rust_hdl() {
     let uart = Uart::new(48_000_000, 3_000_000).expect("a UART");
-    replayed(bench(), uart.into(), ports::uart());
+    replayed(bench(), uart.into());
 }
 
 #[test]
 fn exported_verilog_of_link_and_spi_equals_rust_hdl() {
-    replayed(LinkBench::spi(&build(), 25), Line::Spi, ports::spi());
+    replayed(LinkBench::spi(&build(), 25), Line::Spi);
 }

@@ -5,10 +5,10 @@
 use crate::edge::{Pin, PinChange};
 use crate::ideal::{NS, PS, curvature_ps, due_ps, lateness_ps, moment, phase_ps, tick_ps};
 use crate::line_check::Off;
-use crate::pins::{PinWatch, Stretch};
+use crate::pins::{PinWatch, Shortest, Stretch};
 use crate::report::AxisReport;
 use crate::spread::Spread;
-use carrystep_core::{StartPhase, Timebase};
+use carrystep_core::{PinTimes, StartPhase, Timebase};
 use carrystep_files::Unit;
 use carrystep_profile::{Crossing, Timeline};
 
@@ -21,8 +21,8 @@ pub struct AxisSetup<'a> {
     pub unit: Option<&'a Unit>,
     /// The float profile of all moves.
     pub timeline: &'a Timeline,
-    /// The required pin times of the driver, ns: width, gap, set-up, hold.
-    pub pins_ns: [u64; 4],
+    /// The pin times that the driver requires, ns.
+    pub pins_ns: PinTimes,
     /// Number of pulses of all moves together.
     pub expected_pulses: u64,
     /// Steps forward minus steps backward after all moves.
@@ -300,13 +300,13 @@ impl<'a> AxisCheck<'a> {
                 "{steps:.3} steps off its line after a pulse {pulse}, the bound is {bound:.3} steps"
             ));
         }
-        let shortest = self.watch.shortest();
-        let measured = [shortest.high, shortest.low, shortest.setup, shortest.hold];
-        self.judge_pins(measured);
-        let [high_min_ns, low_min_ns, setup_min_ns, hold_min_ns] =
-            measured.map(|s| s.map(|s| s.ps as f64 / NS));
-        let [high_required_ns, low_required_ns, setup_required_ns, hold_required_ns] =
-            self.setup.pins_ns.map(|ns| ns as f64);
+        let Shortest { high, low, setup, hold } = self.watch.shortest();
+        let required = self.setup.pins_ns;
+        self.judge_pin("STEP high", high, required.width);
+        self.judge_pin("STEP low", low, required.gap);
+        self.judge_pin("DIR set-up", setup, required.setup);
+        self.judge_pin("DIR hold", hold, required.hold);
+        let ns = |stretch: Option<Stretch>| stretch.map(|stretch| stretch.ps as f64 / NS);
         let errors = self.errors.shifted(-(shift_ps as f64));
         self.failures.append(&mut self.pulse_failures);
         AxisReport {
@@ -325,14 +325,14 @@ impl<'a> AxisCheck<'a> {
             error_std_theory_ns: phase / 12_f64.sqrt() / NS,
             error_fit_ns: fit / NS,
             error_bound_ns: bound / NS,
-            high_min_ns,
-            high_required_ns,
-            low_min_ns,
-            low_required_ns,
-            setup_min_ns,
-            setup_required_ns,
-            hold_min_ns,
-            hold_required_ns,
+            high_min_ns: ns(high),
+            high_required_ns: required.width as f64,
+            low_min_ns: ns(low),
+            low_required_ns: required.gap as f64,
+            setup_min_ns: ns(setup),
+            setup_required_ns: required.setup as f64,
+            hold_min_ns: ns(hold),
+            hold_required_ns: required.hold as f64,
             period_jitter_max_ns: self.jitter_ps.map(|jitter| jitter / NS),
             period_jitter_theory_ns: (phase + 2.0 * self.curvature_ps) / NS,
             speed_ripple_max_percent: self.ripple.map(|ripple| 100.0 * ripple),
@@ -362,18 +362,15 @@ impl<'a> AxisCheck<'a> {
         }
     }
 
-    fn judge_pins(&mut self, measured: [Option<Stretch>; 4]) {
-        let names = ["STEP high", "STEP low", "DIR set-up", "DIR hold"];
-        for ((stretch, required), name) in measured.into_iter().zip(self.setup.pins_ns).zip(names) {
-            let Some(stretch) = stretch else { continue };
-            if (stretch.ps as f64 + self.slack_ps) < required as f64 * NS {
-                self.fail(&format!(
-                    "{name} of {:.1} ns at pulse {} ({}), the driver needs {required} ns",
-                    stretch.ps as f64 / NS,
-                    stretch.pulse,
-                    moment(stretch.end)
-                ));
-            }
+    /// Fails if the shortest stretch of a pin's level is shorter than the driver requires, ns.
+    fn judge_pin(&mut self, name: &str, shortest: Option<Stretch>, required: u64) {
+        let Some(Stretch { ps, pulse, end }) = shortest else { return };
+        if (ps as f64 + self.slack_ps) < required as f64 * NS {
+            self.fail(&format!(
+                "{name} of {:.1} ns at pulse {pulse} ({}), the driver needs {required} ns",
+                ps as f64 / NS,
+                moment(end)
+            ));
         }
     }
 }

@@ -39,9 +39,11 @@ use carrystep_link::{Facts, Status, Wish};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::sync::atomic::Ordering;
+use strum::{EnumString, IntoStaticStr};
 
 /// A request through the socket; each is one line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, EnumString, IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
 pub enum Request {
     /// Report the state of the board.
     Status,
@@ -51,11 +53,8 @@ pub enum Request {
 
 impl Request {
     /// The word that is sent for the request, without the end of the line.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Status => "status",
-            Self::Stop => "stop",
-        }
+    pub fn word(self) -> &'static str {
+        self.into()
     }
 }
 

@@ -153,7 +153,8 @@ impl Timebase {
     }
 }
 
-/// Minimum times that a driver requires at STEP and DIR, in clocks, each at least 1.
+/// Minimum times that a driver requires at STEP and DIR, in clocks, each at least 1. [`PinTimes`]
+/// has them in ns.
 ///
 /// ```text
 /// DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
@@ -176,6 +177,20 @@ pub struct PinTiming {
 impl PinTiming {
     /// The shortest timing that the gateware supports: one clock each.
     pub const SHORTEST: Self = Self { width: 1, gap: 1, setup: 1, hold: 1 };
+}
+
+/// Minimum times that a driver requires at STEP and DIR, in ns, as its data sheet gives them.
+/// [`PinTiming`] has the same times in clocks, and draws them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct PinTimes {
+    /// STEP high time, ns.
+    pub width: u64,
+    /// STEP low time, ns.
+    pub gap: u64,
+    /// Set-up: DIR is stable before a rising edge of STEP, ns.
+    pub setup: u64,
+    /// Hold: DIR is stable after a rising edge of STEP, ns.
+    pub hold: u64,
 }
 
 /// All parameters of a build of the six-axis core.

@@ -17,11 +17,13 @@ mod build;
 mod cause;
 mod error;
 mod figures;
+mod ports;
 
 pub use build::{EngineBuild, Guard, Limits};
 pub use cause::{CAUSES, Cause};
 pub use error::EngineError;
 pub use figures::{Between, GuardFigures};
+pub use ports::{ENGINE_PORTS, recorded_ports};
 
 pub use crate::schedule::{MIN_CLOCKS_PER_PHASE, TURN, clocks_of_turns, least_clocks};
 

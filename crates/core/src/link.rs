@@ -25,7 +25,7 @@ pub use assembler::Image;
 pub use build_id::BuildId;
 pub use facts::facts;
 pub use line::Line;
-pub use ports::{LinkInputs, LinkOutputs};
+pub use ports::{BYTE_PORTS, LinkInputs, LinkOutputs, line_pins, line_ports, link_ports};
 pub use program::image;
 pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};
 

@@ -1,5 +1,6 @@
 //! What the host sends to the gateware: segments, and the commands that carry them.
 
+#[cfg(feature = "alloc")]
 use alloc::vec::Vec;
 
 /// A run of whole ticks during which one axis follows a cubic.
@@ -46,4 +47,5 @@ pub enum Command {
 }
 
 /// Everything a host sends for one or more moves, in order.
+#[cfg(feature = "alloc")]
 pub type Program = Vec<Command>;

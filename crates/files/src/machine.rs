@@ -7,7 +7,7 @@ use crate::unit::Unit;
 use axis::RawAxis;
 use bigdecimal::BigDecimal;
 use carrystep_core::EngineBuild;
-use carrystep_core::build::{AXES, Build, PinTiming, Timebase, TimebaseError};
+use carrystep_core::build::{AXES, Build, PinTimes, PinTiming, Timebase, TimebaseError};
 use carrystep_core::engine::{Guard, MAX_AXES};
 use carrystep_core::fixed::StartPhase;
 use carrystep_core::link::{BaudError, Line, Uart};
@@ -80,8 +80,8 @@ pub struct Axis {
     /// Acceleration with which the engine's guard ramps the axis down, 2^-64 step per tick^2, from
     /// 1 to 2^62.
     pub stop: u64,
-    /// Minimum times of the driver, ns: STEP width, gap, set-up, hold.
-    pub pins_ns: [u64; 4],
+    /// Minimum times of the driver, ns.
+    pub pins_ns: PinTimes,
     /// The same times in clocks, rounded up.
     pub pins: PinTiming,
     /// Lowest and highest machine coordinate, steps, if the file gives them.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_core::{AXES, PinTiming, StartPhase};
+use carrystep_core::{AXES, PinTimes, PinTiming, StartPhase};
 use carrystep_files::{BigDecimal, Machine, Source};
 
 const AXIS: &str =
@@ -58,9 +58,13 @@ fn limits_are_exact_products() {
 #[test]
 fn single_pin_times_override_the_driver_preset() {
     let pins = |lines: &str| machine(&format!("[machine]\n{AXIS}{lines}")).axes[0].pins_ns;
-    assert_eq!(pins("driver = \"a4988\"\n"), [1000, 1000, 200, 200]);
-    assert_eq!(pins("driver = \"a4988\"\nhold_ns = 500\n"), [1000, 1000, 200, 500]);
-    assert_eq!(pins("step_ns = 1\ngap_ns = 2\nsetup_ns = 3\nhold_ns = 4\n"), [1, 2, 3, 4]);
+    let a4988 = PinTimes { width: 1000, gap: 1000, setup: 200, hold: 200 };
+    assert_eq!(pins("driver = \"a4988\"\n"), a4988);
+    assert_eq!(pins("driver = \"a4988\"\nhold_ns = 500\n"), PinTimes { hold: 500, ..a4988 });
+    assert_eq!(
+        pins("step_ns = 1\ngap_ns = 2\nsetup_ns = 3\nhold_ns = 4\n"),
+        PinTimes { width: 1, gap: 2, setup: 3, hold: 4 }
+    );
 }
 
 #[test]

@@ -4,20 +4,7 @@
 use crate::registers::MOST_AXES;
 use thiserror::Error;
 
-/// A run of whole ticks during which one axis follows a cubic.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Segment {
-    /// Length in ticks, at least 1.
-    pub ticks: u32,
-    /// Speed at the first tick, 2^-64 step per tick.
-    pub v: i64,
-    /// Acceleration, 2^-64 step per tick^2.
-    pub a: i64,
-    /// Jerk, 2^-64 step per tick^3.
-    pub j: i64,
-    /// Whether the axis stops at the end of this segment.
-    pub last: bool,
-}
+pub use carrystep_core::Segment;
 
 /// One command of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -169,14 +156,8 @@ impl Source for Program<'_> {
 
 #[cfg(feature = "std")]
 mod from_core {
-    use super::{Command, Segment};
+    use super::Command;
     use carrystep_core as planned;
-
-    impl From<planned::Segment> for Segment {
-        fn from(planned::Segment { ticks, v, a, j, last }: planned::Segment) -> Self {
-            Self { ticks, v, a, j, last }
-        }
-    }
 
     impl Command {
         /// Converts a planned command; `None` for a wait or a clear, which the link's programs do
@@ -184,7 +165,7 @@ mod from_core {
         pub fn of(command: &planned::Command) -> Option<Self> {
             match *command {
                 planned::Command::Segment { axis, segment } => {
-                    Some(Self::Segment { axis, segment: segment.into() })
+                    Some(Self::Segment { axis, segment })
                 }
                 planned::Command::Start { mask } => Some(Self::Start { mask }),
                 planned::Command::Wait { .. } | planned::Command::Clear => None,

@@ -22,7 +22,7 @@ use carrystep_core::engine::{
     COMMIT, Cause, EngineInputs, EngineOutputs, Limits, PUT_BEAT, Put, TURN,
 };
 use guard::{Stop, Watch, freezes};
-use lane::{Lane, Look, Segment, Tick};
+use lane::{Lane, Look, Queued, Tick};
 use reset::Reset;
 use std::sync::Arc;
 
@@ -226,7 +226,7 @@ impl Engine {
             return false;
         }
         if put.word == COMMIT {
-            lane.fresh = Some(Segment::of_words(lane.words, put.data & 1 == 1));
+            lane.fresh = Some(Queued::of_words(lane.words, put.data & 1 == 1));
             lane.next_word = 0;
         } else {
             lane.words[usize::from(put.word)] = put.data;

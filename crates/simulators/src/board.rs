@@ -1,9 +1,9 @@
 //! Line, link and engine of a board in Verilator: a process that runs for a given number of clocks,
 //! and reports the changes at its pins.
 
-use crate::LevelError;
 use crate::tool::{self, VERILATOR};
 use crate::verilator::Simulation;
+use crate::{LevelError, bench};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{CAUSES, Cause};
 use carrystep_core::link::Line;
@@ -11,7 +11,6 @@ use carrystep_verilog::{engine_verilog, line_verilog, link_verilog};
 use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-const TOP: &str = include_str!("../bench/board_bench.v");
 const BENCH: &str = include_str!("../bench/board_bench.cpp");
 
 /// Levels of a board's input pins.
@@ -76,7 +75,8 @@ impl BoardProcess {
             engine_verilog(build, what),
         ];
         // The exported files are Verilog-2005; the top level of the bench uses more.
-        let mut verilog = format!("{TOP}`begin_keywords \"1364-2005\"\n");
+        let top = bench::board()?;
+        let mut verilog = format!("{top}`begin_keywords \"1364-2005\"\n");
         for part in parts {
             verilog += &part.map_err(|error| LevelError::Gateware(error.to_string()))?;
         }

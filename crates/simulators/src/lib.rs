@@ -5,6 +5,7 @@
 //! each cycle in which any of them changed. If two reports are equal, the pins are equal in every
 //! clock.
 
+mod bench;
 pub mod board;
 mod cache;
 pub mod engine;

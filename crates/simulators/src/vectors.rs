@@ -46,11 +46,11 @@ pub struct Vectors {
 
 impl Vectors {
     /// A recording without cycles.
-    pub const fn new(
-        inputs: &'static [(&'static str, u32)],
-        outputs: &'static [(&'static str, u32)],
+    pub fn new(
+        inputs: impl Into<Cow<'static, [(&'static str, u32)]>>,
+        outputs: impl Into<Cow<'static, [(&'static str, u32)]>>,
     ) -> Self {
-        let (inputs, outputs) = (Cow::Borrowed(inputs), Cow::Borrowed(outputs));
+        let (inputs, outputs) = (inputs.into(), outputs.into());
         Self { clock: "clock", inputs, outputs, rows: Vec::new() }
     }
 

@@ -6,6 +6,7 @@ use crate::error::{TableError, positive};
 use crate::timer::Timer;
 use schemars::JsonSchema;
 use serde::Serialize;
+use strum::IntoStaticStr;
 
 /// The greatest number of steps in a ramp. A table with one pulse per entry is also limited to 65
 /// 535 entries.
@@ -55,8 +56,9 @@ pub enum Speed {
 }
 
 /// The curve of a ramp, over the index of its entries or steps.
-#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
+#[derive(Debug, Clone, PartialEq, IntoStaticStr, JsonSchema, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum Kind {
     /// [`crate::logistic`]: the frequency is a logistic function of the entry index.
     Logistic {
@@ -128,12 +130,8 @@ impl Motor {
 
 impl Kind {
     /// The name of the kind on the command line.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Logistic { .. } => "logistic",
-            Self::Avr446 { .. } => "avr446",
-            Self::Sine { .. } => "sine",
-        }
+    pub fn name(&self) -> &'static str {
+        self.into()
     }
 }
 

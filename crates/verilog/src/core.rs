@@ -7,7 +7,7 @@ use crate::names::{Names, split_index};
 use crate::netlist::{self, Module};
 use crate::parameters;
 use crate::write::{TextFile, write};
-use carrystep_core::link::Line;
+use carrystep_core::link::{BYTE_PORTS, Line};
 use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_hdl::primitives::formula::ParameterValue;
 use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
@@ -244,7 +244,7 @@ pub(crate) fn link_ports(build: &EngineBuild, line: Line) -> Result<(Ports, Port
     link.connect_all();
     let ports = Names::new(&netlist::read(link.as_ref())?)?.ports.into_iter();
     let ports = ports.filter(|port| port.name != "clock").map(|port| (port.name, port.width));
-    Ok(ports.partition(|(name, _)| name.starts_with("received") || name.starts_with("answer")))
+    Ok(ports.partition(|(name, _)| BYTE_PORTS.iter().any(|port| port.name == name.as_str())))
 }
 
 /// Contents of the header.

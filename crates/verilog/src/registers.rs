@@ -2,7 +2,7 @@
 //! a page of documentation.
 
 use crate::ExportError;
-use carrystep_core::link::registers::{self, Access, PER_AXIS, REGISTERS};
+use carrystep_core::link::registers::{self, PER_AXIS, REGISTERS};
 use carrystep_core::link::{self, ANSWER, ANSWER_DATA, CAUSE_NAMES, Constant, Field, WRITE};
 use minijinja::{Environment, Value, context};
 
@@ -24,7 +24,7 @@ pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
         registers => REGISTERS.iter().map(|row| context! {
             name => row.name,
             address => format!("{:#04x}", row.address),
-            access => access(row.access),
+            access => row.access.to_string(),
             per_axis => row.per_axis,
             what => row.what,
         }).collect::<Vec<_>>(),
@@ -36,14 +36,6 @@ pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
     };
     let render = |(path, template)| Ok((path, environment.render_str(template, &values)? + "\n"));
     FILES.into_iter().map(render).collect()
-}
-
-const fn access(access: Access) -> &'static str {
-    match access {
-        Access::Read => "read",
-        Access::Write => "write",
-        Access::WriteSegment => "write, 8 words",
-    }
 }
 
 /// The values of a constant. Lengths are decimal, all other values hexadecimal.

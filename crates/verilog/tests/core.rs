@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::engine::{Guard, Limits};
-use carrystep_core::ports::{Direction, SIX_AXIS_PORTS};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_verilog::{
@@ -44,13 +43,6 @@ const CORES: [Core; 2] = [
         timebases: [(48_000_000, 2000, 16), (12_000_000, 10_000, 4), (90_000_000, 1000, 1)],
     },
 ];
-
-/// The list of a module's ports.
-fn ports_of<'a>(text: &'a str, name: &str) -> &'a str {
-    let (_, module) = text.split_once(&format!("module {name} ")).unwrap();
-    let (head, _) = module.split_once("\n);").unwrap();
-    head.rsplit_once("(\n").unwrap().1
-}
 
 fn pins() -> [PinTiming; AXES] {
     [PinTiming { width: 96, gap: 5, setup: 2, hold: 7 }; AXES]
@@ -109,39 +101,9 @@ fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &
 }
 
 #[test]
-fn core_has_the_ports_of_the_table() {
-    let text = six_axis_verilog(&build(48_000_000, 16), "a test").unwrap();
-    let found: Vec<String> = ports_of(&text, CORE_NAME)
-        .lines()
-        .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
-        .collect();
-    let expected = SIX_AXIS_PORTS.map(|port| {
-        let way = if port.direction == Direction::Input { "input" } else { "output" };
-        let range =
-            if port.width == 1 { String::new() } else { format!("[{}:0] ", port.width - 1) };
-        format!("{way} wire {range}{},", port.name)
-    });
-    let mut expected = expected.to_vec();
-    expected[SIX_AXIS_PORTS.len() - 1].pop();
-    assert_eq!(found, expected);
-}
-
-#[test]
 fn engine_has_the_axes_of_its_build() {
     for axes in 1..=8 {
         let text = engine_verilog(&engine_of(axes), "a test").unwrap();
-        let top = ports_of(&text, ENGINE_NAME);
-        let range = if axes == 1 { String::new() } else { format!("[{}:0] ", axes - 1) };
-        let ports = [
-            "input wire {}start_mask",
-            "input wire {}limit_max",
-            "output wire {}step",
-            "output wire {}culprits",
-        ];
-        let top = top.split_whitespace().collect::<Vec<_>>().join(" ");
-        for port in ports.map(|port| port.replace("{}", &range)) {
-            assert!(top.contains(&port), "{axes} axes: {port}");
-        }
         assert_eq!(text.matches("    carrystep_pulser #(").count(), axes);
     }
 }

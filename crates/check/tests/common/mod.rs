@@ -2,15 +2,14 @@
 #![allow(dead_code)] // Each test binary uses a part of it.
 
 use carrystep_check::*;
-use carrystep_core::{Segment, StartPhase, Timebase};
+use carrystep_core::{PinTimes, Segment, StartPhase, Timebase};
 use carrystep_profile::{Constant, Leg, Ramp, Timeline};
 use std::io::Cursor;
 use std::sync::Arc;
 
 pub const ORIGIN_PS: i64 = 123_456_789;
 pub const NAMES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
-/// Width, gap, set-up and hold, ns.
-pub const PINS_NS: [u64; 4] = [1000, 1000, 200, 200];
+pub const PINS_NS: PinTimes = PinTimes { width: 1000, gap: 1000, setup: 200, hold: 200 };
 pub const HIGH_PS: u64 = 1_041_667;
 
 pub struct Machine {

@@ -169,9 +169,7 @@ struct Motor {
 }
 
 fn kind() -> impl clap::builder::TypedValueParser<Value = ProfileKind> {
-    use clap::builder::{PossibleValuesParser, TypedValueParser};
-    PossibleValuesParser::new(ProfileKind::ALL.iter().map(|kind| kind.name()))
-        .try_map(|name| name.parse::<ProfileKind>())
+    super::named()
 }
 
 fn phase() -> impl clap::builder::TypedValueParser<Value = StartPhase> {

@@ -81,9 +81,8 @@ impl Caller {
         let mut requests = Vec::new();
         while let Some(end) = self.line.iter().position(|&byte| byte == b'\n') {
             let line: Vec<u8> = self.line.drain(..=end).collect();
-            let asked =
-                |request: &Request| line.strip_suffix(b"\n") == Some(request.word().as_bytes());
-            requests.extend([Request::Status, Request::Stop].into_iter().find(asked));
+            let word = std::str::from_utf8(&line).ok().and_then(|line| line.strip_suffix('\n'));
+            requests.extend(word.and_then(|word| word.parse::<Request>().ok()));
         }
         (requests, stays && self.line.len() < LONGEST)
     }

@@ -8,15 +8,18 @@
 //! ```
 
 use crate::engine::{MAX_AXES, QUEUE};
+use strum::Display;
 
-/// Access to a register.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Access to a register. It is displayed as in the documentation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Display)]
+#[strum(serialize_all = "lowercase")]
 pub enum Access {
     /// Read only.
     Read,
     /// Written with one word.
     Write,
     /// Written with the eight words of a segment in one frame.
+    #[strum(to_string = "write, 8 words")]
     WriteSegment,
 }
 

@@ -9,7 +9,7 @@ use crate::error::{InputError, Source, quoted};
 use crate::number::positive;
 use crate::unit::Unit;
 use bigdecimal::{BigDecimal, Zero};
-use carrystep_core::build::{MAX_CLOCKS, PinTiming, Timebase};
+use carrystep_core::build::{MAX_CLOCKS, PinTimes, PinTiming, Timebase};
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
@@ -110,7 +110,7 @@ impl RawAxis {
         &self,
         source: &Source,
         timebase: &Timebase,
-    ) -> Result<([u64; 4], PinTiming), InputError> {
+    ) -> Result<(PinTimes, PinTiming), InputError> {
         let preset = match &self.driver {
             None => None,
             Some(name) => Some(drivers().get(name.as_ref().as_str()).ok_or_else(|| {
@@ -127,16 +127,9 @@ impl RawAxis {
                 ))
             })?),
         };
-        let mut ns = [0; 4];
-        let mut clocks = [0; 4];
-        let rows = [
-            ("step_ns", &self.step_ns, preset.map(|d| d.step_ns)),
-            ("gap_ns", &self.gap_ns, preset.map(|d| d.gap_ns)),
-            ("setup_ns", &self.setup_ns, preset.map(|d| d.setup_ns)),
-            ("hold_ns", &self.hold_ns, preset.map(|d| d.hold_ns)),
-        ];
-        for (slot, (key, given, default)) in rows.into_iter().enumerate() {
-            let Some(value) = given.as_ref().map(|v| *v.as_ref()).or(default) else {
+        // A time in ns and in clocks.
+        let time = |key, given: &Option<Spanned<u64>>, default: Option<u64>| {
+            let Some(ns) = given.as_ref().map(|value| *value.as_ref()).or(default) else {
                 return Err(InputError::at(
                     source,
                     self.name.span(),
@@ -144,22 +137,23 @@ impl RawAxis {
                 )
                 .help("name a driver, or give step_ns, gap_ns, setup_ns and hold_ns"));
             };
-            ns[slot] = value;
             let span = given.as_ref().map_or_else(|| self.name.span(), Spanned::span);
-            let exact = timebase.clocks_for_ns(value);
-            clocks[slot] =
-                u32::try_from(exact).ok().filter(|&c| c < MAX_CLOCKS).ok_or_else(|| {
-                    InputError::at(
-                        source,
-                        span,
-                        format!(
-                            "{key} = {value} ns is {exact} clocks: the timers count to {}",
-                            MAX_CLOCKS - 1
-                        ),
-                    )
-                })?;
-        }
-        Ok((ns, PinTiming { width: clocks[0], gap: clocks[1], setup: clocks[2], hold: clocks[3] }))
+            let exact = timebase.clocks_for_ns(ns);
+            let clocks = u32::try_from(exact).ok().filter(|&clocks| clocks < MAX_CLOCKS);
+            let clocks = clocks.ok_or_else(|| {
+                let most = MAX_CLOCKS - 1;
+                let message =
+                    format!("{key} = {ns} ns is {exact} clocks: the timers count to {most}");
+                InputError::at(source, span, message)
+            })?;
+            Ok((ns, clocks))
+        };
+        let (width_ns, width) = time("step_ns", &self.step_ns, preset.map(|d| d.step_ns))?;
+        let (gap_ns, gap) = time("gap_ns", &self.gap_ns, preset.map(|d| d.gap_ns))?;
+        let (setup_ns, setup) = time("setup_ns", &self.setup_ns, preset.map(|d| d.setup_ns))?;
+        let (hold_ns, hold) = time("hold_ns", &self.hold_ns, preset.map(|d| d.hold_ns))?;
+        let times = PinTimes { width: width_ns, gap: gap_ns, setup: setup_ns, hold: hold_ns };
+        Ok((times, PinTiming { width, gap, setup, hold }))
     }
 }
 

@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 /// A segment in the format of the queue: `v`, `a`, `j` in 2^-64 step per tick, tick^2, tick^3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Segment {
+pub(super) struct Queued {
     /// Remaining ticks after the next one (`ticks` - 1 when it is loaded).
     pub(super) left: u32,
     pub(super) v: i64,
@@ -18,7 +18,7 @@ pub(super) struct Segment {
     pub(super) last: bool,
 }
 
-impl Segment {
+impl Queued {
     /// Assembles the segment from its seven words, low half first.
     pub(super) fn of_words(words: [u32; SEGMENT_WORDS as usize], last: bool) -> Self {
         let [left, v, v_high, a, a_high, j, j_high] = words;
@@ -59,7 +59,7 @@ pub(super) struct Homing {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Lane {
     pub(super) p: u64,
-    pub(super) running: Option<Segment>,
+    pub(super) running: Option<Queued>,
     /// The sum V + A of the running segment did not fit 64 bits.
     pub(super) unfit: bool,
     /// In a ramp whose direction is known: true is backward.
@@ -67,9 +67,9 @@ pub(super) struct Lane {
     /// Acceleration of ramps, in 2^-64 step per tick^2.
     pub(super) stop: i64,
     pub(super) homing: Homing,
-    pub(super) queue: VecDeque<Segment>,
+    pub(super) queue: VecDeque<Queued>,
     /// The segment that was committed in this tick; the strobe moves it into the queue.
-    pub(super) fresh: Option<Segment>,
+    pub(super) fresh: Option<Queued>,
     pub(super) words: [u32; SEGMENT_WORDS as usize],
     /// Number of the word of that segment that must come next.
     pub(super) next_word: u8,
@@ -123,9 +123,7 @@ impl Lane {
         next.unfit = false;
         let mut found = None;
         match self.running.filter(|_| !tick.halted) {
-            Some(Segment { v, .. }) if self.unfit || v == i64::MIN => {
-                found = Some(Cause::Overspeed)
-            }
+            Some(Queued { v, .. }) if self.unfit || v == i64::MIN => found = Some(Cause::Overspeed),
             Some(segment) => found = self.add(&mut next, segment, tick),
             None => {}
         }
@@ -146,15 +144,15 @@ impl Lane {
 
     /// True if the limit of the axis stops it in this tick.
     pub(super) fn hits(&self, tick: Tick<'_>, look: Look) -> bool {
-        let fits = |segment: &Segment| !tick.halted && !self.unfit && segment.v != i64::MIN;
+        let fits = |segment: &Queued| !tick.halted && !self.unfit && segment.v != i64::MIN;
         let sign = self.running.filter(fits).map_or(0, |segment| segment.v.signum() as i8);
         let mut limit = self.limits[usize::from(look.max)];
         limit.hit(look, tick, sign)
     }
 
     /// Executes the additions of one tick. `next` must be at rest when the function is called.
-    fn add(&self, next: &mut Self, segment: Segment, tick: Tick<'_>) -> Option<Cause> {
-        let Segment { left, v, a, j, last } = segment;
+    fn add(&self, next: &mut Self, segment: Queued, tick: Tick<'_>) -> Option<Cause> {
+        let Queued { left, v, a, j, last } = segment;
         let step = crosses(self.p, v)
             .then(|| Step { backward: v < 0, phase: bisect(self.p, v, tick.phase_bits) });
         next.computed = Stage { step, sign: v.signum() as i8 };
@@ -167,15 +165,15 @@ impl Lane {
             };
             let slower = if back { v + self.stop } else { v - self.stop };
             if (slower < 0) == back {
-                next.running = Some(Segment { v: slower, ..segment });
+                next.running = Some(Queued { v: slower, ..segment });
                 next.ramp = Some(back);
             }
             return None;
         }
         let (faster, unfit) = v.overflowing_add(a);
-        let on = Segment { v: faster, a: a.wrapping_add(j), ..segment };
+        let on = Queued { v: faster, a: a.wrapping_add(j), ..segment };
         if let Some(left) = left.checked_sub(1) {
-            next.running = Some(Segment { left, ..on });
+            next.running = Some(Queued { left, ..on });
             next.unfit = unfit;
             return None;
         }

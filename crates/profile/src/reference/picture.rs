@@ -96,7 +96,7 @@ fn stroke(colour: impl Into<ShapeStyle>, tenths: u32) -> ShapeStyle {
 
 /// The title: the distance or speed and the greatest acceleration of all profiles.
 fn title(references: &[Reference], scale: Scale) -> String {
-    let unit = scale.unit.name();
+    let unit = scale.unit;
     let several = if references.len() == 1 { "" } else { "s" };
     let most = |of: fn(&Reference) -> f64| {
         number(references.iter().map(of).fold(0.0, f64::max) / scale.steps)

@@ -11,7 +11,8 @@ use crate::parameters::overrides;
 use crate::write::TextFile;
 use carrystep_boards::{Board, Clocking, Part};
 use carrystep_core::engine::Limits;
-use carrystep_core::link::{BuildId, Line, Uart};
+use carrystep_core::link::{BuildId, Line, Uart, line_pins};
+use carrystep_core::ports::{Direction, Port};
 use carrystep_core::{ChosenTick, EngineBuild};
 use carrystep_files::{Machine, Source};
 use carrystep_hdl::parameters::EVENT_MEMORY;
@@ -182,18 +183,13 @@ impl<'a> Gateware<'a> {
         .collect()
     }
 
-    /// The ports of the line module, and the ports of the board to which they are connected.
-    fn line_pins(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        let pins: &[_] = match self.line {
-            Line::Uart(_) => &[("rx", "uart_rx"), ("tx", "uart_tx")],
-            Line::Spi => &[
-                ("sck", "spi_sck"),
-                ("select_n", "spi_cs_n"),
-                ("mosi", "spi_mosi"),
-                ("miso", "spi_miso"),
-            ],
+    /// The pins of the line module, and the ports of the board to which they are connected.
+    fn line_pins(&self) -> impl Iterator<Item = (&'static Port, &'static str)> {
+        let board: &[_] = match self.line {
+            Line::Uart(_) => &["uart_rx", "uart_tx"],
+            Line::Spi => &["spi_sck", "spi_cs_n", "spi_mosi", "spi_miso"],
         };
-        pins.iter().copied()
+        line_pins(self.line).iter().zip(board.iter().copied())
     }
 
     fn has_led(&self) -> bool {
@@ -245,9 +241,9 @@ impl<'a> Gateware<'a> {
             led => self.has_led(),
             led_low => self.board.led_low,
             line_pins => self.line_pins().map(|(port, pin)| {
-                let out = port == "tx" || port == "miso";
+                let out = port.direction == Direction::Output;
                 let held = self.board.gate.as_ref().is_some_and(|gate| gate.holds.iter().any(|held| held == pin));
-                context! { port, pin, out, held }
+                context! { port => port.name, pin, out, held }
             }).collect::<Vec<Value>>(),
             bytes => bytes.iter().map(row).collect::<Vec<Value>>(),
             between => between.iter().map(row).collect::<Vec<Value>>(),

@@ -27,7 +27,6 @@ impl Panel {
     pub const ALL: [Self; 4] = [Self::Speed, Self::Acceleration, Self::Jerk, Self::Delay];
 
     fn caption(self, unit: Length) -> String {
-        let unit = unit.name();
         match self {
             Self::Speed => format!("speed, {unit}/s"),
             Self::Acceleration => format!("acceleration, {unit}/s\u{b2}"),
