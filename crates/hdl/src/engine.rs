@@ -46,6 +46,7 @@ use rust_hdl::prelude::*;
 
 pub mod adder;
 pub mod homes;
+pub mod layout;
 pub mod limits;
 pub mod pulser;
 pub mod queue;

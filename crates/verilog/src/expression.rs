@@ -8,6 +8,7 @@
 use crate::ExportError;
 use crate::names::{Names, slice};
 use crate::netlist::Number;
+use carrystep_hdl::engine::layout;
 use rust_hdl::prelude::ast::{
     VerilogExpression as Expression, VerilogOp as Op, VerilogOpUnary as Unary,
 };
@@ -85,11 +86,14 @@ impl Translator<'_> {
         }
     }
 
-    /// The value of an index: a literal or the loop variable.
+    /// The value of an index: a literal, the loop variable, or a constant of the engine's layout.
     fn number(&self, index: &Expression) -> Result<usize, ExportError> {
         match (index, self.counter) {
             (Expression::Literal(literal), _) => Ok(literal.as_usize()),
             (Expression::Signal(name), Some((variable, value))) if name == variable => Ok(value),
+            (Expression::Signal(name), _) => {
+                layout::index(name).ok_or_else(|| self.unsupported(&format!("the index {name}")))
+            }
             _ => Err(self.unsupported("an index that is not a number")),
         }
     }

@@ -14,6 +14,7 @@
 //!
 //! Cost: one synchronizer and one debouncer for all switches, and a memory of 16 words of 8 bits.
 
+use super::layout::{SWITCH_COUNT, SWITCH_STATE};
 use crate::parameters::{DEBOUNCE_LOOKS, LIMITS, LIMITS_LOW};
 use crate::primitives::constant::{Literal, Parameter, Refusal};
 use crate::primitives::formula::Formula;
@@ -74,7 +75,7 @@ pub struct Limits<const N: usize> {
     first_lane: Literal<N, 1>,
     one: Literal<7, 1>,
     none: Literal<7, 0>,
-    active: Literal<8, 0x80>,
+    active: Literal<8, { 1 << SWITCH_STATE }>,
     no: Literal<8, 0>,
     all: Literal<8, 0xff>,
     side: Literal<4, 1>,
@@ -145,13 +146,14 @@ impl<const N: usize> Logic for Limits<N> {
         self.switches.write_address.next =
             (bit_cast::<4, 3>(self.axis.val()) << self.by_one.val()) | self.max_bit.val();
         self.word.next = self.switches.read_data.val();
-        self.differs.next = self.now.q.val() ^ self.word.val().get_bit(7);
-        self.flips.next =
-            self.differs.val() & (self.word.val().get_bits::<7>(0) == self.last_look.val());
-        self.state.next = (self.word.val().get_bit(7) ^ self.flips.val()) & !self.resetting.val();
+        self.differs.next = self.now.q.val() ^ self.word.val().get_bit(SWITCH_STATE);
+        self.flips.next = self.differs.val()
+            & (self.word.val().get_bits::<7>(SWITCH_COUNT) == self.last_look.val());
+        self.state.next =
+            (self.word.val().get_bit(SWITCH_STATE) ^ self.flips.val()) & !self.resetting.val();
         self.count.next = self.none.val();
         if self.differs.val() & !self.flips.val() & !self.resetting.val() {
-            self.count.next = self.word.val().get_bits::<7>(0) + self.one.val();
+            self.count.next = self.word.val().get_bits::<7>(SWITCH_COUNT) + self.one.val();
         }
         self.next_word.next = bit_cast::<8, 7>(self.count.val());
         if self.state.val() {

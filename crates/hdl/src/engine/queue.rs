@@ -25,6 +25,11 @@
 //! Cost: a memory of 8 words of 19 bits for the control words and one of 64 bits for the marks of
 //! last segments. A transition to the next segment only increments `live`; no segment is copied.
 
+use super::layout::{
+    BEAT_COMPARE, BEAT_FIRST, BEAT_LAST, CONTROL_BACK, CONTROL_DISCARDED, CONTROL_DUE,
+    CONTROL_KNOWN, CONTROL_LIVE, CONTROL_NEWEST, CONTROL_POSITION, CONTROL_RUNNING, CONTROL_UNFIT,
+    MISSING_SIGN,
+};
 use crate::primitives::constant::Literal;
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
@@ -146,10 +151,10 @@ pub struct Queue {
     minus_one: Literal<3, 7>,
     zero: Literal<3, 0>,
     no: Literal<19, 0>,
-    running_bit: Literal<19, 64>,
-    unfit_bit: Literal<19, 128>,
-    back_bit: Literal<19, 0x4000>,
-    known_bit: Literal<19, 0x8000>,
+    running_bit: Literal<19, { 1 << CONTROL_RUNNING }>,
+    unfit_bit: Literal<19, { 1 << CONTROL_UNFIT }>,
+    back_bit: Literal<19, { 1 << CONTROL_BACK }>,
+    known_bit: Literal<19, { 1 << CONTROL_KNOWN }>,
     all: Literal<19, 0x7_ffff>,
     commit: Literal<3, 7>,
     set: Literal<1, 1>,
@@ -168,20 +173,21 @@ impl Logic for Queue {
 
         // The control word of this time slot.
         self.word.next = self.control.read_data.val();
-        self.old_live.next = self.word.val().get_bits::<3>(0);
-        self.newest.next = self.word.val().get_bits::<3>(3);
+        self.old_live.next = self.word.val().get_bits::<3>(CONTROL_LIVE);
+        self.newest.next = self.word.val().get_bits::<3>(CONTROL_NEWEST);
         self.live_now.next = self.old_live.val();
         if self.starts.val() {
             self.live_now.next = self.old_live.val() + self.one.val();
         }
         self.fresh_now.next = self.newest.val() + self.one.val();
-        self.runs.next = (self.word.val().get_bit(6) | self.starts.val()) & !self.halted.val();
-        self.fits.next = self.runs.val() & !self.word.val().get_bit(7);
+        self.runs.next =
+            (self.word.val().get_bit(CONTROL_RUNNING) | self.starts.val()) & !self.halted.val();
+        self.fits.next = self.runs.val() & !self.word.val().get_bit(CONTROL_UNFIT);
         self.none.next = self.newest.val() == self.live_now.val();
 
         // Decides what follows after this tick.
         self.last_one.next = self.lasts.read_data.val().any();
-        self.ramps.next = self.ramp.val() & self.word.val().get_bit(15);
+        self.ramps.next = self.ramp.val() & self.word.val().get_bit(CONTROL_KNOWN);
         self.follows.next =
             self.ended.val() & !self.last_one.val() & !self.none.val() & !self.ramp.val();
         self.moves.next = self.fits.val() & !self.least.val();
@@ -191,7 +197,8 @@ impl Logic for Queue {
         }
         self.stays.next = self.moves.val() & !self.over.val();
         self.goes_on.next = self.stays.val();
-        self.too_fast.next = self.runs.val() & (self.word.val().get_bit(7) | self.least.val());
+        self.too_fast.next =
+            self.runs.val() & (self.word.val().get_bit(CONTROL_UNFIT) | self.least.val());
         self.dry.next = self.moves.val()
             & self.ended.val()
             & !self.last_one.val()
@@ -200,21 +207,22 @@ impl Logic for Queue {
 
         // Pulses and discarded steps are transferred to memory one per tick. The difference of the
         // low bits shows which are not transferred yet.
-        self.missing.next = self.pulses.val() - self.word.val().get_bits::<3>(8);
-        self.unseen.next = self.losses.val() ^ self.word.val().get_bits::<3>(11);
-        if self.beat.val().get_bit(4) {
-            self.forward.d.next = self.missing.val().any() & !self.missing.val().get_bit(2);
-            self.backward.d.next = self.missing.val().get_bit(2);
+        self.missing.next = self.pulses.val() - self.word.val().get_bits::<3>(CONTROL_POSITION);
+        self.unseen.next = self.losses.val() ^ self.word.val().get_bits::<3>(CONTROL_DISCARDED);
+        if self.beat.val().get_bit(BEAT_COMPARE) {
+            self.forward.d.next =
+                self.missing.val().any() & !self.missing.val().get_bit(MISSING_SIGN);
+            self.backward.d.next = self.missing.val().get_bit(MISSING_SIGN);
             self.gone.d.next = self.unseen.val().any() & !self.runs.val();
         }
 
         // The host's words and its commit.
-        self.due.next = self.word.val().get_bits::<3>(16);
+        self.due.next = self.word.val().get_bits::<3>(CONTROL_DUE);
         self.fits_in.next = self.put_word.val() == self.due.val();
         self.misplaced.next = self.take.val() & !self.fits_in.val();
         self.commits.next =
             self.take.val() & self.fits_in.val() & (self.due.val() == self.commit.val());
-        if self.beat.val().get_bit(0) {
+        if self.beat.val().get_bit(BEAT_FIRST) {
             self.took.d.next = false;
             self.committed.d.next = false;
         }
@@ -273,19 +281,21 @@ impl Logic for Queue {
             self.next_known.next = self.known_bit.val();
         }
         self.next_back.next = self.no.val();
-        if (self.ramps.val() & self.word.val().get_bit(14)) | (!self.ramps.val() & self.back.val())
+        if (self.ramps.val() & self.word.val().get_bit(CONTROL_BACK))
+            | (!self.ramps.val() & self.back.val())
         {
             self.next_back.next = self.back_bit.val();
         }
-        self.next_seen.next = self.word.val().get_bits::<3>(8);
+        self.next_seen.next = self.word.val().get_bits::<3>(CONTROL_POSITION);
         if self.forward.q.val() {
-            self.next_seen.next = self.word.val().get_bits::<3>(8) + self.one.val();
+            self.next_seen.next = self.word.val().get_bits::<3>(CONTROL_POSITION) + self.one.val();
         } else if self.backward.q.val() {
-            self.next_seen.next = self.word.val().get_bits::<3>(8) + self.minus_one.val();
+            self.next_seen.next =
+                self.word.val().get_bits::<3>(CONTROL_POSITION) + self.minus_one.val();
         }
-        self.next_lost.next = self.word.val().get_bits::<3>(11);
+        self.next_lost.next = self.word.val().get_bits::<3>(CONTROL_DISCARDED);
         if self.gone.q.val() {
-            self.next_lost.next = self.word.val().get_bits::<3>(11) + self.one.val();
+            self.next_lost.next = self.word.val().get_bits::<3>(CONTROL_DISCARDED) + self.one.val();
         }
         self.control.read_address.next = self.axis_next.val();
         self.control.write_address.next = self.axis.val();
@@ -299,7 +309,7 @@ impl Logic for Queue {
             | (bit_cast::<19, 3>(self.next_lost.val()) << self.at_11.val())
             | (bit_cast::<19, 3>(self.next_due.val()) << self.at_16.val());
         self.control.write_bits.next = self.no.val();
-        if self.beat.val().get_bit(12) {
+        if self.beat.val().get_bit(BEAT_LAST) {
             self.control.write_bits.next = self.all.val();
         }
 
@@ -311,8 +321,8 @@ impl Logic for Queue {
         self.running.next = self.runs.val();
         self.sound.next = self.fits.val();
         self.slows.next = self.ramps.val();
-        self.upward.next = self.word.val().get_bit(14);
-        self.steady.next = self.ramp.val() & !self.word.val().get_bit(15);
+        self.upward.next = self.word.val().get_bit(CONTROL_BACK);
+        self.steady.next = self.ramp.val() & !self.word.val().get_bit(CONTROL_KNOWN);
         self.up.next = self.forward.q.val();
         self.down.next = self.backward.q.val();
         self.lost.next = self.gone.q.val();

@@ -19,6 +19,15 @@
 //!
 //! Cost: one memory of 512 words of 32 bits.
 
+use super::layout::{
+    BEAT_READ_A_HIGH, BEAT_READ_A_LOW, BEAT_READ_GET, BEAT_READ_J_HIGH, BEAT_READ_J_LOW,
+    BEAT_READ_P_HIGH, BEAT_READ_P_LOW, BEAT_READ_POSITION, BEAT_READ_TICKS, BEAT_READ_V_HIGH,
+    BEAT_READ_V_LOW, BEAT_WRITE_A_HIGH, BEAT_WRITE_A_LOW, BEAT_WRITE_P_HIGH, BEAT_WRITE_P_LOW,
+    BEAT_WRITE_POSITION, BEAT_WRITE_PUT, BEAT_WRITE_TICKS, BEAT_WRITE_V_HIGH, BEAT_WRITE_V_LOW,
+    SLOT_DISCARDED, SLOT_DOWN_HIGH, SLOT_DOWN_LOW, SLOT_P_HIGH, SLOT_P_LOW, SLOT_POSITION,
+    SLOT_UP_HIGH, SLOT_UP_LOW, WORD_A_HIGH, WORD_A_LOW, WORD_J_HIGH, WORD_J_LOW, WORD_STATE,
+    WORD_TICKS, WORD_V_HIGH, WORD_V_LOW, state_address,
+};
 use crate::parameters::{START_HALF, STOP_ACCEL};
 use crate::primitives::constant::{Literal, Parameter, Refusal};
 use crate::primitives::formula::Formula;
@@ -77,22 +86,22 @@ pub struct Store {
     write_slot: Signal<Local, Word<3>>,
     write_word: Signal<Local, Word<3>>,
     writes: Signal<Local, Bit>,
-    ticks: Literal<3, 0>,
-    v_low: Literal<3, 1>,
-    v_high: Literal<3, 2>,
-    a_low: Literal<3, 3>,
-    a_high: Literal<3, 4>,
-    j_low: Literal<3, 5>,
-    j_high: Literal<3, 6>,
-    kept: Literal<3, 7>,
-    p_low: Literal<3, 0>,
-    p_high: Literal<3, 1>,
-    position: Literal<3, 2>,
-    discarded: Literal<3, 3>,
-    down_low: Literal<3, 4>,
-    down_high: Literal<3, 5>,
-    up_low: Literal<3, 6>,
-    up_high: Literal<3, 7>,
+    ticks: Literal<3, WORD_TICKS>,
+    v_low: Literal<3, WORD_V_LOW>,
+    v_high: Literal<3, WORD_V_HIGH>,
+    a_low: Literal<3, WORD_A_LOW>,
+    a_high: Literal<3, WORD_A_HIGH>,
+    j_low: Literal<3, WORD_J_LOW>,
+    j_high: Literal<3, WORD_J_HIGH>,
+    kept: Literal<3, WORD_STATE>,
+    p_low: Literal<3, SLOT_P_LOW>,
+    p_high: Literal<3, SLOT_P_HIGH>,
+    position: Literal<3, SLOT_POSITION>,
+    discarded: Literal<3, SLOT_DISCARDED>,
+    down_low: Literal<3, SLOT_DOWN_LOW>,
+    down_high: Literal<3, SLOT_DOWN_HIGH>,
+    up_low: Literal<3, SLOT_UP_LOW>,
+    up_high: Literal<3, SLOT_UP_HIGH>,
     at_3: Literal<4, 3>,
     at_6: Literal<4, 6>,
     start_high: Parameter<32>,
@@ -119,9 +128,14 @@ impl Store {
                 Formula::number(1).where_or(&low.is(&Formula::number(0)), Formula::number(0));
             let down = [Formula::number(0) - low.clone(), !high.clone() + carry];
             let [down_low, down_high] = down;
-            let words =
-                [(1, start_high.clone()), (4, down_low), (5, down_high), (6, low), (7, high)];
-            kept.extend(words.map(|(slot, word)| (axis << 6 | slot << 3 | 7, word)));
+            let words = [
+                (SLOT_P_HIGH, start_high.clone()),
+                (SLOT_DOWN_LOW, down_low),
+                (SLOT_DOWN_HIGH, down_high),
+                (SLOT_UP_LOW, low),
+                (SLOT_UP_HIGH, high),
+            ];
+            kept.extend(words.map(|(slot, word)| (state_address(axis, slot), word)));
             store.stop_accel_out_of_range[axis] = Refusal::of(&stop.is_outside(1, 1 << 62));
         }
         Self {
@@ -142,7 +156,7 @@ impl Logic for Store {
         self.read_axis.next = self.axis.val();
         self.read_slot.next = self.live.val();
         self.read_word.next = self.kept.val();
-        if self.beat.val().get_bit(0) {
+        if self.beat.val().get_bit(BEAT_READ_A_LOW) {
             if self.slows.val() {
                 self.read_slot.next = self.down_low.val();
                 if self.upward.val() {
@@ -152,29 +166,29 @@ impl Logic for Store {
                 self.read_word.next = self.a_low.val();
             }
         }
-        if self.beat.val().get_bit(1) {
+        if self.beat.val().get_bit(BEAT_READ_J_LOW) {
             self.read_word.next = self.j_low.val();
         }
-        if self.beat.val().get_bit(2) {
+        if self.beat.val().get_bit(BEAT_READ_V_LOW) {
             self.read_word.next = self.v_low.val();
         }
-        if self.beat.val().get_bit(3) {
+        if self.beat.val().get_bit(BEAT_READ_P_LOW) {
             self.read_slot.next = self.p_low.val();
         }
-        if self.beat.val().get_bit(4) {
+        if self.beat.val().get_bit(BEAT_READ_TICKS) {
             if self.running.val() {
                 self.read_word.next = self.ticks.val();
             } else {
                 self.read_slot.next = self.discarded.val();
             }
         }
-        if self.beat.val().get_bit(5) {
+        if self.beat.val().get_bit(BEAT_READ_POSITION) {
             self.read_slot.next = self.position.val();
         }
-        if self.beat.val().get_bit(6) {
+        if self.beat.val().get_bit(BEAT_READ_J_HIGH) {
             self.read_word.next = self.j_high.val();
         }
-        if self.beat.val().get_bit(7) {
+        if self.beat.val().get_bit(BEAT_READ_A_HIGH) {
             if self.slows.val() {
                 self.read_slot.next = self.down_high.val();
                 if self.upward.val() {
@@ -184,13 +198,13 @@ impl Logic for Store {
                 self.read_word.next = self.a_high.val();
             }
         }
-        if self.beat.val().get_bit(8) {
+        if self.beat.val().get_bit(BEAT_READ_V_HIGH) {
             self.read_word.next = self.v_high.val();
         }
-        if self.beat.val().get_bit(9) {
+        if self.beat.val().get_bit(BEAT_READ_P_HIGH) {
             self.read_slot.next = self.p_high.val();
         }
-        if self.beat.val().get_bit(10) {
+        if self.beat.val().get_bit(BEAT_READ_GET) {
             self.read_axis.next = self.get_axis.val();
             self.read_slot.next = bit_cast::<3, 2>(self.get_item.val());
         }
@@ -204,19 +218,19 @@ impl Logic for Store {
         self.write_slot.next = self.live.val();
         self.write_word.next = self.kept.val();
         self.writes.next = false;
-        if self.beat.val().get_bit(4) {
+        if self.beat.val().get_bit(BEAT_WRITE_A_LOW) {
             self.write_word.next = self.a_low.val();
             self.writes.next = self.sound.val();
         }
-        if self.beat.val().get_bit(5) {
+        if self.beat.val().get_bit(BEAT_WRITE_V_LOW) {
             self.write_word.next = self.v_low.val();
             self.writes.next = self.sound.val() & !self.steady.val();
         }
-        if self.beat.val().get_bit(6) {
+        if self.beat.val().get_bit(BEAT_WRITE_P_LOW) {
             self.write_slot.next = self.p_low.val();
             self.writes.next = self.sound.val() | self.wipe.val();
         }
-        if self.beat.val().get_bit(7) {
+        if self.beat.val().get_bit(BEAT_WRITE_TICKS) {
             self.writes.next = true;
             if self.running.val() {
                 self.write_word.next = self.ticks.val();
@@ -224,24 +238,24 @@ impl Logic for Store {
                 self.write_slot.next = self.discarded.val();
             }
         }
-        if self.beat.val().get_bit(8) {
+        if self.beat.val().get_bit(BEAT_WRITE_POSITION) {
             self.write_slot.next = self.position.val();
             self.writes.next = true;
         }
-        if self.beat.val().get_bit(9) {
+        if self.beat.val().get_bit(BEAT_WRITE_PUT) {
             self.write_slot.next = self.fresh.val();
             self.write_word.next = self.put_word.val();
             self.writes.next = self.put.val();
         }
-        if self.beat.val().get_bit(10) {
+        if self.beat.val().get_bit(BEAT_WRITE_A_HIGH) {
             self.write_word.next = self.a_high.val();
             self.writes.next = self.sound.val();
         }
-        if self.beat.val().get_bit(11) {
+        if self.beat.val().get_bit(BEAT_WRITE_V_HIGH) {
             self.write_word.next = self.v_high.val();
             self.writes.next = self.sound.val() & !self.steady.val();
         }
-        if self.beat.val().get_bit(12) {
+        if self.beat.val().get_bit(BEAT_WRITE_P_HIGH) {
             self.write_slot.next = self.p_high.val();
             self.writes.next = self.moves.val() | self.wipe.val();
         }
@@ -249,7 +263,7 @@ impl Logic for Store {
             | (bit_cast::<9, 3>(self.write_slot.val()) << self.at_3.val())
             | bit_cast::<9, 3>(self.write_word.val());
         self.segments.write_data.next = self.sum.val();
-        if self.wipe.val() & self.beat.val().get_bit(12) {
+        if self.wipe.val() & self.beat.val().get_bit(BEAT_WRITE_P_HIGH) {
             self.segments.write_data.next = self.sum.val() | self.start_high.val();
         }
         self.segments.write_bits.next = self.no.val();

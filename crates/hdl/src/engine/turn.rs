@@ -19,6 +19,7 @@
 //! Cost: one flip-flop per beat, in a shift register of 17 bits, so that no module needs to decode
 //! a beat counter; one flip-flop per axis for `lane`; and 3 bits for the number of the axis.
 
+use super::layout::BEAT_LAST;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
@@ -72,7 +73,8 @@ impl<const N: usize> Logic for Turn<N> {
         dff_setup!(self, clock, beats, number, lanes);
 
         self.ends.next = (self.lanes.q.val() & self.last_lane.val()).any();
-        self.begins.next = self.strobe.val() | (self.beats.q.val().get_bit(12) & !self.ends.val());
+        self.begins.next =
+            self.strobe.val() | (self.beats.q.val().get_bit(BEAT_LAST) & !self.ends.val());
         self.shifted.next = self.beats.q.val() << self.by_one.val();
         self.beats.d.next = self.shifted.val();
         if self.begins.val() {
@@ -80,13 +82,13 @@ impl<const N: usize> Logic for Turn<N> {
         }
 
         self.axis_to_come.next = self.number.q.val();
-        if self.beats.q.val().get_bit(12) {
+        if self.beats.q.val().get_bit(BEAT_LAST) {
             self.axis_to_come.next = self.number.q.val() + self.one_axis.val();
             if self.ends.val() {
                 self.axis_to_come.next = self.first_axis.val();
             }
         }
-        if self.beats.q.val().get_bit(12) {
+        if self.beats.q.val().get_bit(BEAT_LAST) {
             self.lanes.d.next = (self.lanes.q.val() << self.by_one.val())
                 | (self.lanes.q.val() >> self.to_top.val());
         }

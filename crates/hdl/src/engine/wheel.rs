@@ -23,6 +23,7 @@
 //! Cost: one memory of 128 words of 16 bits. The axes need no phase register and no comparator; one
 //! memory holds all pending step events.
 
+use super::layout::{EVENT_AXES, EVENT_BACKWARD, EVENT_TICK};
 use crate::parts::tick::Tick;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::memory::Memory;
@@ -150,7 +151,7 @@ impl<const N: usize> Logic for Wheel<N> {
             self.sign_due.d.next = self.has_sign.val();
             self.step_due.d.next = self.crosses.val();
             self.step_known.d.next = false;
-            self.when.d.next = self.read.q.val().get_bits::<2>(5) + self.one_tick.val();
+            self.when.d.next = self.read.q.val().get_bits::<2>(EVENT_TICK) + self.one_tick.val();
         }
         self.now.next = self.when.q.val() + self.one_tick.val();
         self.later.next = (bit_cast::<7, 2>(self.now.val()) << self.at_5.val())
@@ -186,8 +187,8 @@ impl<const N: usize> Logic for Wheel<N> {
 
         self.strobe.next = self.turned.q.val();
         self.phase_start.next = self.started.q.val();
-        self.events.next = self.rim.read_data.val().get_bits::<N>(0);
-        self.backward.next = self.rim.read_data.val().get_bits::<N>(8);
+        self.events.next = self.rim.read_data.val().get_bits::<N>(EVENT_AXES);
+        self.backward.next = self.rim.read_data.val().get_bits::<N>(EVENT_BACKWARD);
     }
 }
 

@@ -13,6 +13,10 @@
 //! waiting segment is a breach of the protocol.
 
 use super::Engine;
+use super::layout::{
+    BEAT_GOT, BEAT_LAST, BEAT_LATCH, BEAT_PHASE, BEAT_PUT, BEAT_WRITE_PUT, COMMIT_LAST,
+    COUNTS_LOSSES, COUNTS_PULSES, MASK_OF_SLOT,
+};
 use crate::primitives::word::bit_cast;
 use rust_hdl::prelude::*;
 
@@ -25,22 +29,22 @@ impl<const N: usize> Logic for Engine<N> {
         clock!(self, clock, turn, adder, queue, store, wheel, limits, homes, stops, resets, watch);
 
         self.strobe.next = self.wheel.strobe.val();
-        self.masked.next = self.mask.q.val().get_bit(0);
+        self.masked.next = self.mask.q.val().get_bit(MASK_OF_SLOT);
 
         // The words of the host.
         self.nobody.next = bit_cast::<4, 3>(self.put_axis.val()) >= self.axes.val();
         self.listens.next =
-            self.turn.beat.val().get_bit(7) & (self.turn.axis.val() == self.put_axis.val());
+            self.turn.beat.val().get_bit(BEAT_PUT) & (self.turn.axis.val() == self.put_axis.val());
         self.put_ready.next = !self.stops.fault.val()
             & (self.nobody.val() | (self.listens.val() & !self.queue.full.val()));
         self.room.next = self.queue.room.val();
         self.room_valid.next = self.listens.val();
         self.take.next = self.put_valid.val() & self.put_ready.val() & !self.nobody.val();
-        self.taken.d.next = self.taken.q.val() & !self.turn.beat.val().get_bit(9);
+        self.taken.d.next = self.taken.q.val() & !self.turn.beat.val().get_bit(BEAT_WRITE_PUT);
         if self.take.val() {
             self.taken.d.next = self.put_word.val() != self.commit.val();
         }
-        if self.turn.beat.val().get_bit(7) {
+        if self.turn.beat.val().get_bit(BEAT_PUT) {
             self.taken_word.d.next = self.put_word.val();
         }
 
@@ -58,7 +62,7 @@ impl<const N: usize> Logic for Engine<N> {
         if self.strobe.val() {
             self.going.d.next = self.go.val();
         }
-        if self.turn.beat.val().get_bit(12) {
+        if self.turn.beat.val().get_bit(BEAT_LAST) {
             self.mask.d.next =
                 (self.mask.q.val() >> self.by_one.val()) | (self.mask.q.val() << self.to_top.val());
         }
@@ -71,7 +75,7 @@ impl<const N: usize> Logic for Engine<N> {
         }
 
         // Collects the results of the time slots.
-        if self.turn.beat.val().get_bit(12) {
+        if self.turn.beat.val().get_bit(BEAT_LAST) {
             self.unfed.d.next = self.unfed.q.val() | (self.masked.val() & self.queue.empty.val());
             self.held.d.next = self.held.q.val()
                 | (self.masked.val() & (self.queue.goes_on.val() | self.homes.slows.val()));
@@ -135,14 +139,14 @@ impl<const N: usize> Logic for Engine<N> {
         self.queue.clear.next = self.stops.clearing.val();
         self.queue.take.next = self.take.val();
         self.queue.put_word.next = self.put_word.val();
-        self.queue.last.next = self.put_data.val().get_bit(0);
+        self.queue.last.next = self.put_data.val().get_bit(COMMIT_LAST);
         self.queue.ended.next = self.adder.ended.val();
         self.queue.overflow.next = self.adder.overflow.val();
         self.queue.least.next = self.adder.least.val();
         self.queue.turned.next = self.adder.turned.val();
         self.queue.back.next = self.adder.back.val();
-        self.queue.pulses.next = self.counts.val().get_bits::<3>(0);
-        self.queue.losses.next = self.counts.val().get_bits::<3>(3);
+        self.queue.pulses.next = self.counts.val().get_bits::<3>(COUNTS_PULSES);
+        self.queue.losses.next = self.counts.val().get_bits::<3>(COUNTS_LOSSES);
 
         self.adder.beat.next = self.turn.beat.val();
         self.adder.word.next = self.store.word.val();
@@ -171,19 +175,19 @@ impl<const N: usize> Logic for Engine<N> {
         self.store.get_item.next = self.get_item.val();
         self.store.sum.next = self.adder.sum.val();
 
-        self.wheel.turn_ends.next = self.turn.beat.val().get_bit(12);
+        self.wheel.turn_ends.next = self.turn.beat.val().get_bit(BEAT_LAST);
         self.wheel.lane.next = self.turn.lane.val();
         self.wheel.crosses.next = self.queue.moves.val() & self.adder.crosses.val();
         self.wheel.has_sign.next = self.queue.moves.val() & !self.adder.still.val();
         self.wheel.back.next = self.adder.back.val();
-        self.wheel.phase_known.next = self.turn.beat.val().get_bit(16);
+        self.wheel.phase_known.next = self.turn.beat.val().get_bit(BEAT_PHASE);
         self.wheel.q.next = self.adder.q.val();
 
         self.get_data.next = self.store.word.val();
-        self.get_valid.next = self.turn.beat.val().get_bit(11);
-        self.latch.next = self.turn.beat.val().get_bit(6) & self.homes.waits.val();
+        self.get_valid.next = self.turn.beat.val().get_bit(BEAT_GOT);
+        self.latch.next = self.turn.beat.val().get_bit(BEAT_LATCH) & self.homes.waits.val();
         self.latch_axis.next = self.turn.axis.val();
-        self.limits.turn_ends.next = self.turn.beat.val().get_bit(12);
+        self.limits.turn_ends.next = self.turn.beat.val().get_bit(BEAT_LAST);
         self.limits.axis.next = self.turn.axis.val();
         self.limits.axis_next.next = self.turn.axis_next.val();
         self.limits.lane.next = self.turn.lane.val();
@@ -197,14 +201,14 @@ impl<const N: usize> Logic for Engine<N> {
 
         self.homes.set.next = self.home_valid.val();
         self.homes.mask.next = self.home_mask.val();
-        self.homes.turn_ends.next = self.turn.beat.val().get_bit(12);
+        self.homes.turn_ends.next = self.turn.beat.val().get_bit(BEAT_LAST);
         self.homes.lane.next = self.turn.lane.val();
         self.homes.hit.next = self.limits.hit.val();
         self.homes.goes_on.next = self.queue.goes_on.val();
         self.homes.resetting.next = self.resets.resetting.val();
 
         self.stops.strobe.next = self.strobe.val();
-        self.stops.turn_ends.next = self.turn.beat.val().get_bit(12);
+        self.stops.turn_ends.next = self.turn.beat.val().get_bit(BEAT_LAST);
         self.stops.lane.next = self.turn.lane.val();
         self.stops.runs.next = self.queue.running.val();
         self.stops.too_fast.next = self.queue.too_fast.val();
