@@ -80,6 +80,8 @@ indices! {
 
     /// The sum is P + V, low half.
     BEAT_SUM_P_LOW = 5;
+    /// The sum is the remaining ticks - 1, or at rest the discarded steps.
+    BEAT_SUM_TICKS = 6;
     /// The sum is the word of the host, unchanged.
     BEAT_SUM_PUT = 8;
     /// The sum is P + V, high half.
@@ -100,7 +102,7 @@ indices! {
     /// P + V is written, low half.
     BEAT_WRITE_P_LOW = BEAT_SUM_P_LOW + 1;
     /// The remaining ticks are written, or at rest the discarded steps.
-    BEAT_WRITE_TICKS = 7;
+    BEAT_WRITE_TICKS = BEAT_SUM_TICKS + 1;
     /// The position is written.
     BEAT_WRITE_POSITION = 8;
     /// The word of the host is written.
