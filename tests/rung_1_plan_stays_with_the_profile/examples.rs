@@ -13,7 +13,7 @@ fn machine(start: &str, speed: &str, accel: &str, phase: &str) -> String {
 fn axis_table(name: &str, start: &str, speed: &str, accel: &str) -> String {
     format!(
         "[[machine.axis]]\nname = \"{name}\"\nsteps_per_unit = 1.0\nstart_speed = {start}\nspeed_limit = {speed}\n\
-         accel_limit = {accel}\nstep_ns = 100\ngap_ns = 100\nsetup_ns = 200\nhold_ns = 200\n"
+         accel_limit = {accel}\nstep_high_ns = 100\nstep_low_ns = 100\ndir_setup_ns = 200\ndir_hold_ns = 200\n"
     )
 }
 
@@ -129,7 +129,7 @@ fn reversals_rest_only_if_the_pin_timing_needs_it() {
 
     for phase in ["half", "zero"] {
         let abrupt = machine("200000.0", "200000.0", "1.0e9", phase)
-            .replace("setup_ns = 200\n", "setup_ns = 20000\n");
+            .replace("dir_setup_ns = 200\n", "dir_setup_ns = 20000\n");
         let moves = ["constant", "constant", "constant", "constant"].iter().zip([-5, 5, 5, -5]);
         let moves: String = moves.map(|(profile, steps)| moving(profile, None, steps)).collect();
         let (_, plan) = planned(&(abrupt + &moves));

@@ -49,7 +49,7 @@ fn slow_moves(profile: ProfileKind) -> impl Strategy<Value = SlowMove> {
             let machine = format!(
                 "[machine]\nclock_hz = 64_000_000\ntick_ns = {tick_ns}\nphases = {phases}\nphase = \"{phase}\"\n\
                  [[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nstart_speed = {start:?}\nspeed_limit = {speed:?}\n\
-                 accel_limit = {accel:?}\njerk_limit = {:?}\nstep_ns = 100\ngap_ns = 100\nsetup_ns = 100\nhold_ns = 100\n",
+                 accel_limit = {accel:?}\njerk_limit = {:?}\nstep_high_ns = 100\nstep_low_ns = 100\ndir_setup_ns = 100\ndir_hold_ns = 100\n",
                 10.0 * accel
             );
             let steps = if backward { -(steps as i64) } else { steps as i64 };

@@ -237,7 +237,8 @@ fn pins_are_free(plan: &Plan, axis: usize, edges: &[Edge]) {
     let clock = |edge: &Edge| {
         i128::from(edge.tick) * clocks + i128::from(edge.phase * timebase.clocks_per_phase())
     };
-    let [width, gap, setup, hold] = [pins.width, pins.gap, pins.setup, pins.hold].map(i128::from);
+    let [step_high, step_low, dir_setup, dir_hold] =
+        [pins.step_high, pins.step_low, pins.dir_setup, pins.dir_hold].map(i128::from);
     let mut signs = plan.axis_segments(axis).filter_map(|(first, s)| {
         let begins = [s.v, s.a, s.j].iter().position(|&r| r != 0)? as u32;
         let sign = [s.v, s.a, s.j][begins as usize];
@@ -251,15 +252,15 @@ fn pins_are_free(plan: &Plan, axis: usize, edges: &[Edge]) {
         while let Some((at, backward)) = next.filter(|&(at, _)| at <= now) {
             if backward != dir {
                 dir = backward;
-                turned = last.map_or(at, |last| at.max(last + hold));
+                turned = last.map_or(at, |last| at.max(last + dir_hold));
             }
             next = signs.next();
         }
         assert_eq!(dir, edge.backward, "DIR at {edge:?}");
-        assert!(now >= turned + setup, "set-up before {edge:?}: {turned} {setup}");
+        assert!(now >= turned + dir_setup, "set-up before {edge:?}: {turned} {dir_setup}");
         assert!(
-            last.is_none_or(|last| now >= last + width + gap),
-            "width and gap before {edge:?}: {last:?}"
+            last.is_none_or(|last| now >= last + step_high + step_low),
+            "step_high and step_low before {edge:?}: {last:?}"
         );
         last = Some(now);
     }

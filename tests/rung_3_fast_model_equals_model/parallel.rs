@@ -92,7 +92,7 @@ fn ten_million_edges_from_zero_phase() {
 /// The pin timings delay steps and changes of DIR, and cause overruns.
 #[test]
 fn registers_are_equal_with_slow_pins() {
-    let slow = PinTiming { width: 12, gap: 20, setup: 30, hold: 70 };
+    let slow = PinTiming { step_high: 12, step_low: 20, dir_setup: 30, dir_hold: 70 };
     let build = Build { pins: [slow; AXES], ..lockstep::tight_build(16, StartPhase::Half) };
     let edges = dense_programs(&build, 500, 400);
     assert!(edges >= 10_000, "only {edges} edges");

@@ -1,7 +1,7 @@
 //! Rust-HDL's simulation of the engine is the engine's model, every output in every clock, and the
 //! engine's memory holds what the model holds.
 
-use carrystep_core::engine::{EngineInputs, Limits};
+use carrystep_core::engine::{EngineInputs, LimitWiring};
 use carrystep_core::{EngineBuild, Program, StartPhase};
 use carrystep_hdl::EngineSim;
 use carrystep_model::Engine;
@@ -75,32 +75,32 @@ fn in_rust_hdl(build: &EngineBuild, usual: u64) {
 
 #[test]
 fn random_programs_at_16_phases() {
-    in_rust_hdl(&build(6, 80_000_000, 16, StartPhase::Half, Limits::Pair), 400_000);
+    in_rust_hdl(&build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair), 400_000);
 }
 
 #[test]
 fn random_programs_at_1_phase_in_the_shortest_tick() {
-    in_rust_hdl(&build(6, 79_000_000, 1, StartPhase::Half, Limits::One), 200_000);
+    in_rust_hdl(&build(6, 79_000_000, 1, StartPhase::Half, LimitWiring::One), 200_000);
 }
 
 #[test]
 fn random_programs_of_eight_axes_at_4_phases_with_clocks_to_spare() {
-    in_rust_hdl(&build(8, 120_000_000, 4, StartPhase::Zero, Limits::Each), 200_000);
+    in_rust_hdl(&build(8, 120_000_000, 4, StartPhase::Zero, LimitWiring::Each), 200_000);
 }
 
 #[test]
 fn random_programs_of_eight_axes_at_1_phase_in_the_shortest_tick() {
-    in_rust_hdl(&build(8, 105_000_000, 1, StartPhase::Half, Limits::Pair), 200_000);
+    in_rust_hdl(&build(8, 105_000_000, 1, StartPhase::Half, LimitWiring::Pair), 200_000);
 }
 
 #[test]
 fn random_programs_of_one_axis_in_the_shortest_phases() {
-    in_rust_hdl(&build(1, 32_000_000, 16, StartPhase::Half, Limits::Pair), 100_000);
+    in_rust_hdl(&build(1, 32_000_000, 16, StartPhase::Half, LimitWiring::Pair), 100_000);
 }
 
 #[test]
 fn random_programs_of_one_axis_in_the_shortest_tick() {
-    in_rust_hdl(&build(1, 16_000_000, 4, StartPhase::Zero, Limits::One), 100_000);
+    in_rust_hdl(&build(1, 16_000_000, 4, StartPhase::Zero, LimitWiring::One), 100_000);
 }
 
 /// Rung 5 compares the Verilog of the first set, with the parameters of each, with the same programs.
@@ -111,7 +111,7 @@ fn random_programs_with_each_set_of_parameters() {
 
 #[test]
 fn engine_without_a_host_stays_idle() {
-    let build = build(6, 80_000_000, 16, StartPhase::Half, Limits::None);
+    let build = build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::None);
     let mut engine = EngineSim::new(&build).expect("a fine build");
     for _ in 0..1000 {
         let outputs = engine.settle(&EngineInputs::default());

@@ -1,6 +1,6 @@
 //! The exported engine in Icarus and in Verilator is the engine's model, every output in every clock.
 
-use carrystep_core::engine::{CAUSES, Cause, Limits, QUEUE};
+use carrystep_core::engine::{CAUSES, Cause, LimitWiring, QUEUE};
 use carrystep_core::{
     AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
 };
@@ -78,13 +78,13 @@ impl Seen {
 
 #[test]
 fn random_programs_in_verilator() {
-    let build = build(6, 80_000_000, 16, StartPhase::Half, Limits::Pair);
+    let build = build(6, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
     in_verilog(Level::Verilator, &build, 7_000_000).assert_everything();
 }
 
 #[test]
 fn random_programs_of_eight_axes_in_verilator() {
-    let build = build(8, 112_000_000, 16, StartPhase::Half, Limits::Each);
+    let build = build(8, 112_000_000, 16, StartPhase::Half, LimitWiring::Each);
     let seen = in_verilog(Level::Verilator, &build, 2_000_000);
     assert!(seen.edges > 0 && seen.together > 0, "too little happens: {seen:?}");
 }
@@ -93,20 +93,32 @@ fn random_programs_of_eight_axes_in_verilator() {
 fn random_programs_of_one_axis_in_verilator() {
     in_verilog(
         Level::Verilator,
-        &build(1, 32_000_000, 16, StartPhase::Zero, Limits::Pair),
+        &build(1, 32_000_000, 16, StartPhase::Zero, LimitWiring::Pair),
         1_000_000,
     );
 }
 
 #[test]
 fn random_programs_in_icarus() {
-    in_verilog(Level::Icarus, &build(6, 96_000_000, 4, StartPhase::Zero, Limits::One), 150_000);
+    in_verilog(
+        Level::Icarus,
+        &build(6, 96_000_000, 4, StartPhase::Zero, LimitWiring::One),
+        150_000,
+    );
 }
 
 #[test]
 fn random_programs_of_one_and_of_eight_axes_in_icarus() {
-    in_verilog(Level::Icarus, &build(1, 32_000_000, 16, StartPhase::Half, Limits::Each), 50_000);
-    in_verilog(Level::Icarus, &build(8, 112_000_000, 16, StartPhase::Zero, Limits::Pair), 100_000);
+    in_verilog(
+        Level::Icarus,
+        &build(1, 32_000_000, 16, StartPhase::Half, LimitWiring::Each),
+        50_000,
+    );
+    in_verilog(
+        Level::Icarus,
+        &build(8, 112_000_000, 16, StartPhase::Zero, LimitWiring::Pair),
+        100_000,
+    );
 }
 
 /// The Verilog of the one build, instantiated with the parameters of the other under the top's usual name.
@@ -155,7 +167,7 @@ fn verilog_with_one_wrong_parameter_is_another() {
     let sets = parameter_sets();
     let verilog = carrystep_verilog::engine_verilog(&sets[0], "a test").expect("a fine build");
     let mut wrong = sets[1].clone();
-    wrong.pins[0].width += 1;
+    wrong.pins[0].step_high += 1;
     let text = with_parameters(&verilog, &wrong);
     let differs = Cell::new(false);
     run_programs(&sets[1], 50_000, |program, events| {

@@ -5,7 +5,7 @@ use carrystep_core::{Command, Segment};
 use carrystep_simulators::Level;
 use carrystep_simulators::engine::replay::{self, Recording};
 use carrystep_tests::effort;
-use carrystep_tools::equivalence::{self, Verdict};
+use carrystep_tools::equivalence::{self, EquivalenceVerdict};
 use carrystep_tools::{SynthesisError, ice40, kept};
 use std::ops::Range;
 
@@ -54,7 +54,10 @@ fn faults_in_the_netlist_are_caught() {
         let verdict = equivalence::verilog_and_netlist(&stages.verilog, &stages.netlist, &text)
             .expect("a verdict");
         effort::say(&format!("{fault}: {verdict:?}"));
-        assert!(matches!(verdict, Verdict::Open(..)), "nobody catches {fault}: {verdict:?}");
+        assert!(
+            matches!(verdict, EquivalenceVerdict::Open(..)),
+            "nobody catches {fault}: {verdict:?}"
+        );
     }
     kept::say();
 }
@@ -83,9 +86,9 @@ fn is_caught(stages: &Stages, asc: &str) -> bool {
             .map(|verdict| (verdict, same_memories))
     });
     match verdict {
-        Ok((Verdict::Proved(_), same_memories)) => !same_memories,
+        Ok((EquivalenceVerdict::Proved(_), same_memories)) => !same_memories,
         // A bitstream that cannot be read back or contains a loop is detected as wrong.
-        Ok((Verdict::Open(..), _))
+        Ok((EquivalenceVerdict::Open(..), _))
         | Err(SynthesisError::Tool { .. } | SynthesisError::Unread { .. }) => true,
         Err(error) => panic!("{error}"),
     }

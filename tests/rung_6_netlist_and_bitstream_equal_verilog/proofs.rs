@@ -2,7 +2,7 @@
 
 use crate::stages;
 use carrystep_tests::effort;
-use carrystep_tools::equivalence::{self, Verdict};
+use carrystep_tools::equivalence::{self, EquivalenceVerdict};
 use carrystep_tools::kept;
 
 #[test]
@@ -13,7 +13,7 @@ fn netlist_is_proved_equal_to_the_verilog() {
     let verdict = verdict.expect("a verdict");
     effort::say(&format!("Verilog and netlist: {verdict:?}"));
     kept::say();
-    assert!(matches!(verdict, Verdict::Proved(pairs) if pairs > 1000), "{verdict:?}");
+    assert!(matches!(verdict, EquivalenceVerdict::Proved(pairs) if pairs > 1000), "{verdict:?}");
 }
 
 #[test]
@@ -23,7 +23,7 @@ fn bitstream_is_proved_equal_to_the_netlist() {
         equivalence::netlist_and_bitstream(&stages.netlist, &stages.read_back).expect("a verdict");
     effort::say(&format!("netlist and bitstream: {verdict:?}"));
     kept::say();
-    assert!(matches!(verdict, Verdict::Proved(pairs) if pairs > 800), "{verdict:?}");
+    assert!(matches!(verdict, EquivalenceVerdict::Proved(pairs) if pairs > 800), "{verdict:?}");
 }
 
 #[test]

@@ -3,18 +3,18 @@
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::Guard;
 use carrystep_files::Machine;
-use carrystep_tools::ice40::{self, Netlist, Part, Placed};
+use carrystep_tools::ice40::{self, Netlist, NextpnrPart, PlacedDesign};
 use std::path::Path;
 use std::sync::OnceLock;
 
 /// A part with pins for all ports of the engine.
-const PART: Part<'static> = Part { device: "hx8k", package: "ct256" };
+const PART: NextpnrPart<'static> = NextpnrPart { device: "hx8k", package: "ct256" };
 
 pub struct Stages {
     pub build: EngineBuild,
     pub verilog: String,
     pub netlist: Netlist,
-    pub placed: Placed,
+    pub placed: PlacedDesign,
     /// The bitstream, read back as Verilog.
     pub read_back: String,
 }

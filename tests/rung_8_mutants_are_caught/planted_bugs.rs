@@ -181,8 +181,8 @@ fn rung_1_catches_each_bug_in_the_plan() {
     }
 
     let mut early = plan.build.clone();
-    early.pins[3].width -= 1;
-    early.pins[3].gap += 1;
+    early.pins[3].step_high -= 1;
+    early.pins[3].step_low += 1;
     let report = moves::check(&file, &plan, &[], &plan.program(), &early);
     assert!(!report.axes[3].passed, "rung 1 does not catch 'a pulse one clock short'");
 }

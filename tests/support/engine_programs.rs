@@ -4,7 +4,7 @@
 
 use crate::programs::{self, all};
 use crate::{effort, lockstep};
-use carrystep_core::engine::{Guard, Limits, QUEUE};
+use carrystep_core::engine::{Guard, LimitWiring, QUEUE};
 use carrystep_core::{AXES, Build, Command, EngineBuild, Program, Segment, StartPhase, Timebase};
 use carrystep_simulators::engine::{Event, Events};
 use proptest::prelude::*;
@@ -160,22 +160,22 @@ pub fn build(
     clock_hz: u64,
     phases: u32,
     phase: StartPhase,
-    limits: Limits,
+    limits: LimitWiring,
 ) -> EngineBuild {
     let timebase = Timebase::new(clock_hz, 1000, phases).expect("a fine timebase");
     let mut build = Build { timebase, ..lockstep::tight_build(phases, phase) };
-    build.pins[3].gap = 237;
-    build.pins[5].hold = 221;
+    build.pins[3].step_low = 237;
+    build.pins[5].dir_hold = 221;
     let mut build = EngineBuild::minimal(&build, 1);
     build.pins = build.pins.iter().copied().cycle().take(axes).collect();
-    let low = limits == Limits::Pair;
+    let low = limits == LimitWiring::Pair;
     build.guard = Guard {
         round: 2,
         debounce: 3,
         watchdog: 40,
         enable: 2,
         limits,
-        limit_freezes: limits == Limits::Each,
+        limit_freezes: limits == LimitWiring::Each,
         estop_low: low,
         limits_low: low,
         stop: (0..axes).map(|axis| 1 << (52 + 2 * (axis % AXES))).collect(),
@@ -186,13 +186,13 @@ pub fn build(
 /// Four sets of parameters of the engine of six axes and 16 phases, which is one text of Verilog. Each differs from the
 /// first in every parameter but the second's e-stop and limits.
 pub fn parameter_sets() -> [EngineBuild; 4] {
-    let first = build(AXES, 80_000_000, 16, StartPhase::Half, Limits::Pair);
-    let second = build(AXES, 96_000_000, 16, StartPhase::Zero, Limits::Pair);
-    let mut third = build(AXES, 112_000_000, 16, StartPhase::Zero, Limits::Each);
+    let first = build(AXES, 80_000_000, 16, StartPhase::Half, LimitWiring::Pair);
+    let second = build(AXES, 96_000_000, 16, StartPhase::Zero, LimitWiring::Pair);
+    let mut third = build(AXES, 112_000_000, 16, StartPhase::Zero, LimitWiring::Each);
     third.guard = Guard { round: 8, debounce: 1, watchdog: 0, enable: 0, ..third.guard };
     third.pins.reverse();
     third.guard.stop.reverse();
-    let mut fourth = build(AXES, 128_000_000, 16, StartPhase::Zero, Limits::One);
+    let mut fourth = build(AXES, 128_000_000, 16, StartPhase::Zero, LimitWiring::One);
     fourth.guard = Guard { round: 4, debounce: 5, watchdog: 21, enable: 7, ..fourth.guard };
     fourth.pins.rotate_left(2);
     fourth.guard.stop = (1..=AXES as u64).map(|axis| (axis << 53) - 1).collect();

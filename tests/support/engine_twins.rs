@@ -101,7 +101,7 @@ pub fn run(
                 let now = slow.shaper(axis);
                 let edge = |change| Edge { clock, axis: axis as u8, change, backward: now.dir };
                 slow_edges.extend((now.step && !before.step).then(|| edge(Change::Rise)));
-                slow_edges.extend((now.dir != before.dir).then(|| edge(Change::Turn)));
+                slow_edges.extend((now.dir != before.dir).then(|| edge(Change::DirChange)));
             }
         }
         came.clocks = fast.cycle();

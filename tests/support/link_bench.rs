@@ -14,7 +14,7 @@ use hosts::{Receiver, Sender, SpiHost};
 
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{EngineInputs, EngineOutputs};
-use carrystep_core::link::{END, Line, LinkInputs, LinkOutputs, Uart};
+use carrystep_core::link::{END, LineKind, LinkInputs, LinkOutputs, Uart};
 use carrystep_hdl::{AnyLink, EngineSim, LinkSim, SpiSim, link};
 use carrystep_model::Link;
 use std::collections::VecDeque;
@@ -56,9 +56,9 @@ impl LinkBench {
 
     /// The same over SPI; `tenths` is half a period of SCK in tenths of a clock.
     pub fn spi(build: &EngineBuild, tenths: u32) -> Self {
-        let mut link = link(build, Line::Spi.build_id(build)).expect("a link");
+        let mut link = link(build, LineKind::Spi.build_id(build)).expect("a link");
         link.connect_all();
-        let model = Link::new(build, Line::Spi);
+        let model = Link::new(build, LineKind::Spi);
         Self::new(
             build,
             Wire::Spi {

@@ -140,7 +140,12 @@ pub fn edges_on_the_pins(build: &Build, record: &Record, axis: usize) -> Vec<Edg
 /// A build for random programs with the fewest clocks per tick. The axes have very different pin
 /// timings, so that overruns and waits for set-up and for hold all occur.
 pub fn tight_build(phases: u32, phase: StartPhase) -> Build {
-    let pins = |width, gap, setup, hold| PinTiming { width, gap, setup, hold };
+    let pins = |step_high, step_low, dir_setup, dir_hold| PinTiming {
+        step_high,
+        step_low,
+        dir_setup,
+        dir_hold,
+    };
     let pins: [PinTiming; AXES] = [
         PinTiming::SHORTEST,
         pins(2, 3, 1, 1),

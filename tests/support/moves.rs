@@ -1,11 +1,11 @@
 //! Move files and golden cases as programs for the levels.
 
 use crate::golden::Case;
-use carrystep_check::{AxisSetup, Checker, Origin, Report, Setup};
+use carrystep_check::{AxisSetup, CheckReport, Checker, Origin, Setup};
 use carrystep_core::{AXES, Build, Command, EngineBuild, Program, Segment};
-use carrystep_files::{Machine, MoveFile, Source};
+use carrystep_files::{Machine, MoveFile, SourceText};
 use carrystep_plan::Plan;
-use carrystep_profile::{Line, Timeline};
+use carrystep_profile::{StraightLine, Timeline};
 use carrystep_simulators::pins::PinFeed;
 use carrystep_simulators::{Job, Level};
 use std::path::Path;
@@ -44,7 +44,7 @@ pub fn curves_at_6_mhz() -> Plan {
 
 /// A text that is a move file of this clock, planned.
 fn planned_at(name: &str, text: String, clock_hz: u64) -> Plan {
-    let file = MoveFile::from_source(Source { path: name.into(), text: text.into() })
+    let file = MoveFile::from_source(SourceText { path: name.into(), text: text.into() })
         .expect("a fine move file");
     assert_eq!(file.machine.timebase.clock_hz(), clock_hz, "{name}");
     carrystep_plan::plan::<f64>(&file).expect("a plan")
@@ -56,7 +56,7 @@ pub fn nudge() -> (EngineBuild, Plan) {
     let engine = machine.engine();
     let to = "[[move]]\nprofile = \"ranade\"\nto = { x = 0.1, y = -0.1, z = 0.01, a = 1, b = -0.2, c = 5 }\n";
     let text = format!("{to}{}", to.replace("x = 0.1, y = -0.1", "x = -0.1, y = 0.1"));
-    let source = Source { path: "nudge.toml".into(), text: text.into() };
+    let source = SourceText { path: "nudge.toml".into(), text: text.into() };
     let file = MoveFile::of_moves(machine, source).expect("fine moves");
     (engine, carrystep_plan::plan::<f64>(&file).expect("a plan"))
 }
@@ -99,10 +99,10 @@ pub fn side_by_side(cases: &[&Case]) -> (Program, u64) {
 pub fn check(
     file: &MoveFile,
     plan: &Plan,
-    lines: &[Line],
+    lines: &[StraightLine],
     program: &Program,
     build: &Build,
-) -> Report {
+) -> CheckReport {
     let timelines = plan.timelines();
     let job = Job::new(build, program, plan.total_ticks());
     let mut checker =

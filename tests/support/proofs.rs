@@ -21,7 +21,8 @@ pub(crate) mod builds;
 mod edge;
 mod engine;
 pub mod equivalence;
-mod homes;
+mod event_wheel;
+mod homing_control;
 mod limits;
 mod promises;
 mod pulser;
@@ -32,11 +33,10 @@ mod shaper;
 mod six_axis;
 mod solver;
 mod stops;
+mod supervisor;
 mod table;
 mod tick;
-mod turn;
-mod watch;
-mod wheel;
+mod time_slot;
 
 pub use promises::Promises;
 pub use solver::{ProofError, Question, ask, tools};
@@ -133,13 +133,13 @@ pub fn all_with(engine: &builds::BuiltEngine) -> Vec<Proof> {
         six_axis::proof(),
         pulser::proof(engine),
         stops::proof(engine),
-        watch::proof(engine),
+        supervisor::proof(engine),
         queue::proof(engine),
         limits::proof(engine),
-        homes::proof(engine),
+        homing_control::proof(engine),
         resets::proof(engine),
-        turn::proof(engine),
-        wheel::proof(engine),
+        time_slot::proof(engine),
+        event_wheel::proof(engine),
         adder::proof(engine),
         engine::proof(engine),
     ]

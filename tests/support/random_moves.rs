@@ -1,7 +1,7 @@
 //! Generates random moves of random machines, as move files.
 
 use carrystep_core::{PinTimes, ProfileKind};
-use carrystep_files::{MoveFile, Source};
+use carrystep_files::{MoveFile, SourceText};
 use carrystep_plan::plan;
 use proptest::prelude::*;
 
@@ -20,7 +20,7 @@ pub enum Pace {
 
 /// A move file from its text.
 pub fn file(text: &str) -> MoveFile {
-    MoveFile::from_source(Source { path: "test.toml".into(), text: text.into() })
+    MoveFile::from_source(SourceText { path: "test.toml".into(), text: text.into() })
         .unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
@@ -66,12 +66,12 @@ impl RandomMoves {
             self.tick_ns, self.phases
         );
         for (i, axis) in self.axes.iter().enumerate() {
-            let PinTimes { width, gap, setup, hold } = axis.pins;
+            let PinTimes { step_high, step_low, dir_setup, dir_hold } = axis.pins;
             // The greatest speed that tick, phases, width and gap allow; dividing by the units
             // makes it fractional.
             let clocks = |ns: u64| ((ns * CLOCK_HZ).div_ceil(1_000_000_000)).max(1) as f64;
             let phase = (self.tick_ns * CLOCK_HZ / 1_000_000_000) as f64 / f64::from(self.phases);
-            let period = (clocks(width) + clocks(gap) + phase) / CLOCK_HZ as f64;
+            let period = (clocks(step_high) + clocks(step_low) + phase) / CLOCK_HZ as f64;
             let most = (1.0 / period).min(0.4999e9 / self.tick_ns as f64);
             let speed = axis.speed.min(most * 0.999999);
             let accel = axis.accel.min(0.49e18 / (self.tick_ns * self.tick_ns) as f64);
@@ -79,8 +79,8 @@ impl RandomMoves {
             write!(
                 text,
                 "[[machine.axis]]\nname = \"a{i}\"\nsteps_per_unit = {u:?}\nspeed_limit = {:?}\nstart_speed = {:?}\n\
-                 accel_limit = {:?}\njerk_limit = {:?}\nstep_ns = {width}\ngap_ns = {gap}\nsetup_ns = {setup}\n\
-                 hold_ns = {hold}\n",
+                 accel_limit = {:?}\njerk_limit = {:?}\nstep_high_ns = {step_high}\nstep_low_ns = {step_low}\ndir_setup_ns = {dir_setup}\n\
+                 dir_hold_ns = {dir_hold}\n",
                 speed / u,
                 speed * axis.start / u * 0.9999999,
                 accel / u,
@@ -152,13 +152,15 @@ fn axis(pace: Pace) -> impl Strategy<Value = RandomAxis> {
     let pins = [1_u64..3000, 1_u64..3000, 1_u64..40_000, 1_u64..40_000];
     let unit = prop_oneof![Just(1.0), Just(80.0), decades(0.01, 1000.0)];
     (speed, start, accel, jerk, unit, pins).prop_map(
-        |(speed, start, accel, jerk, per_unit, [width, gap, setup, hold])| RandomAxis {
-            speed,
-            start,
-            accel,
-            jerk,
-            per_unit,
-            pins: PinTimes { width, gap, setup, hold },
+        |(speed, start, accel, jerk, per_unit, [step_high, step_low, dir_setup, dir_hold])| {
+            RandomAxis {
+                speed,
+                start,
+                accel,
+                jerk,
+                per_unit,
+                pins: PinTimes { step_high, step_low, dir_setup, dir_hold },
+            }
         },
     )
 }

@@ -121,7 +121,7 @@ impl Twins {
                 self.slow_edges.push(edge(axis, Change::Rise, dir));
             }
             if dir != dir_before {
-                self.slow_edges.push(edge(axis, Change::Turn, dir));
+                self.slow_edges.push(edge(axis, Change::DirChange, dir));
             }
         }
     }

@@ -52,7 +52,7 @@ fn changes(pins: impl Iterator<Item = (u64, u8, u8)>, start: u64) -> Vec<(u64, u
 #[test]
 fn engine_pulses_equal_those_of_the_parallel_axes() {
     let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
-    let pins = [PinTiming { width: 9, gap: 7, setup: 20, hold: 11 }; AXES];
+    let pins = [PinTiming { step_high: 9, step_low: 7, dir_setup: 20, dir_hold: 11 }; AXES];
     let build = Build { timebase, phase: StartPhase::Half, pins };
     let engine = EngineBuild::minimal(&build, 1 << 40);
     let mut runner =

@@ -4,7 +4,7 @@
 
 use carrystep_tests::effort;
 use carrystep_tools::resources::{
-    self, EIGHT_TO_SIX, FAMILIES, LINES, LINK_BUDGET, PAGE, ROWS, Row,
+    self, EIGHT_TO_SIX, EngineRow, FAMILIES, LINES, LINK_BUDGET, PAGE, ROWS,
 };
 use carrystep_tools::{ice40, kept, xilinx};
 use carrystep_verilog::ENGINE_NAME;
@@ -47,7 +47,7 @@ fn eight_axes_need_few_more_logic_cells_than_six() {
 
 #[test]
 fn placed_engines_reach_their_clock() {
-    let reached = |row: &Row| {
+    let reached = |row: &EngineRow| {
         let mut speeds =
             resources::placed(row).expect("a netlist").map(|mhz| mhz.expect("a placed design"));
         speeds.find(|mhz| mhz * 1e6 >= row.clock_hz as f64)

@@ -2,7 +2,7 @@
 //! there, while the other axes continue unchanged. The exported Verilog does the same in every
 //! clock, and planted bugs are caught.
 
-use carrystep_core::engine::{Cause, Guard, Limits};
+use carrystep_core::engine::{Cause, Guard, LimitWiring};
 use carrystep_core::{
     AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
 };
@@ -20,9 +20,9 @@ const THEN: u64 = 30_000;
 /// The axis that homes; it moves backward.
 const HOMING: usize = 1;
 
-fn build(limits: Limits) -> EngineBuild {
+fn build(limits: LimitWiring) -> EngineBuild {
     let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
-    let pins = [PinTiming { width: 5, gap: 5, setup: 3, hold: 3 }; AXES];
+    let pins = [PinTiming { step_high: 5, step_low: 5, dir_setup: 3, dir_hold: 3 }; AXES];
     let build = EngineBuild::minimal(&Build { timebase, phase: StartPhase::Half, pins }, 1 << 53);
     EngineBuild {
         guard: Guard { round: 2, debounce: 3, enable: 2, limits, ..build.guard },
@@ -56,7 +56,7 @@ fn events(then: u64) -> Events {
     ]
 }
 
-fn run(limits: Limits, program: &Program, events: &Events) -> Recording {
+fn run(limits: LimitWiring, program: &Program, events: &Events) -> Recording {
     Recording::new(&build(limits), program, events, 300_000)
 }
 
@@ -72,7 +72,7 @@ fn edges(recording: &Recording, axis: usize) -> Vec<u64> {
 
 #[test]
 fn homing_axis_slows_down_alone_at_its_limit() {
-    for limits in [Limits::Pair, Limits::Each] {
+    for limits in [LimitWiring::Pair, LimitWiring::Each] {
         let free = run(limits, &cruise(), &Events::new());
         let homed = run(limits, &cruise(), &events(THEN));
         assert!(
@@ -110,7 +110,7 @@ fn limit_of_an_axis_that_does_not_home_stops_all_axes() {
         (THEN, Event::LimitMin(1 << 3)),
         (THEN + 3_000, Event::LimitMin(0)),
     ];
-    let recording = run(Limits::Pair, &cruise(), &other);
+    let recording = run(LimitWiring::Pair, &cruise(), &other);
     assert_eq!(
         recording.outputs.iter().find_map(|(_, out)| out.fault),
         Some((Cause::Limit, 1 << 3))
@@ -120,13 +120,13 @@ fn limit_of_an_axis_that_does_not_home_stops_all_axes() {
 #[test]
 fn start_after_homing_calls_protocol_because_the_queue_is_empty() {
     let program = [cruise(), vec![Command::Start { mask: 1 << HOMING }]].concat();
-    let recording = run(Limits::Pair, &program, &events(THEN));
+    let recording = run(LimitWiring::Pair, &program, &events(THEN));
     assert_eq!(recording.outputs.iter().find_map(|(_, out)| out.fault), Some((Cause::Protocol, 0)));
 }
 
 #[test]
 fn latch_reports_the_position_at_the_limit() {
-    let build = build(Limits::Pair);
+    let build = build(LimitWiring::Pair);
     let (mut model, mut engine) =
         (Engine::new(&build), EngineSim::new(&build).expect("a fine build"));
     let mut host = EngineHost::new(&build.guard, &cruise(), &events(THEN));
@@ -138,7 +138,7 @@ fn latch_reports_the_position_at_the_limit() {
             assert_eq!(found.latch, Some(HOMING as u8));
             let says = engine.latched().cast_signed();
             let is = model.shaper(HOMING).position;
-            // A pulse is counted in the register in the turn after the next.
+            // A pulse is counted in the register in the time slot after the next.
             assert!((0..=1).contains(&(says - is)), "says {says}, is {is}");
             told = Some(says);
         }
@@ -161,15 +161,16 @@ fn recordings() -> Vec<Recording> {
     let busy = [cruise(), (1..12).map(late).collect()].concat();
     let waiting = [cruise(), vec![Command::Start { mask: 1 << HOMING }]].concat();
     let mut all: Vec<_> =
-        (0..12).map(|k| run(Limits::Pair, &busy, &events(THEN + 371 * k))).collect();
-    all.extend((0..3).map(|k| run(Limits::Pair, &waiting, &events(THEN + 601 * k))));
+        (0..12).map(|k| run(LimitWiring::Pair, &busy, &events(THEN + 371 * k))).collect();
+    all.extend((0..3).map(|k| run(LimitWiring::Pair, &waiting, &events(THEN + 601 * k))));
     all
 }
 
 /// True if the changed Verilog differs from the model.
 fn caught(change: impl Fn(String) -> String) -> bool {
     let verilog = change(
-        carrystep_verilog::engine_verilog(&build(Limits::Pair), "a test").expect("a fine build"),
+        carrystep_verilog::engine_verilog(&build(LimitWiring::Pair), "a test")
+            .expect("a fine build"),
     );
     let differs = |recording: &Recording| {
         replay::difference(Level::Verilator, &verilog, recording).expect("the tools").is_some()
@@ -183,13 +184,21 @@ fn verilog_homes_in_the_same_clock_as_the_model() {
 }
 
 const BUGS: [planted::Bug; 5] = [
-    ("a limit that is waited for stops all", "limits_hit & !homes_waits &", "limits_hit &"),
-    ("the limit is met once more on the way", "& !homes_slows", ""),
-    ("all axes slow down", "mine_slows <= (slowing & lane_next)", "mine_slows <= (slowing)"),
+    (
+        "a limit that is waited for stops all",
+        "limits_hit & !homing_control_waits &",
+        "limits_hit &",
+    ),
+    ("the limit is met once more on the way", "& !homing_control_slows", ""),
+    (
+        "all axes slow down",
+        "mine_slows <= (slowing & axis_one_hot_next)",
+        "mine_slows <= (slowing)",
+    ),
     ("the queue keeps what waits", "next_live = newest;", "next_live = live_now;"),
     (
         "a start does not wait for an axis that slows",
-        "queue_goes_on | homes_slows",
+        "queue_goes_on | homing_control_slows",
         "queue_goes_on",
     ),
 ];

@@ -1,7 +1,7 @@
 //! Every cause stops the engine as docs/clock-by-clock.md specifies. The exported Verilog does the
 //! same in every clock, and bugs planted in its guard are caught.
 
-use carrystep_core::engine::{Cause, Guard, Limits};
+use carrystep_core::engine::{Cause, Guard, LimitWiring};
 use carrystep_core::{
     AXES, Build, Command, EngineBuild, PinTiming, Program, Segment, StartPhase, Timebase,
 };
@@ -16,10 +16,10 @@ const BACKWARD: u8 = 0b10_1010;
 /// The clock of the events; by then all axes have cruised for some hundred ticks.
 const THEN: u64 = 30_000;
 
-fn build(limits: Limits) -> EngineBuild {
+fn build(limits: LimitWiring) -> EngineBuild {
     let timebase = Timebase::new(80_000_000, 1000, 16).expect("a fine timebase");
-    let mut pins = [PinTiming { width: 5, gap: 5, setup: 3, hold: 3 }; AXES];
-    pins[5].gap = 200;
+    let mut pins = [PinTiming { step_high: 5, step_low: 5, dir_setup: 3, dir_hold: 3 }; AXES];
+    pins[5].step_low = 200;
     let build = EngineBuild::minimal(&Build { timebase, phase: StartPhase::Half, pins }, 1 << 53);
     let guard = Guard { round: 2, debounce: 3, enable: 2, watchdog: 40, limits, ..build.guard };
     EngineBuild { guard, ..build }
@@ -38,7 +38,7 @@ fn cruise(ticks: u32, v: i64, a: i64, last: bool) -> Program {
 /// A program, the events around it, and the expected stop.
 struct Case {
     name: &'static str,
-    limits: Limits,
+    limits: LimitWiring,
     program: Program,
     events: Events,
     fault: (Cause, u8),
@@ -55,7 +55,7 @@ fn cases() -> Vec<Case> {
     };
     let case = |name, events: Events, fault, ramps| Case {
         name,
-        limits: Limits::Pair,
+        limits: LimitWiring::Pair,
         program: cruise(600, 1 << 60, 1 << 51, true),
         events: quiet(events),
         fault,
@@ -84,7 +84,7 @@ fn cases() -> Vec<Case> {
             true,
         ),
         Case {
-            limits: Limits::Each,
+            limits: LimitWiring::Each,
             ..case(
                 "limits for both ends",
                 at(Event::LimitMin(8), Event::LimitMin(0)),
@@ -93,7 +93,7 @@ fn cases() -> Vec<Case> {
             )
         },
         Case {
-            limits: Limits::One,
+            limits: LimitWiring::One,
             ..case(
                 "one limit for all",
                 at(Event::LimitMin(1), Event::LimitMin(0)),

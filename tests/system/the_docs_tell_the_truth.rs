@@ -228,12 +228,12 @@ fn five_minutes_page_shows_table_1_as_addition_gives_it() {
 
 #[test]
 fn a_tick_of_the_engine_has_the_clocks_that_the_page_says() {
-    use carrystep_core::engine::{TURN, clocks_of_turns};
+    use carrystep_core::engine::{TIME_SLOT_CLOCKS, clocks_of_time_slots};
     let text = page("engine.md");
-    let [six, eight] = [6, 8].map(clocks_of_turns);
-    assert!(
-        text.contains(&format!("a turn of {TURN} clocks, so six need {six} and eight {eight}"))
-    );
+    let [six, eight] = [6, 8].map(clocks_of_time_slots);
+    assert!(text.contains(&format!(
+        "a time slot of {TIME_SLOT_CLOCKS} clocks, so six need {six} and eight {eight}"
+    )));
     // The least whole number of MHz that gives this number of clocks in a tick of 1 us, and of 2
     // us.
     let mhz = |us: u32| six.div_ceil(us);

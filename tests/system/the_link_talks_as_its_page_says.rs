@@ -1,9 +1,9 @@
 //! The gateware's end of the link does what docs/protocol.md specifies: the page's example frames
 //! byte by byte, and its other promises.
 
-use carrystep_core::engine::{Cause, Limits};
+use carrystep_core::engine::{Cause, LimitWiring};
 use carrystep_core::link::registers::{CLEAR, CONTROL, HOME, POSITION, SEGMENT, START, of_axis};
-use carrystep_core::link::{Line, Uart};
+use carrystep_core::link::{LineKind, Uart};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_tests::link_bench::{Both, LinkBench, Said, frame, on_the_line, unframe};
 use carrystep_verilog::{LINK_NAME, line_name, line_verilog, link_verilog};
@@ -15,7 +15,7 @@ fn build() -> EngineBuild {
     let timebase = Timebase::new(48_000_000, 2000, 16).expect("a timebase");
     let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
     let mut build = EngineBuild::minimal(&build, 1 << 54);
-    build.guard.limits = Limits::Pair;
+    build.guard.limits = LimitWiring::Pair;
     build
 }
 
@@ -303,7 +303,7 @@ fn segments_over_spi_are_all_accepted() {
 
 /// Runs a session that uses every function, then replays its inputs on the exported Verilog of each
 /// module and compares the outputs with Rust-HDL.
-fn replayed(mut bench: LinkBench, line: Line) {
+fn replayed(mut bench: LinkBench, line: LineKind) {
     bench.vectors = Some(Both::new(line));
     let mut next = 0;
     powered(&mut bench, &mut next);
@@ -356,5 +356,5 @@ fn exported_verilog_of_link_and_uart_equals_rust_hdl() {
 
 #[test]
 fn exported_verilog_of_link_and_spi_equals_rust_hdl() {
-    replayed(LinkBench::spi(&build(), 25), Line::Spi);
+    replayed(LinkBench::spi(&build(), 25), LineKind::Spi);
 }

@@ -14,7 +14,7 @@ const DATA: &str = include_str!("../data/packages.toml");
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Display, JsonSchema, Serialize, Deserialize,
 )]
 #[serde(rename_all = "lowercase")]
-pub enum Mode {
+pub enum ConfigurationMode {
     /// The pin has its function in every mode.
     #[strum(to_string = "every mode")]
     Any,
@@ -63,14 +63,14 @@ type Functions = BTreeMap<String, String>;
 
 impl Package {
     /// The function of a pin in each mode in which it has one.
-    pub fn functions(&self, pin: &str) -> Vec<(Mode, &str)> {
+    pub fn functions(&self, pin: &str) -> Vec<(ConfigurationMode, &str)> {
         let modes = [
-            (Mode::Any, &self.any),
-            (Mode::Serial, &self.serial),
-            (Mode::Spi, &self.spi),
-            (Mode::Parallel, &self.parallel),
-            (Mode::Wide, &self.wide),
-            (Mode::Bpi, &self.bpi),
+            (ConfigurationMode::Any, &self.any),
+            (ConfigurationMode::Serial, &self.serial),
+            (ConfigurationMode::Spi, &self.spi),
+            (ConfigurationMode::Parallel, &self.parallel),
+            (ConfigurationMode::Wide, &self.wide),
+            (ConfigurationMode::Bpi, &self.bpi),
         ];
         modes.into_iter().filter_map(|(mode, pins)| Some((mode, pins.get(pin)?.as_str()))).collect()
     }
@@ -101,7 +101,7 @@ pub struct Shared {
     /// Function of the pin in configuration, such as `HSWAPEN`; several are separated by `/`.
     pub function: String,
     /// The modes in which the pin has this function.
-    pub modes: Vec<Mode>,
+    pub modes: Vec<ConfigurationMode>,
     /// Why this does no harm although the board is configured in one of these modes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
@@ -173,8 +173,8 @@ mod tests {
             assert!(!package.spi.is_empty() || !package.serial.is_empty(), "{}", package.name);
         }
         let mojo = packages().iter().find(|package| package.name == "tqg144").expect("a table");
-        assert_eq!(mojo.functions("P144"), [(Mode::Any, "HSWAPEN")]);
-        assert_eq!(mojo.functions("P59"), [(Mode::Wide, "D10")]);
+        assert_eq!(mojo.functions("P144"), [(ConfigurationMode::Any, "HSWAPEN")]);
+        assert_eq!(mojo.functions("P59"), [(ConfigurationMode::Wide, "D10")]);
         assert_eq!(mojo.functions("P8"), []);
     }
 }

@@ -1,12 +1,12 @@
 //! Reads a board's file and checks it.
 
-use super::configuration::{Mode, Package};
-use super::port::{PORTS, Port};
+use super::configuration::{ConfigurationMode, Package};
+use super::port::{BoardPort, PORTS};
 use super::{Board, Clocking, Family, IoStandard, Oscillator, Part, Place, PllInput, Tie, Wire};
 use carrystep_core::build::Timebase;
 use carrystep_core::engine::{MAX_AXES, check_schedule};
 use carrystep_files::did_you_mean;
-use carrystep_files::error::{InputError, Source};
+use carrystep_files::error::{InputError, SourceText};
 use configuration::{Exception, RESERVED, RawGate};
 use pins::Pins;
 use serde::Deserialize;
@@ -31,7 +31,7 @@ struct RawBoard {
     bitstream: Option<String>,
     bitgen: Option<String>,
     usb: Option<Spanned<String>>,
-    configured: Spanned<Vec<Mode>>,
+    configured: Spanned<Vec<ConfigurationMode>>,
     #[serde(default)]
     exception: Vec<Exception>,
     gate: Option<RawGate>,
@@ -108,14 +108,14 @@ type Ports = BTreeMap<Spanned<String>, Spanned<Pins>>;
 /// Connectors by name; each maps its labels to the package's pins.
 type Connectors = BTreeMap<String, BTreeMap<Spanned<String>, String>>;
 
-pub(super) fn read(source: &Source) -> Result<Board, InputError> {
+pub(super) fn read(source: &SourceText) -> Result<Board, InputError> {
     let raw: RawBoard = source.parse()?;
     Reader { source, used: BTreeMap::new() }.board(raw)
 }
 
 /// The file, and the pins of the package that already have a use.
 struct Reader<'a> {
-    source: &'a Source,
+    source: &'a SourceText,
     /// By pin: its use, and the bytes of the file that assign it.
     used: BTreeMap<String, (String, Range<usize>)>,
 }
@@ -339,7 +339,7 @@ impl Reader<'_> {
         Ok(wires)
     }
 
-    fn port(&self, name: &Spanned<String>) -> Result<&'static Port, InputError> {
+    fn port(&self, name: &Spanned<String>) -> Result<&'static BoardPort, InputError> {
         PORTS.iter().find(|port| port.name == name.as_ref()).ok_or_else(|| {
             let known: Vec<&str> = PORTS.iter().map(|port| port.name).collect();
             let meant = did_you_mean(name.as_ref(), known.iter().copied());
@@ -407,8 +407,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Checks a proposed clock: the board can make it, and the turns of all its axes fit into its
-    /// tick.
+    /// Checks a proposed clock: the board can make it, and the time slots of all its axes fit into
+    /// its tick.
     fn clocking(
         &self,
         board: &Board,

@@ -38,7 +38,7 @@ impl Board {
     }
 
     /// The clocks and ticks at which the board is proposed to run. If `axes` is given, each tick is
-    /// long enough for the turns of that many axes.
+    /// long enough for the time slots of that many axes.
     pub fn proposed(&self, axes: Option<usize>) -> String {
         let clocks: Vec<String> = self.clocks.iter().map(|clock| said(clock, axes)).collect();
         clocks.join(" or ")
@@ -83,7 +83,7 @@ mod tests {
             ),
             "{said}"
         );
-        // The turns of eight axes need 105 clocks.
+        // The time slots of eight axes need 105 clocks.
         assert!(refused(8).contains("37.5 MHz (ticks of 3840 ns"), "{}", refused(8));
     }
 }

@@ -3,9 +3,9 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_boards::{Board, Mode, OSCILLATOR, PORTS, board, boards};
-use carrystep_core::engine::Limits;
-use carrystep_files::{InputError, Source};
+use carrystep_boards::{Board, ConfigurationMode, OSCILLATOR, PORTS, board, boards};
+use carrystep_core::engine::LimitWiring;
+use carrystep_files::{InputError, SourceText};
 use std::path::Path;
 
 const ICESTICK: &str = include_str!("../data/boards/icestick.toml");
@@ -13,7 +13,7 @@ const MOJO: &str = include_str!("../data/boards/mojo-v3.toml");
 const PAPILIO_PRO: &str = include_str!("../data/boards/papilio-pro.toml");
 
 fn read(text: &str) -> Result<Board, InputError> {
-    Board::from_source(&Source { path: "board.toml".into(), text: text.into() })
+    Board::from_source(&SourceText { path: "board.toml".into(), text: text.into() })
 }
 
 /// Every file of the folder is a board, and has the name of its board.
@@ -35,7 +35,7 @@ fn every_file_is_listed_once_by_family_and_name() {
 #[test]
 fn every_board_carries_six_axes_at_each_proposed_clock() {
     for board in boards() {
-        board.carries(6, Limits::Each).unwrap();
+        board.carries(6, LimitWiring::Each).unwrap();
         for clock in &board.clocks {
             assert_eq!(board.clock(clock.clock_hz).unwrap(), clock.made_by, "{}", board.name);
         }
@@ -71,7 +71,7 @@ fn ports_on_configuration_pins_are_listed_with_the_reason() {
             let now = shared
                 .modes
                 .iter()
-                .any(|mode| *mode == Mode::Any || board.configured.contains(mode));
+                .any(|mode| *mode == ConfigurationMode::Any || board.configured.contains(mode));
             assert!(!now || shared.why.is_some(), "{}: {shared:?}", board.name);
             let motion =
                 ["step", "dir", "enable_n"].iter().any(|name| shared.port.starts_with(name));
@@ -318,11 +318,11 @@ fn request_that_a_board_cannot_satisfy_is_refused_with_alternatives() {
         "s3board has no part 'xc3s50'; there is xc3s400, xc3s200, xc3s1000"
     );
     assert_eq!(
-        said(&icestick.carries(8, Limits::None).unwrap_err()),
+        said(&icestick.carries(8, LimitWiring::None).unwrap_err()),
         "icestick has pins for 6 axes, not for 8: leave out axes, or take another board"
     );
     assert_eq!(
-        said(&icestick.carries(6, Limits::Pair).unwrap_err()),
+        said(&icestick.carries(6, LimitWiring::Pair).unwrap_err()),
         "icestick has pins for 6 switches at low ends and 0 at high ends, too few for two for each of 6 axes: \
          limits = \"each\" or \"one\" would do"
     );

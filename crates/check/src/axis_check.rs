@@ -300,12 +300,12 @@ impl<'a> AxisCheck<'a> {
                 "{steps:.3} steps off its line after a pulse {pulse}, the bound is {bound:.3} steps"
             ));
         }
-        let Shortest { high, low, setup, hold } = self.watch.shortest();
+        let Shortest { step_high, step_low, dir_setup, dir_hold } = self.watch.shortest();
         let required = self.setup.pins_ns;
-        self.judge_pin("STEP high", high, required.width);
-        self.judge_pin("STEP low", low, required.gap);
-        self.judge_pin("DIR set-up", setup, required.setup);
-        self.judge_pin("DIR hold", hold, required.hold);
+        self.judge_pin("STEP high", step_high, required.step_high);
+        self.judge_pin("STEP low", step_low, required.step_low);
+        self.judge_pin("DIR set-up", dir_setup, required.dir_setup);
+        self.judge_pin("DIR hold", dir_hold, required.dir_hold);
         let ns = |stretch: Option<Stretch>| stretch.map(|stretch| stretch.ps as f64 / NS);
         let errors = self.errors.shifted(-(shift_ps as f64));
         self.failures.append(&mut self.pulse_failures);
@@ -325,14 +325,14 @@ impl<'a> AxisCheck<'a> {
             error_std_theory_ns: phase / 12_f64.sqrt() / NS,
             error_fit_ns: fit / NS,
             error_bound_ns: bound / NS,
-            high_min_ns: ns(high),
-            high_required_ns: required.width as f64,
-            low_min_ns: ns(low),
-            low_required_ns: required.gap as f64,
-            setup_min_ns: ns(setup),
-            setup_required_ns: required.setup as f64,
-            hold_min_ns: ns(hold),
-            hold_required_ns: required.hold as f64,
+            step_high_min_ns: ns(step_high),
+            step_high_required_ns: required.step_high as f64,
+            step_low_min_ns: ns(step_low),
+            step_low_required_ns: required.step_low as f64,
+            dir_setup_min_ns: ns(dir_setup),
+            dir_setup_required_ns: required.dir_setup as f64,
+            dir_hold_min_ns: ns(dir_hold),
+            dir_hold_required_ns: required.dir_hold as f64,
             period_jitter_max_ns: self.jitter_ps.map(|jitter| jitter / NS),
             period_jitter_theory_ns: (phase + 2.0 * self.curvature_ps) / NS,
             speed_ripple_max_percent: self.ripple.map(|ripple| 100.0 * ripple),

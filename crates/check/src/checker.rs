@@ -11,9 +11,9 @@ use crate::axis_check::{AxisCheck, AxisSetup};
 use crate::edge::{PinChange, PinSink};
 use crate::error::TraceError;
 use crate::line_check::LinesCheck;
-use crate::report::{OriginKind, Report};
+use crate::report::{CheckReport, OriginKind};
 use carrystep_core::{StartPhase, Timebase};
-use carrystep_profile::Line;
+use carrystep_profile::StraightLine;
 use std::fmt;
 
 /// The time of a capture from which all times are counted.
@@ -45,7 +45,7 @@ pub struct Setup<'a> {
     /// The axes, in the order of their numbers.
     pub axes: Vec<AxisSetup<'a>>,
     /// The moves in which the axes keep to a straight line.
-    pub lines: Vec<Line>,
+    pub lines: Vec<StraightLine>,
     /// The time from which times are counted.
     pub origin: Origin,
     /// Uncertainty of the capture's times, ps: the sample period of a logic analyser, or 0 for a
@@ -90,7 +90,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Ends the check and returns the report.
-    pub fn finish(self) -> Report {
+    pub fn finish(self) -> CheckReport {
         let base = self.base_ps.unwrap_or(0);
         let kind = match self.origin {
             Origin::Known { .. } => OriginKind::Known,
@@ -102,7 +102,7 @@ impl<'a> Checker<'a> {
         let axes = self.axes.into_iter().enumerate();
         let axes: Vec<_> =
             axes.map(|(i, axis)| axis.finish(base, shift, self.lines.off(i, late))).collect();
-        Report {
+        CheckReport {
             passed: axes.iter().all(|axis| axis.passed),
             origin: kind,
             origin_ps: base.saturating_add(shift),

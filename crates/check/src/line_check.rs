@@ -6,7 +6,7 @@
 //! pulse, in whole numbers.
 
 use carrystep_core::StartPhase;
-use carrystep_profile::Line;
+use carrystep_profile::StraightLine;
 
 /// The greatest deviation of an axis on one line.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +21,7 @@ struct Worst {
 /// Follows all axes along one line.
 #[derive(Debug)]
 struct LineCheck {
-    line: Line,
+    line: StraightLine,
     worst: Vec<Option<Worst>>,
 }
 
@@ -45,7 +45,7 @@ pub(crate) struct LinesCheck {
 }
 
 impl LinesCheck {
-    pub(crate) fn new(lines: Vec<Line>, phase: StartPhase, axes: usize) -> Self {
+    pub(crate) fn new(lines: Vec<StraightLine>, phase: StartPhase, axes: usize) -> Self {
         let lines =
             lines.into_iter().map(|line| LineCheck { worst: vec![None; axes], line }).collect();
         Self { lines, phase, pulses: vec![0; axes] }
@@ -55,7 +55,7 @@ impl LinesCheck {
     pub(crate) fn pulse(&mut self, axis: usize) {
         self.pulses[axis] += 1;
         let pulse = self.pulses[axis];
-        let within = |line: &Line| {
+        let within = |line: &StraightLine| {
             (1..=line.steps[axis].unsigned_abs())
                 .contains(&(pulse.saturating_sub(line.before[axis])))
         };
@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     fn check(pulses: &[usize]) -> Off {
-        let line = Line { before: vec![0; 2], steps: vec![4, -2], speed: 1.0 };
+        let line = StraightLine { before: vec![0; 2], steps: vec![4, -2], speed: 1.0 };
         let mut check = LinesCheck::new(vec![line], StartPhase::Half, 2);
         pulses.iter().for_each(|&axis| check.pulse(axis));
         check.off(0, 0.01).unwrap()

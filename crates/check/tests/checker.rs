@@ -50,8 +50,8 @@ fn correct_train_passes_with_the_figures_of_theory() {
         );
         assert!(axis.error_bound_ns > 64.5 && axis.error_bound_ns < 70.0, "{report}");
         assert!(axis.period_jitter_max_ns.unwrap() <= axis.period_jitter_theory_ns, "{report}");
-        assert_eq!(axis.high_min_ns, Some(1041.667));
-        assert_eq!(axis.high_required_ns, 1000.0);
+        assert_eq!(axis.step_high_min_ns, Some(1041.667));
+        assert_eq!(axis.step_high_required_ns, 1000.0);
     }
 }
 
@@ -163,15 +163,15 @@ fn pulse_late_or_early_by_two_phases_is_named() {
 #[test]
 fn short_direction_set_up_and_hold_are_named() {
     let found = failures(|train| {
-        let (turn, rise) = (turn(train, 0, 1), rise(train, 0, 1001));
-        train[turn].ps = train[rise].ps - 199_000;
+        let (dir_change, rise) = (dir_change(train, 0, 1), rise(train, 0, 1001));
+        train[dir_change].ps = train[rise].ps - 199_000;
     });
     assert_eq!(found.len(), 1, "{found:#?}");
     names(&found, "axis x: DIR set-up of 199.0 ns at pulse 1001 (");
     names(&found, "the driver needs 200 ns");
     let found = failures(|train| {
-        let (turn, rise) = (turn(train, 0, 1), rise(train, 0, 1000));
-        train[turn].ps = train[rise].ps + 150_000;
+        let (dir_change, rise) = (dir_change(train, 0, 1), rise(train, 0, 1000));
+        train[dir_change].ps = train[rise].ps + 150_000;
     });
     assert_eq!(found.len(), 1, "{found:#?}");
     names(&found, "axis x: DIR hold of 150.0 ns at pulse 1000 (");
@@ -219,8 +219,8 @@ fn pulse_that_is_high_at_the_start_is_named() {
 fn wrong_direction_is_named() {
     let found = failures(|train| {
         // DIR never changes, so that the way back goes forward.
-        let turn = turn(train, 0, 1);
-        train.remove(turn);
+        let dir_change = dir_change(train, 0, 1);
+        train.remove(dir_change);
     });
     names(&found, "axis x: pulse 1001 at ");
     names(&found, "goes forward, the profile backward");

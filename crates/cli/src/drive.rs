@@ -6,7 +6,7 @@ use crate::connection::{self, Connection};
 use crate::control::StoppedBy;
 use crate::failure::Failure;
 use crate::found;
-use crate::memory::{self, Limit, Memory};
+use crate::memory::{self, BoardMemory, MetLimit};
 use carrystep_core::engine::{Cause, Guard};
 use carrystep_files::{Axis, MoveFile, Unit};
 use carrystep_link::{Command, Ended, HostError, Program, Status, supply};
@@ -182,7 +182,7 @@ impl Streamed {
     /// and not left.
     fn check_limits(
         &self,
-        memory: &Memory,
+        memory: &BoardMemory,
         status: &Status,
         axes: &[String],
     ) -> Result<(), Failure> {
@@ -230,7 +230,7 @@ pub fn drive(
     streamed: &Streamed,
     into_limit: bool,
 ) -> Result<Driven, Failure> {
-    let mut memory = Memory::recall(&connection);
+    let mut memory = BoardMemory::recall(&connection);
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
     // claim on it ends.
     let Connection { mut control, port, mut board, axes, .. } = connection;
@@ -288,7 +288,7 @@ pub fn drive(
             let direction = if ways.last[number] == 0 { near.first } else { ways.last[number] };
             memory.set_limit(
                 number,
-                Some(Limit { direction, at: end.positions[number], clear: near.clear }),
+                Some(MetLimit { direction, at: end.positions[number], clear: near.clear }),
             );
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::holder::Holder;
 use carrystep_core::engine::{CAUSES, Cause};
-use carrystep_link::{Answer, Facts, Status};
+use carrystep_link::{Answer, BuildFacts, Status};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -14,7 +14,7 @@ pub struct Known {
     /// The name of the port.
     pub port: String,
     /// The constants that the gateware reported.
-    pub facts: Facts,
+    pub facts: BuildFacts,
     /// The names of the axes of the build, in order.
     pub axes: Vec<String>,
     /// Steps per unit of each axis; empty if no machine file is known.
@@ -23,7 +23,7 @@ pub struct Known {
 
 /// What `--json` prints.
 #[derive(Debug, Clone, JsonSchema, Serialize, Deserialize)]
-pub struct Found {
+pub struct FoundBoard {
     /// True if the board has answered.
     pub passed: bool,
     /// The port.
@@ -102,7 +102,7 @@ pub fn names(axes: &[String], mask: u8) -> String {
     names.join(", ")
 }
 
-impl Found {
+impl FoundBoard {
     /// Builds the report from a board's status. `discarded` are the discarded steps of each axis,
     /// if they were read.
     pub fn new(status: &Status, known: &Known, discarded: Option<&[u32]>) -> Self {
@@ -144,7 +144,7 @@ impl Found {
     }
 }
 
-impl fmt::Display for Found {
+impl fmt::Display for FoundBoard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { port, build, clock_hz, tick_ns, phases, .. } = self;
         writeln!(

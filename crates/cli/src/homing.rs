@@ -2,8 +2,8 @@
 //! the axes' units.
 
 use crate::failure::Failure;
-use crate::memory::Memory;
-use carrystep_core::engine::Limits;
+use crate::memory::BoardMemory;
+use carrystep_core::engine::LimitWiring;
 use carrystep_files::machine::{End, Home as AxisHome};
 use carrystep_files::{Axis, Machine};
 use carrystep_link::{AxisHoming, Homing, HomingFault, Status, Wiring};
@@ -66,9 +66,9 @@ pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
         );
     }
     let wiring = match machine.guard.limits {
-        Limits::Each => Wiring::Each,
-        Limits::One => Wiring::One,
-        Limits::Pair | Limits::None => Wiring::Pair,
+        LimitWiring::Each => Wiring::Each,
+        LimitWiring::One => Wiring::One,
+        LimitWiring::Pair | LimitWiring::None => Wiring::Pair,
     };
     let (round, debounce) = (machine.guard.round, machine.guard.debounce);
     Homing { wiring, axes, groups, others: 0, round, debounce }
@@ -77,8 +77,8 @@ pub fn of<'a>(machine: &Machine, groups: &'a [u8]) -> Homing<'a> {
 /// If all switches share one wire: the other axes that may stand on their switches, one bit each. A
 /// homed axis that is at least as far from its switch as homing leaves it does not stand on its
 /// switch. In all other wirings the result is 0.
-pub fn others(machine: &Machine, wanted: u8, status: &Status, memory: &Memory) -> u8 {
-    if machine.guard.limits != Limits::One {
+pub fn others(machine: &Machine, wanted: u8, status: &Status, memory: &BoardMemory) -> u8 {
+    if machine.guard.limits != LimitWiring::One {
         return 0;
     }
     let clear = |number: usize, home: &AxisHome| {
@@ -111,8 +111,8 @@ pub fn fault(machine: &Machine, mask: u8, why: HomingFault) -> String {
     match why {
         HomingFault::NotFound => {
             let unseen = match machine.guard.limits {
-                Limits::Pair | Limits::None => "",
-                Limits::Each | Limits::One => {
+                LimitWiring::Pair | LimitWiring::None => "",
+                LimitWiring::Each | LimitWiring::One => {
                     ". A switch that is still closed after moving off is not seen in this wiring"
                 }
             };

@@ -3,14 +3,14 @@
 
 use crate::arguments::Core;
 use crate::failure::Failure;
-use crate::gateware::{self, Gateware};
+use crate::gateware::{self, CorePlan};
 use crate::interrupt;
-use crate::progress::Progress;
-use crate::table::{self, Limits};
+use crate::progress::RunProgress;
+use crate::table::{self, LimitsJson};
 use crate::wanted::Wanted;
 use carrystep_check::{
-    AxisSetup, AxisWaves, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis, PlotSetup, Report,
-    Setup, Tee, VcdWriter, Waves, save_file,
+    AxisSetup, AxisWaves, CheckReport, Checker, CsvWriter, FstWriter, Origin, Plot, PlotAxis,
+    PlotSetup, Setup, Tee, VcdWriter, Waves, save_file,
 };
 use carrystep_files::MoveFile;
 use carrystep_plan::Plan;
@@ -30,7 +30,7 @@ const LONGEST_S: u64 = 4_000_000;
 
 /// The result of a run; `--json` prints it as it is.
 #[derive(Debug, JsonSchema, Serialize)]
-pub struct Done {
+pub struct RunResult {
     /// True if everything below holds.
     pub passed: bool,
     /// The gateware.
@@ -46,21 +46,21 @@ pub struct Done {
     /// Position registers at the end, steps.
     pub positions: Vec<i32>,
     /// Speeds and accelerations of the plan against the machine's limits.
-    pub limits: Limits,
+    pub limits: LimitsJson,
     /// The pulses against the profile.
-    pub check: Report,
+    pub check: CheckReport,
     /// The files that were written.
     pub files: Vec<PathBuf>,
 }
 
-impl Done {
+impl RunResult {
     /// Returns the failure if anything does not hold; the report has been printed already.
     pub fn verdict(&self) -> Result<(), Failure> {
         if self.passed { Ok(()) } else { Err(Failure::Check) }
     }
 }
 
-impl fmt::Display for Done {
+impl fmt::Display for RunResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}\n{}", self.limits, self.check)?;
         for file in &self.files {
@@ -131,7 +131,7 @@ pub fn run(
     core: Core,
     level: Level,
     wanted: &Wanted,
-) -> Result<Done, Failure> {
+) -> Result<RunResult, Failure> {
     let engine = match core {
         Core::Engine => {
             Some(gateware::engine(&file.machine, &file.source.path.display().to_string())?)
@@ -146,15 +146,16 @@ pub fn run(
     let deaf = AtomicBool::new(false);
     let halt = &[interrupt::watch(), &deaf];
     let timebase = plan.build.timebase;
-    let progress = Progress::new(level, plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
+    let progress =
+        RunProgress::new(level, plan.total_ticks() * u64::from(timebase.clocks_per_tick()));
     let how_far = Some(progress.how_far());
     let on = match &engine {
-        None => Gateware::Parallel(Job {
+        None => CorePlan::Parallel(Job {
             halt,
             how_far,
             ..Job::new(&plan.build, &program, plan.total_ticks())
         }),
-        Some(engine) => Gateware::Engine(EngineJob {
+        Some(engine) => CorePlan::Engine(EngineJob {
             halt,
             how_far,
             ..EngineJob::new(engine, &program, plan.total_ticks())
@@ -247,7 +248,7 @@ pub fn run(
         .iter()
         .zip(&check.axes)
         .all(|(&found, axis)| i64::from(found) == axis.position_expected);
-    Ok(Done {
+    Ok(RunResult {
         passed: check.passed() && limits.landed() && outcome.fault.is_none() && landed,
         core: core.name(),
         level: level.name(),

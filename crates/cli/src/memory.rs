@@ -16,7 +16,7 @@
 //! detected: a restart, after which another host switches the drivers on, makes as many writes as
 //! bring `next` back to its old value (modulo 256), and leaves every position at its old value.
 
-use crate::connection::{Board, Connection};
+use crate::connection::{ConnectedBoard, Connection};
 use crate::found;
 use carrystep_core::engine::{Cause, Guard};
 use carrystep_link::Status;
@@ -48,12 +48,12 @@ struct AxisRecord {
     steps_per_unit: f64,
     /// The machine coordinate of the register's zero in steps, if the axis is homed.
     offset: Option<i64>,
-    limit: Option<Limit>,
+    limit: Option<MetLimit>,
 }
 
 /// A limit that an axis has met and not yet left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Limit {
+pub struct MetLimit {
     /// The direction in which the axis moved: 1 or -1.
     pub direction: i8,
     /// The position at which it came to rest, in steps of the register.
@@ -62,7 +62,7 @@ pub struct Limit {
     pub clear: u32,
 }
 
-impl Limit {
+impl MetLimit {
     /// The distance that an axis at this position must still move away, in steps; 0 if it is far
     /// enough.
     pub fn to_go(self, position: i32) -> u32 {
@@ -73,12 +73,12 @@ impl Limit {
 
 /// What is known about a board.
 #[derive(Debug)]
-pub struct Memory {
+pub struct BoardMemory {
     path: Option<PathBuf>,
     record: Record,
 }
 
-impl Memory {
+impl BoardMemory {
     /// Reads the memory of the connected board. Entries that no longer match the board are
     /// discarded.
     pub fn recall(connection: &Connection) -> Self {
@@ -132,7 +132,7 @@ impl Memory {
     }
 
     /// The limit that an axis has met and not yet left.
-    pub fn limit(&self, axis: usize) -> Option<Limit> {
+    pub fn limit(&self, axis: usize) -> Option<MetLimit> {
         self.record.axes.get(axis)?.limit
     }
 
@@ -147,7 +147,7 @@ impl Memory {
     }
 
     /// Sets the limit that an axis has met; `None` means that it is clear of limits.
-    pub fn set_limit(&mut self, axis: usize, limit: Option<Limit>) {
+    pub fn set_limit(&mut self, axis: usize, limit: Option<MetLimit>) {
         self.record.axes.get_mut(axis).into_iter().for_each(|axis| axis.limit = limit);
     }
 
@@ -156,8 +156,8 @@ impl Memory {
     ///
     /// # Errors The board does not answer, or the system refuses the file. The old file then no
     /// longer matches the board and is ignored.
-    pub fn keep(&mut self, board: &mut Board) -> io::Result<()> {
-        let Status { answer, positions } = board.look().map_err(io::Error::other)?;
+    pub fn keep(&mut self, board: &mut ConnectedBoard) -> io::Result<()> {
+        let Status { answer, positions } = board.read_status().map_err(io::Error::other)?;
         (self.record.next, self.record.ready) = (answer.next, answer.ready);
         for (axis, position) in self.record.axes.iter_mut().zip(positions) {
             axis.position = position;
@@ -207,12 +207,12 @@ mod tests {
 
     #[test]
     fn axis_is_clear_of_its_limit_after_moving_back_the_clear_distance() {
-        let back = Limit { direction: -1, at: -105, clear: 20 };
+        let back = MetLimit { direction: -1, at: -105, clear: 20 };
         assert_eq!(
             [-105, -104, -86, -85, 300, -110].map(|position| back.to_go(position)),
             [20, 19, 1, 0, 0, 25]
         );
-        let forth = Limit { direction: 1, at: 105, clear: 20 };
+        let forth = MetLimit { direction: 1, at: 105, clear: 20 };
         assert_eq!([105, 86, 85, -300].map(|position| forth.to_go(position)), [20, 1, 0, 0]);
     }
 }

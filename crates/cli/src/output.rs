@@ -5,7 +5,7 @@ use crate::colour;
 use crate::document::{Document, Named};
 use crate::failure::Failure;
 use crate::interrupt;
-use carrystep_files::{Claim, NewFile, OutputFailure};
+use carrystep_files::{NewFile, OutputClaim, OutputFailure};
 use std::borrow::Cow;
 use std::ffi::OsString;
 use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
@@ -68,12 +68,12 @@ impl OutputFile {
 
     /// The first half of [`OutputFile::create`]: checks the path and creates nothing. A command
     /// with several outputs claims all of them before it begins the first one.
-    pub fn claim(path: &Path) -> Result<Claim, Failure> {
-        Ok(Claim::new(path)?)
+    pub fn claim(path: &Path) -> Result<OutputClaim, Failure> {
+        Ok(OutputClaim::new(path)?)
     }
 
     /// The second half of [`OutputFile::create`]: begins the file.
-    pub fn begin(claim: Claim) -> Result<Self, Failure> {
+    pub fn begin(claim: OutputClaim) -> Result<Self, Failure> {
         interrupt::watch();
         Ok(Self { writer: BufWriter::with_capacity(1 << 18, claim.begin(false)?) })
     }

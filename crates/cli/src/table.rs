@@ -13,7 +13,7 @@ use std::fmt;
 
 /// The limits of all axes.
 #[derive(Debug, JsonSchema, Serialize)]
-pub struct Limits {
+pub struct LimitsJson {
     /// Whole ticks of all moves, rests included.
     pub total_ticks: u64,
     /// The same in seconds.
@@ -49,11 +49,11 @@ pub struct AxisLimits {
 }
 
 /// Measures a plan against the limits of its machine.
-pub fn limits(file: &MoveFile, plan: &Plan) -> Limits {
+pub fn limits(file: &MoveFile, plan: &Plan) -> LimitsJson {
     let axes: Vec<AxisLimits> =
         file.machine.axes.iter().enumerate().map(|(i, axis)| axis_limits(i, axis, plan)).collect();
     let (total_ticks, timebase) = (plan.total_ticks(), &plan.build.timebase);
-    Limits {
+    LimitsJson {
         total_ticks,
         total_s: total_ticks as f64 * timebase.tick_seconds(),
         tick_ns: timebase.tick_ns(),
@@ -97,7 +97,7 @@ fn distance(segment: &Segment) -> i128 {
     n * v + n * (n - 1) / 2 * a + n * (n - 1) * (n - 2) / 6 * j
 }
 
-impl Limits {
+impl LimitsJson {
     /// True if every axis ends exactly at its target, including P.
     pub fn landed(&self) -> bool {
         self.axes.iter().all(|axis| axis.residue == 0)
@@ -140,7 +140,7 @@ impl AxisLimits {
     }
 }
 
-impl fmt::Display for Limits {
+impl fmt::Display for LimitsJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} ticks of {} ns, {:.6} s", self.total_ticks, self.tick_ns, self.total_s)?;
         if let Some(note) = &self.tick_note {

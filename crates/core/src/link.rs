@@ -15,8 +15,8 @@ mod assembler;
 mod build_id;
 mod facts;
 mod line;
-pub mod machine;
 mod ports;
+pub mod processor;
 mod program;
 pub mod registers;
 mod uart;
@@ -24,7 +24,7 @@ mod uart;
 pub use assembler::Image;
 pub use build_id::BuildId;
 pub use facts::facts;
-pub use line::Line;
+pub use line::LineKind;
 pub use ports::{BYTE_PORTS, LinkInputs, LinkOutputs, line_pins, line_ports, link_ports};
 pub use program::image;
 pub use uart::{BAUD_PERCENT, BaudError, DEFAULT_BAUD, MAX_BIT_CLOCKS, MIN_BIT_CLOCKS, Uart};
@@ -33,7 +33,7 @@ use crate::engine::{CAUSES, Cause};
 
 /// A number that both sides of the link use; it is generated into the clients' languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Constant {
+pub struct LinkConstant {
     /// Name of the constant.
     pub name: &'static str,
     /// Its type in Rust: `u8`, `u32` or `usize`.
@@ -50,7 +50,7 @@ macro_rules! constants {
         $(#[doc = $what] pub const $name: $kind = $value;)*
 
         /// The constants above as a table, for the generator.
-        pub const CONSTANTS: &[$crate::link::Constant] = &[$($crate::link::Constant {
+        pub const CONSTANTS: &[$crate::link::LinkConstant] = &[$($crate::link::LinkConstant {
             name: stringify!($name),
             kind: stringify!($kind),
             value: $name as u64,

@@ -152,8 +152,8 @@ impl fmt::Display for ChosenTick {
     }
 }
 
-/// The tick of a clock whose machine file gives none: fixed at the default clock, as long as its turns hold the axes,
-/// otherwise the one that is chosen.
+/// The tick of a clock whose machine file gives none: fixed at the default clock, as long as its
+/// time slots hold the axes, otherwise the one that is chosen.
 pub fn default_tick(clock_hz: u64, phases: u32, axes: usize) -> Option<(u64, Option<ChosenTick>)> {
     let chosen = ChosenTick::new(clock_hz, phases, axes);
     if clock_hz == FIXED_CLOCK_HZ && chosen.is_none_or(|chosen| chosen.tick_ns <= FIXED_TICK_NS) {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// A text file that was read. Its text is kept so that an error can quote the line.
 #[derive(Debug, Clone)]
-pub struct Source {
+pub struct SourceText {
     /// Path of the file, as the user gave it.
     pub path: PathBuf,
     /// Its whole text.
@@ -24,7 +24,7 @@ pub struct InputError {
     /// The remedy, if there is one.
     pub help: Option<String>,
     /// The file and the range of bytes in it that is wrong, if the error belongs to one.
-    pub place: Option<(Source, Range<usize>)>,
+    pub place: Option<(SourceText, Range<usize>)>,
 }
 
 impl InputError {
@@ -34,7 +34,7 @@ impl InputError {
     }
 
     /// Makes an error at a range of bytes in a file.
-    pub fn at(source: &Source, span: Range<usize>, message: impl Into<String>) -> Self {
+    pub fn at(source: &SourceText, span: Range<usize>, message: impl Into<String>) -> Self {
         Self { place: Some((source.clone(), span)), ..Self::new(message) }
     }
 
@@ -67,7 +67,7 @@ impl fmt::Display for InputError {
 
 impl std::error::Error for InputError {}
 
-impl Source {
+impl SourceText {
     /// Reads a text file, and registers it as an input, so that no later output of this process
     /// replaces it.
     ///

@@ -2,7 +2,7 @@
 //!
 //! Raw structures mirror the TOML. A [`Machine`] holds the values after all checks.
 
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::unit::Unit;
 use axis::RawAxis;
 use bigdecimal::BigDecimal;
@@ -10,7 +10,7 @@ use carrystep_core::EngineBuild;
 use carrystep_core::build::{AXES, Build, PinTimes, PinTiming, Timebase, TimebaseError};
 use carrystep_core::engine::{Guard, MAX_AXES};
 use carrystep_core::fixed::StartPhase;
-use carrystep_core::link::{BaudError, Line, Uart};
+use carrystep_core::link::{BaudError, LineKind, Uart};
 use carrystep_core::tick::{ChosenTick, FIXED_CLOCK_HZ, default_tick, nearest_ticks};
 use guard::RawGuard;
 use home::{RawOrder, RawPlace};
@@ -102,14 +102,14 @@ impl Machine {
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
     pub fn load(path: &Path) -> Result<Self, InputError> {
-        Self::from_source(&Source::read(path)?)
+        Self::from_source(&SourceText::read(path)?)
     }
 
     /// Checks the text of a machine file.
     ///
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
-    pub fn from_source(source: &Source) -> Result<Self, InputError> {
+    pub fn from_source(source: &SourceText) -> Result<Self, InputError> {
         let file: RawMachineFile = source.parse()?;
         file.machine.check(source)
     }
@@ -133,11 +133,11 @@ impl Machine {
     ///
     /// # Errors
     /// [`BaudError`] if the file gives no baud rate and its clock cannot make the default.
-    pub fn line(&self) -> Result<Line, BaudError> {
+    pub fn line(&self) -> Result<LineKind, BaudError> {
         if self.spi {
-            Ok(Line::Spi)
+            Ok(LineKind::Spi)
         } else {
-            Uart::new(self.timebase.clock_hz(), self.baud).map(Line::Uart)
+            Uart::new(self.timebase.clock_hz(), self.baud).map(LineKind::Uart)
         }
     }
 
@@ -182,7 +182,7 @@ impl RawMachine {
         self.axis.as_ref().get(AXES).map(Spanned::span)
     }
 
-    pub(crate) fn check(self, source: &Source) -> Result<Machine, InputError> {
+    pub(crate) fn check(self, source: &SourceText) -> Result<Machine, InputError> {
         let (timebase, chosen_tick) = self.timebase(source)?;
         let span = self.axis.span();
         let raw = self.axis.into_inner();
@@ -222,7 +222,7 @@ impl RawMachine {
     }
 
     /// Clock, tick and phases. If the file gives no tick, also how the tick was chosen.
-    fn timebase(&self, source: &Source) -> Result<(Timebase, Option<ChosenTick>), InputError> {
+    fn timebase(&self, source: &SourceText) -> Result<(Timebase, Option<ChosenTick>), InputError> {
         let clock_hz = self.clock_hz.as_ref().map_or(FIXED_CLOCK_HZ, |v| *v.as_ref());
         let phases = self.phases.as_ref().map_or(16, |v| *v.as_ref());
         let axes = self.axis.as_ref().len().clamp(1, MAX_AXES);

@@ -5,7 +5,7 @@
 
 use crate::decimal;
 use crate::did_you_mean;
-use crate::error::{InputError, Source, quoted};
+use crate::error::{InputError, SourceText, quoted};
 use crate::machine::{Machine, RawMachine};
 use crate::number::{exact, positive};
 use bigdecimal::{BigDecimal, Zero};
@@ -37,7 +37,7 @@ pub struct MoveFile {
     /// The moves, in order.
     pub moves: Vec<Move>,
     /// Text of the move file, for errors that are found later.
-    pub source: Source,
+    pub source: SourceText,
 }
 
 /// One move of all axes.
@@ -93,7 +93,7 @@ impl MoveFile {
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
     pub fn load(path: &Path) -> Result<Self, InputError> {
-        Self::from_source(Source::read(path)?)
+        Self::from_source(SourceText::read(path)?)
     }
 
     /// Checks the text of a move file. A relative `machine_file` is resolved from the directory of
@@ -101,7 +101,7 @@ impl MoveFile {
     ///
     /// # Errors
     /// [`InputError`] with file, line and column of the first mistake.
-    pub fn from_source(source: Source) -> Result<Self, InputError> {
+    pub fn from_source(source: SourceText) -> Result<Self, InputError> {
         let raw: RawMoveFile = source.parse()?;
         let machine_file = raw.machine_file.as_ref().map(Spanned::span);
         let too_many = raw.machine.as_ref().and_then(RawMachine::seventh).or(machine_file);
@@ -119,7 +119,7 @@ impl MoveFile {
                 // If the machine file cannot be read, the error points at its name in the move
                 // file.
                 let named = |error: InputError| InputError::at(&source, file.span(), error.message);
-                Machine::from_source(&Source::read(&path).map_err(named)?)?
+                Machine::from_source(&SourceText::read(&path).map_err(named)?)?
             }
             (None, Some(machine)) => machine.check(&source)?,
             (Some(file), Some(_)) => {
@@ -142,14 +142,14 @@ impl MoveFile {
     ///
     /// # Errors
     /// [`InputError`] with line and column of the first mistake.
-    pub fn of_moves(machine: Machine, source: Source) -> Result<Self, InputError> {
+    pub fn of_moves(machine: Machine, source: SourceText) -> Result<Self, InputError> {
         let raw: RawMoves = source.parse()?;
         Self::on(machine, source, raw.moves, None)
     }
 
     fn on(
         machine: Machine,
-        source: Source,
+        source: SourceText,
         raw: Vec<Spanned<RawMove>>,
         too_many: Option<Range<usize>>,
     ) -> Result<Self, InputError> {
@@ -175,7 +175,7 @@ impl MoveFile {
 }
 
 fn check_moves(
-    source: &Source,
+    source: &SourceText,
     machine: &Machine,
     raw: Vec<Spanned<RawMove>>,
 ) -> Result<Vec<Move>, InputError> {
@@ -236,7 +236,7 @@ fn check_moves(
 }
 
 /// Checks a duration: greater than zero, and short enough to be counted in clocks.
-fn check_time(source: &Source, value: &Spanned<f64>) -> Result<BigDecimal, InputError> {
+fn check_time(source: &SourceText, value: &Spanned<f64>) -> Result<BigDecimal, InputError> {
     let time = positive(source, value, "time")?;
     if time <= 1_000_000 {
         return Ok(time);
@@ -245,7 +245,7 @@ fn check_time(source: &Source, value: &Spanned<f64>) -> Result<BigDecimal, Input
     Err(InputError::at(source, value.span(), message).help("split it into shorter moves"))
 }
 
-fn check_fit(source: &Source, value: &Spanned<u64>) -> Result<u64, InputError> {
+fn check_fit(source: &SourceText, value: &Spanned<u64>) -> Result<u64, InputError> {
     let ns = *value.as_ref();
     if ns > 0 {
         return Ok(ns);

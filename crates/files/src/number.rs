@@ -1,14 +1,14 @@
 //! Exact numbers of input files. Each check reports the place of the number that it rejects.
 
 use crate::decimal;
-use crate::error::{InputError, Source, quoted};
+use crate::error::{InputError, SourceText, quoted};
 use bigdecimal::{BigDecimal, Signed};
 use toml::Spanned;
 
 /// The exact value of a number in the file. Numbers that are not finite, are 10^30 or more in
 /// magnitude, or need more than 60 digits are errors.
 pub(crate) fn exact(
-    source: &Source,
+    source: &SourceText,
     value: &Spanned<f64>,
     key: &str,
 ) -> Result<BigDecimal, InputError> {
@@ -31,7 +31,7 @@ pub(crate) fn exact(
 
 /// A number greater than zero.
 pub(crate) fn positive(
-    source: &Source,
+    source: &SourceText,
     value: &Spanned<f64>,
     key: &str,
 ) -> Result<BigDecimal, InputError> {
@@ -44,7 +44,7 @@ pub(crate) fn positive(
 
 /// A number that is zero or greater.
 pub(crate) fn not_negative(
-    source: &Source,
+    source: &SourceText,
     value: &Spanned<f64>,
     key: &str,
 ) -> Result<BigDecimal, InputError> {

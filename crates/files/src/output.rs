@@ -31,7 +31,7 @@ pub struct OutputFailure {
 /// A claim on a path: it leads to no input and to no other output of this process. The file does
 /// not exist yet.
 #[derive(Debug)]
-pub struct Claim {
+pub struct OutputClaim {
     shown: PathBuf,
     at: At,
     /// Number in the registry. A device has none, because several outputs may go to it.
@@ -49,7 +49,7 @@ enum At {
     Stdout,
 }
 
-impl Claim {
+impl OutputClaim {
     /// Resolves a path. Symbolic links are followed: their target is replaced or created, and the
     /// links remain.
     ///
@@ -162,7 +162,7 @@ impl Claim {
     }
 }
 
-impl Drop for Claim {
+impl Drop for OutputClaim {
     fn drop(&mut self) {
         if let Some(number) = self.number {
             registry::drop_output(number);
@@ -173,7 +173,7 @@ impl Drop for Claim {
 /// An output that has its name only after [`NewFile::appear`] has succeeded.
 #[derive(Debug)]
 pub struct NewFile {
-    claim: Claim,
+    claim: OutputClaim,
     place: Place,
 }
 
@@ -191,9 +191,9 @@ impl NewFile {
     /// Claims a path and creates the file.
     ///
     /// # Errors
-    /// As [`Claim::new`] and [`Claim::begin`].
+    /// As [`OutputClaim::new`] and [`OutputClaim::begin`].
     pub fn create(path: &Path) -> Result<Self, OutputFailure> {
-        Claim::new(path)?.begin(false)
+        OutputClaim::new(path)?.begin(false)
     }
 
     /// Path of the file, as the user gave it.

@@ -3,14 +3,14 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_core::engine::{Between, Guard, Limits, MAX_LOOKS, MAX_ROUNDS};
-use carrystep_files::{InputError, Machine, Source};
+use carrystep_core::engine::{Between, Guard, LimitWiring, MAX_DEBOUNCE_SAMPLES, MAX_ROUNDS};
+use carrystep_files::{InputError, Machine, SourceText};
 
 const AXIS: &str = "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n\
                     driver = \"a4988\"\n";
 
 fn read(text: &str) -> Result<Machine, InputError> {
-    Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() })
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() })
 }
 
 fn guard(keys: &str) -> Guard {
@@ -30,7 +30,7 @@ fn missing_keys_have_their_defaults() {
         watchdog: 3126,
         enable: 33,
         debounce: 17,
-        limits: Limits::Pair,
+        limits: LimitWiring::Pair,
         limit_freezes: false,
         estop_low: false,
         limits_low: false,
@@ -51,10 +51,10 @@ fn given_times_are_counted_in_rounds() {
     assert_eq!((found.round, found.watchdog, found.enable, found.debounce), (2, 4001, 126, 51));
     assert_eq!(
         (found.estop_low, found.limits, found.limits_low, found.limit_freezes),
-        (true, Limits::Each, true, true)
+        (true, LimitWiring::Each, true, true)
     );
-    assert_eq!(guard("limits = \"none\"").limits, Limits::None);
-    assert_eq!(guard("limits = \"one\"").limits, Limits::One);
+    assert_eq!(guard("limits = \"none\"").limits, LimitWiring::None);
+    assert_eq!(guard("limits = \"one\"").limits, LimitWiring::One);
     let other =
         guard("estop = \"high\"\nlimits = \"pair\"\nlimit_level = \"high\"\nlimit_stop = \"ramp\"");
     assert_eq!(other, guard(""), "these are the defaults");
@@ -91,11 +91,12 @@ fn times_are_rounded_up_and_the_shortest_round_is_chosen() {
                 (whole - 1.0) * round < asked * (1.0 - 1e-12),
                 "{ms} ms of {tick_ns} ns: {found:?}"
             );
-            assert!(found.watchdog <= MAX_ROUNDS && found.debounce <= MAX_LOOKS);
+            assert!(found.watchdog <= MAX_ROUNDS && found.debounce <= MAX_DEBOUNCE_SAMPLES);
             let shorter = round / 2.0;
             let fits =
                 |ms: f64, most: u32| (ms / shorter * (1.0 - 1e-12)).ceil() + 1.0 <= f64::from(most);
-            let all = fits(asked, MAX_ROUNDS) && fits(1.0, MAX_ROUNDS) && fits(0.5, MAX_LOOKS);
+            let all =
+                fits(asked, MAX_ROUNDS) && fits(1.0, MAX_ROUNDS) && fits(0.5, MAX_DEBOUNCE_SAMPLES);
             assert!(
                 found.round == 2 || !all,
                 "{ms} ms of {tick_ns} ns: a shorter round would do: {found:?}"

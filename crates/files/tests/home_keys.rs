@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_files::machine::{End, overrun};
-use carrystep_files::{InputError, Machine, Source};
+use carrystep_files::{InputError, Machine, SourceText};
 
 const HOME: &str = "home = { toward = \"min\", seek_speed = 20, slow_speed = 2, move_off = 5, max_travel = 330, pull_off = 2, position = 0 }";
 
@@ -18,7 +18,7 @@ fn text(order: &str, travel: &str, home: &str) -> String {
 }
 
 fn read(text: &str) -> Result<Machine, InputError> {
-    Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() })
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() })
 }
 
 #[test]
@@ -158,10 +158,10 @@ fn approach_is_at_most_a_step_per_sample_of_the_limit() {
     // possible.
     assert!(with("watchdog_ms = 4000").is_ok());
     let fast = HOME.replace("slow_speed = 2", "slow_speed = 15");
-    let slow_looks = format!("{}[machine.guard]\nwatchdog_ms = 4000\n", text("", "", &fast));
-    let error = read(&slow_looks).unwrap_err();
+    let slow_samples = format!("{}[machine.guard]\nwatchdog_ms = 4000\n", text("", "", &fast));
+    let error = read(&slow_samples).unwrap_err();
     assert!(
-        error.message.contains("slow_speed is over a step between two looks at the switch"),
+        error.message.contains("slow_speed is over a step between two samples of the switch"),
         "{error}"
     );
     assert_eq!(error.line_column(), Some((11, fast.find("15").unwrap() + 1)));

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_core::{AXES, PinTimes, PinTiming, StartPhase};
-use carrystep_files::{BigDecimal, Machine, Source};
+use carrystep_files::{BigDecimal, Machine, SourceText};
 
 const AXIS: &str =
     "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n";
@@ -12,7 +12,7 @@ const AXIS: &str =
 const AT_48: &str = "[machine]\nclock_hz = 48_000_000\n";
 
 fn machine(text: &str) -> Machine {
-    Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() }).unwrap()
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() }).unwrap()
 }
 
 fn number(text: &str) -> BigDecimal {
@@ -56,22 +56,34 @@ fn limits_are_exact_products() {
 }
 
 #[test]
+fn pin_times_by_their_names_of_the_first_edition_are_read() {
+    let times = |text: &str| machine(&format!("{AT_48}{AXIS}{text}")).axes.remove(0).pins_ns;
+    let now = "step_high_ns = 900\nstep_low_ns = 800\ndir_setup_ns = 70\ndir_hold_ns = 60\n";
+    let then = "step_ns = 900\ngap_ns = 800\nsetup_ns = 70\nhold_ns = 60\n";
+    assert_eq!(times(then), times(now));
+}
+
+#[test]
 fn single_pin_times_override_the_driver_preset() {
     let pins = |lines: &str| machine(&format!("[machine]\n{AXIS}{lines}")).axes[0].pins_ns;
-    let a4988 = PinTimes { width: 1000, gap: 1000, setup: 200, hold: 200 };
+    let a4988 = PinTimes { step_high: 1000, step_low: 1000, dir_setup: 200, dir_hold: 200 };
     assert_eq!(pins("driver = \"a4988\"\n"), a4988);
-    assert_eq!(pins("driver = \"a4988\"\nhold_ns = 500\n"), PinTimes { hold: 500, ..a4988 });
     assert_eq!(
-        pins("step_ns = 1\ngap_ns = 2\nsetup_ns = 3\nhold_ns = 4\n"),
-        PinTimes { width: 1, gap: 2, setup: 3, hold: 4 }
+        pins("driver = \"a4988\"\ndir_hold_ns = 500\n"),
+        PinTimes { dir_hold: 500, ..a4988 }
+    );
+    assert_eq!(
+        pins("step_high_ns = 1\nstep_low_ns = 2\ndir_setup_ns = 3\ndir_hold_ns = 4\n"),
+        PinTimes { step_high: 1, step_low: 2, dir_setup: 3, dir_hold: 4 }
     );
 }
 
 #[test]
 fn pin_timings_are_rounded_up_to_clocks_and_never_none() {
-    let axis = machine(&format!("{AT_48}{AXIS}driver = \"drv8825\"\nhold_ns = 0\n")).axes.remove(0);
+    let axis =
+        machine(&format!("{AT_48}{AXIS}driver = \"drv8825\"\ndir_hold_ns = 0\n")).axes.remove(0);
     // 1900 ns are 91.2 clocks of 48 MHz, 650 ns are 31.2
-    assert_eq!(axis.pins, PinTiming { width: 92, gap: 92, setup: 32, hold: 1 });
+    assert_eq!(axis.pins, PinTiming { step_high: 92, step_low: 92, dir_setup: 32, dir_hold: 1 });
 }
 
 #[test]
@@ -84,8 +96,8 @@ fn build_of_the_core_always_has_six_axes() {
     assert_eq!((machine.axis_index("y"), machine.axis_index("q")), (Some(1), None));
     assert_eq!(machine.axis_names(), "x, y");
     let build = machine.build().unwrap();
-    assert_eq!(build.pins[0].width, 80);
-    assert_eq!(build.pins[1].width, 8);
+    assert_eq!(build.pins[0].step_high, 80);
+    assert_eq!(build.pins[1].step_high, 8);
     assert_eq!(build.pins[2..], [PinTiming::SHORTEST; AXES - 2]);
 }
 
@@ -94,7 +106,7 @@ fn the_fastest_speed_that_the_driver_allows_is_allowed() {
     // 48 + 48 clocks and a phase of 3: 48 MHz / 99
     let axis = |speed: &str| format!("{AT_48}{AXIS}driver = \"a4988\"\n").replace("1000", speed);
     let refused = |text: String| {
-        Machine::from_source(&Source { path: "m".into(), text: text.into() }).is_err()
+        Machine::from_source(&SourceText { path: "m".into(), text: text.into() }).is_err()
     };
     assert!(!refused(axis("96969.69")));
     assert!(refused(axis("96969.70")));

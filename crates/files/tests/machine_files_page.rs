@@ -4,15 +4,15 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_core::ChosenTick;
-use carrystep_files::{Machine, MoveFile, Source};
+use carrystep_files::{Machine, MoveFile, SourceText};
 
 const PAGE: &str = include_str!("../../../docs/machine-files.md");
 const AXIS: &str = "[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\n\
                     driver = \"a4988\"\n";
 const MOVE: &str = "[[move]]\nprofile = \"ranade\"\nto = { x = 1 }\n";
 
-fn source(text: &str) -> Source {
-    Source { path: "page.toml".into(), text: text.into() }
+fn source(text: &str) -> SourceText {
+    SourceText { path: "page.toml".into(), text: text.into() }
 }
 
 fn machine(text: &str) -> Machine {

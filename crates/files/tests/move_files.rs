@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_core::ProfileKind;
-use carrystep_files::{MoveFile, Source};
+use carrystep_files::{MoveFile, SourceText};
 
 const MACHINE: &str = "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\n\
     accel_limit = 5000\ndriver = \"a4988\"\n[[machine.axis]]\nname = \"y\"\nsteps_per_unit = 1\nspeed_limit = 1000\n\
@@ -11,7 +11,7 @@ const MACHINE: &str = "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit
 
 fn file(moves: &str) -> MoveFile {
     let text = format!("{MACHINE}{moves}");
-    MoveFile::from_source(Source { path: "move.toml".into(), text: text.into() }).unwrap()
+    MoveFile::from_source(SourceText { path: "move.toml".into(), text: text.into() }).unwrap()
 }
 
 /// A file of moves of the axis x alone, one for each distance.

@@ -3,19 +3,19 @@
 
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use carrystep_core::link::{BuildId, Line};
-use carrystep_files::{BigDecimal, InputError, Machine, MoveFile, Source};
+use carrystep_core::link::{BuildId, LineKind};
+use carrystep_files::{BigDecimal, InputError, Machine, MoveFile, SourceText};
 
 /// A machine with one axis that has these lines.
 fn read(lines: &str) -> Result<Machine, InputError> {
     let text = format!(
         "[machine]\n[[machine.axis]]\nname = \"x\"\naccel_limit = 4000\ndriver = \"tmc2209\"\n{lines}"
     );
-    Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() })
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() })
 }
 
 fn build_id(machine: &Machine) -> BuildId {
-    Line::Spi.build_id(&machine.engine())
+    LineKind::Spi.build_id(&machine.engine())
 }
 
 fn number(text: &str) -> BigDecimal {
@@ -64,7 +64,7 @@ fn periodic_steps_per_unit_round_as_the_fraction_does() {
     };
     let moved = |to: &str| {
         let file =
-            MoveFile::from_source(Source { path: "m".into(), text: text(to).into() }).unwrap();
+            MoveFile::from_source(SourceText { path: "m".into(), text: text(to).into() }).unwrap();
         (file.moves[0].steps[0], file.moves[0].rounding[0])
     };
     assert_eq!(moved("45"), (400, 0.0));
@@ -150,7 +150,7 @@ fn errors_give_the_axis_unit_and_steps() {
 fn fewer_phases_are_proposed_where_a_long_tick_forbids_a_speed() {
     let text = "[machine]\nclock_hz = 27_000_000\n[[machine.axis]]\nname = \"x\"\nunit = \"mm\"\nsteps_per_unit = 80\n\
                 speed_limit = 500\naccel_limit = 100\ndriver = \"tmc2209\"\n";
-    let at = |text: &str| Machine::from_source(&Source { path: "m".into(), text: text.into() });
+    let at = |text: &str| Machine::from_source(&SourceText { path: "m".into(), text: text.into() });
     let help = at(text).unwrap_err().help.unwrap();
     assert!(help.ends_with("16000 ns is long: `phases = 4` would allow 4000 ns"), "{help}");
     let quick = at(&text.replace("27_000_000", "27_000_000\nphases = 4")).unwrap();
@@ -169,7 +169,7 @@ fn tick_is_chosen_only_without_tick_ns_at_other_clocks() {
             )
         };
         let text = format!("[machine]\n{head}\n{}", (0..axes).map(axis).collect::<String>());
-        Machine::from_source(&Source { path: "m".into(), text: text.into() })
+        Machine::from_source(&SourceText { path: "m".into(), text: text.into() })
     };
     for (mhz, tick_ns) in [(25, 3200), (27, 16_000), (50, 1600), (80, 1000), (100, 800), (125, 640)]
     {
@@ -189,7 +189,7 @@ fn tick_is_chosen_only_without_tick_ns_at_other_clocks() {
         let machine = at(head, 6).unwrap();
         assert_eq!((machine.timebase.tick_ns(), machine.chosen_tick), (1000, None), "{head}");
     }
-    // Seven turns do not fit into its tick.
+    // Seven time slots do not fit into its tick.
     for (axes, tick_ns) in [(7, 1200), (8, 1400)] {
         let machine = at("", axes).unwrap();
         assert_eq!(machine.chosen_tick.map(|chosen| chosen.tick_ns), Some(tick_ns));

@@ -3,10 +3,10 @@
 //!
 //! ```text
 //!             .------.  beat, axis                                    estop, kick, enable
-//!             | turn |-----+----------+-----------+                         v
-//!             '------'     v          v           v                     .-------.
-//!  put_*  -------------> .-------.  .-------.   .-------. steps, phases | watch |
-//!                        | queue |->| store |==>| adder |-------.       '-------'
+//!             | slot |-----+----------+-----------+                         v
+//!             '------'     v          v           v                     .------------.
+//!  put_*  -------------> .-------.  .-------.   .-------. steps, phases | supervisor |
+//!                        | queue |->| store |==>| adder |-------.       '------------'
 //!                        '-------'  '-------'<==|       |       v           v
 //!                          ^ pulses, losses     '-------'   .-------.   .-------.
 //!                          |                        v V     | wheel |   | stops |
@@ -17,7 +17,7 @@
 //! ```
 //!
 //! In each tick every axis has a time slot of 13 clocks, in which the adder advances its P, V and
-//! A. The code calls the slot `turn` and the clocks of a slot `beats`. Results of all time slots
+//! A. A clock of a time slot is a beat. Results of all time slots
 //! are committed together at the end of the tick, the strobe.
 //!
 //! Interface: the host writes segments word by word (`put`) into a queue of seven segments per
@@ -29,15 +29,15 @@
 //! clocks per axis and one more.
 //!
 //! This file contains the ports and the parts; `wiring` connects them. Further terms of the code:
-//! `wheel` is the event wheel, in which pending steps wait for their phase; `owed` is a step that
+//! `event_wheel` holds pending steps, which wait for their phase; `held_back` is a step that
 //! the pin timing holds back; `late` means that a second step arrived while one was held back;
 //! `dry` means that a queue is empty when its next segment is due.
 
 use crate::HdlError;
 use crate::parameters::CLOCKS_PER_TICK;
-use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
-use crate::primitives::lanes::Lanes;
+use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::EngineBuild;
@@ -45,7 +45,8 @@ use carrystep_core::engine::least_clocks;
 use rust_hdl::prelude::*;
 
 pub mod adder;
-pub mod homes;
+pub mod event_wheel;
+pub mod homing_control;
 pub mod layout;
 pub mod limits;
 pub mod pulser;
@@ -54,24 +55,23 @@ pub mod resets;
 mod sim;
 pub mod stops;
 pub mod store;
-pub mod turn;
-pub mod watch;
-pub mod wheel;
+pub mod supervisor;
+pub mod time_slot;
 mod wiring;
 
 pub use sim::{AnyEngine, EngineSim, engine};
 
 use adder::Adder;
-use homes::Homes;
-use limits::Limits;
+use event_wheel::EventWheel;
+use homing_control::HomingControl;
+use limits::LimitSwitches;
 use pulser::Pulser;
 use queue::Queue;
 use resets::Resets;
 use stops::Stops;
 use store::Store;
-use turn::Turn;
-use watch::Watch;
-use wheel::Wheel;
+use supervisor::Supervisor;
+use time_slot::TimeSlot;
 
 /// The engine of N axes, 1 to 8.
 #[derive(LogicBlock, Default)]
@@ -136,9 +136,9 @@ pub struct Engine<const N: usize> {
     /// `room` is valid in this clock, once in the time slot of that axis.
     pub room_valid: Signal<Out, Bit>,
     /// The STEP pins.
-    pub step: Lanes<Signal<Out, Bit>, N>,
+    pub step: PerAxis<Signal<Out, Bit>, N>,
     /// The DIR pins; 1 is backward.
-    pub dir: Lanes<Signal<Out, Bit>, N>,
+    pub dir: PerAxis<Signal<Out, Bit>, N>,
     /// The motor drivers are to be powered.
     pub enabled: Signal<Out, Bit>,
     /// All axes are at rest and no start is armed.
@@ -164,17 +164,17 @@ pub struct Engine<const N: usize> {
     pub homing: Signal<Out, Word<N>>,
     /// Axes start at the end of this clock.
     pub started: Signal<Out, Bit>,
-    turn: Turn<N>,
+    time_slot: TimeSlot<N>,
     adder: Adder,
     queue: Queue,
     pub(crate) store: Store,
-    wheel: Wheel<N>,
-    limits: Limits<N>,
-    homes: Homes<N>,
+    event_wheel: EventWheel<N>,
+    limits: LimitSwitches<N>,
+    homing_control: HomingControl<N>,
     stops: Stops<N>,
     resets: Resets,
-    watch: Watch,
-    pulser: Lanes<Pulser, N>,
+    supervisor: Supervisor,
+    pulser: PerAxis<Pulser, N>,
     waits: Register<Bit>, // `armed`
     // The axes of the start. The mask rotates with the time slots: bit 0 is the axis of the present
     // slot.
@@ -201,44 +201,44 @@ pub struct Engine<const N: usize> {
     rests: Signal<Local, Bit>,
     pins_busy: Signal<Local, Bit>,
     late: Signal<Local, Word<N>>,
-    late_bit: Lanes<Signal<Local, Word<N>>, N>,
-    counted: Lanes<Signal<Local, Word<6>>, N>,
+    late_bit: PerAxis<Signal<Local, Word<N>>, N>,
+    counted: PerAxis<Signal<Local, Word<6>>, N>,
     counts: Signal<Local, Word<6>>,
     none: Literal<6, 0>,
     no_axes: Literal<N, 0>,
-    one_axis: Lanes<Parameter<N>, N>,
+    one_axis: PerAxis<Parameter<N>, N>,
     commit: Literal<3, 7>,
     by_one: Literal<1, 1>,
     to_top: Parameter<3>,
     axes: Parameter<4>,
-    clocks_per_tick_too_few_for_the_axes: Refusal,
+    clocks_per_tick_too_few_for_the_axes: ParameterRefusal,
 }
 
 impl<const N: usize> Engine<N> {
     /// Makes the engine of a build. The caller has checked the build and ensures that it has N
     /// axes.
     fn new(build: &EngineBuild) -> Result<Self, HdlError> {
-        let mut pulser = Lanes::<Pulser, N>::default();
+        let mut pulser = PerAxis::<Pulser, N>::default();
         for (pulser, pins) in pulser.iter_mut().zip(&build.pins) {
             *pulser = Pulser::new(pins)?;
         }
         let clocks = CLOCKS_PER_TICK.of::<32>(build.timebase.clocks_per_tick());
         let least = u64::from(least_clocks(N, build.timebase.phases()));
         Ok(Self {
-            turn: Turn::new(),
+            time_slot: TimeSlot::new(),
             store: Store::new(build.phase, &build.guard.stop),
-            wheel: Wheel::new(&build.timebase),
-            limits: Limits::new(&build.guard),
-            homes: Homes::new(),
+            event_wheel: EventWheel::new(&build.timebase),
+            limits: LimitSwitches::new(&build.guard),
+            homing_control: HomingControl::new(),
             stops: Stops::new(&build.guard),
-            watch: Watch::new(&build.guard),
+            supervisor: Supervisor::new(&build.guard),
             pulser,
             axes: Parameter::new(N as u64),
-            clocks_per_tick_too_few_for_the_axes: Refusal::of(
+            clocks_per_tick_too_few_for_the_axes: ParameterRefusal::of(
                 &clocks.whole().is_less(&Formula::number(least)),
             ),
             to_top: Parameter::new(N as u64 - 1),
-            one_axis: Lanes::from_fn(|axis| Parameter::new(1 << axis)),
+            one_axis: PerAxis::from_fn(|axis| Parameter::new(1 << axis)),
             rest_1: Register::new(true),
             rest_2: Register::new(true),
             ..Self::default()

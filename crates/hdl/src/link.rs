@@ -3,17 +3,17 @@
 //! ```text
 //!          .------. received .---------. put, start, home, control
 //!  rx ---->|      |--------->|         |--------------------------------> engine
-//!          | line |          | machine | state, room, culprits, homing
+//!          | line |          |processor| state, room, culprits, homing
 //!          |      | answer   |         |<-------------------------------- engine
 //!  tx <----|      |<---------|         | facts  .-------. get, latch
 //!          '------'          '---------'<-------| facts |<--------------- engine
 //!                                               '-------'
 //! ```
 //!
-//! A small processor with its program ([`machine`]) handles the protocol. It stores a request in
+//! A small processor with its program ([`processor`]) handles the protocol. It stores a request in
 //! block RAM until the CRC has arrived and is correct; only then does a word of the request reach
-//! the engine. The module [`mod@facts`] stores what the host can read: the constants of the build
-//! and the state of each axis.
+//! the engine. The module [`register_mirror`] stores what the host can read: the constants of the
+//! build and the state of each axis.
 //!
 //! Interface: bytes on the side of the line, the ports of the engine on the other side. The link
 //! accepts any [`crate::line`].
@@ -31,15 +31,15 @@ use carrystep_core::link::registers::{self, BUILD_HIGH, BUILD_LOW, WATCHDOG_TICK
 use carrystep_core::link::{BuildId, facts, image};
 use rust_hdl::prelude::*;
 
-pub mod check;
-pub mod facts;
-pub mod machine;
+pub mod crc;
+pub mod processor;
+pub mod register_mirror;
 mod sim;
 
 pub use sim::{AnyLink, LinkSim, link};
 
-use self::facts::Facts;
-use machine::Machine;
+use processor::LinkProcessor;
+use register_mirror::RegisterMirror;
 
 /// The link for an engine of N axes. Its ports are those of the line and of the engine.
 #[derive(LogicBlock, Default)]
@@ -119,16 +119,16 @@ pub struct Link<const N: usize> {
     pub culprits: Input<Word<N>>,
     /// The axes that wait for their limit; bit i is axis i.
     pub homing: Input<Word<N>>,
-    machine: Machine<N>,
-    facts: Facts,
+    processor: LinkProcessor<N>,
+    register_mirror: RegisterMirror,
 }
 
 impl<const N: usize> Link<N> {
     /// Makes the link of this build.
     fn new(build: &EngineBuild, id: BuildId) -> Self {
         Self {
-            machine: Machine::new(&image()),
-            facts: Facts::new(&formulas(build, id)),
+            processor: LinkProcessor::new(&image()),
+            register_mirror: RegisterMirror::new(&formulas(build, id)),
             ..Self::default()
         }
     }
@@ -157,49 +157,49 @@ fn formulas(build: &EngineBuild, id: BuildId) -> Vec<(u8, Formula<32>)> {
 impl<const N: usize> Logic for Link<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        clock!(self, clock, machine, facts);
-        self.machine.received.next = self.received_valid.val();
-        self.machine.received_data.next = self.received.val();
-        self.answer.next = self.machine.a.val();
-        self.answer_valid.next = self.machine.answer_valid.val();
-        self.machine.answer_take.next = self.answer_take.val();
+        clock!(self, clock, processor, register_mirror);
+        self.processor.received.next = self.received_valid.val();
+        self.processor.received_data.next = self.received.val();
+        self.answer.next = self.processor.a.val();
+        self.answer_valid.next = self.processor.answer_valid.val();
+        self.processor.answer_take.next = self.answer_take.val();
 
-        self.put_valid.next = self.machine.put_valid.val();
-        self.put_axis.next = self.machine.a.val().get_bits::<3>(3);
-        self.put_word.next = self.machine.x.val().get_bits::<3>(2);
-        self.put_data.next = self.machine.put_data.val();
-        self.machine.put_ready.next = self.put_ready.val();
-        self.machine.room.next = self.room.val();
-        self.machine.room_valid.next = self.room_valid.val();
-        self.start_valid.next = self.machine.start_valid.val();
-        self.start_mask.next = self.machine.a.val().get_bits::<N>(0);
-        self.machine.start_ready.next = self.start_ready.val();
-        self.home_valid.next = self.machine.home_valid.val();
-        self.home_mask.next = self.machine.a.val().get_bits::<N>(0);
-        self.clear.next = self.machine.clear.val();
-        self.stop.next = self.machine.stop.val();
-        self.broken.next = self.machine.broken.val();
-        self.kick.next = self.machine.kick.val();
-        self.enable.next = self.machine.enable.val();
+        self.put_valid.next = self.processor.put_valid.val();
+        self.put_axis.next = self.processor.a.val().get_bits::<3>(3);
+        self.put_word.next = self.processor.x.val().get_bits::<3>(2);
+        self.put_data.next = self.processor.put_data.val();
+        self.processor.put_ready.next = self.put_ready.val();
+        self.processor.room.next = self.room.val();
+        self.processor.room_valid.next = self.room_valid.val();
+        self.start_valid.next = self.processor.start_valid.val();
+        self.start_mask.next = self.processor.a.val().get_bits::<N>(0);
+        self.processor.start_ready.next = self.start_ready.val();
+        self.home_valid.next = self.processor.home_valid.val();
+        self.home_mask.next = self.processor.a.val().get_bits::<N>(0);
+        self.clear.next = self.processor.clear.val();
+        self.stop.next = self.processor.stop.val();
+        self.broken.next = self.processor.broken.val();
+        self.kick.next = self.processor.kick.val();
+        self.enable.next = self.processor.enable.val();
 
-        self.machine.scanned.next = self.facts.scanned.val();
-        self.machine.fault.next = self.fault.val();
-        self.machine.halted.next = self.halted.val();
-        self.machine.idle.next = self.idle.val();
-        self.machine.ready.next = self.ready.val();
-        self.machine.armed.next = self.armed.val();
-        self.machine.cause.next = self.cause.val();
-        self.machine.culprits.next = self.culprits.val();
-        self.machine.homing.next = self.homing.val();
-        self.machine.facts.next = self.facts.data.val();
+        self.processor.scanned.next = self.register_mirror.scanned.val();
+        self.processor.fault.next = self.fault.val();
+        self.processor.halted.next = self.halted.val();
+        self.processor.idle.next = self.idle.val();
+        self.processor.ready.next = self.ready.val();
+        self.processor.armed.next = self.armed.val();
+        self.processor.cause.next = self.cause.val();
+        self.processor.culprits.next = self.culprits.val();
+        self.processor.homing.next = self.homing.val();
+        self.processor.facts.next = self.register_mirror.data.val();
 
-        self.facts.address.next = self.machine.x.val().get_bits::<7>(0);
-        self.facts.get_data.next = self.get_data.val();
-        self.facts.get_valid.next = self.get_valid.val();
-        self.facts.latch.next = self.latch.val();
-        self.facts.latch_axis.next = self.latch_axis.val();
-        self.get_axis.next = self.facts.get_axis.val();
-        self.get_item.next = self.facts.get_item.val();
+        self.register_mirror.address.next = self.processor.x.val().get_bits::<7>(0);
+        self.register_mirror.get_data.next = self.get_data.val();
+        self.register_mirror.get_valid.next = self.get_valid.val();
+        self.register_mirror.latch.next = self.latch.val();
+        self.register_mirror.latch_axis.next = self.latch_axis.val();
+        self.get_axis.next = self.register_mirror.get_axis.val();
+        self.get_item.next = self.register_mirror.get_item.val();
     }
 }
 
@@ -207,7 +207,7 @@ impl<const N: usize> Logic for Link<N> {
 mod tests {
     use super::*;
     use crate::sim::assert_synthesizes;
-    use carrystep_core::link::Line;
+    use carrystep_core::link::LineKind;
     use carrystep_core::{AXES, Build, PinTiming, StartPhase, Timebase};
 
     #[test]
@@ -216,7 +216,7 @@ mod tests {
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
         let mut build = EngineBuild::minimal(&build, 1);
         build.guard.watchdog = 4095;
-        let id = Line::Spi.build_id(&build);
+        let id = LineKind::Spi.build_id(&build);
         let values: Vec<_> = formulas(&build, id)
             .iter()
             .map(|(at, fact)| (*at, fact.value().value() as u32))
@@ -229,7 +229,7 @@ mod tests {
         let timebase = Timebase::new(48_000_000, 2000, 16).unwrap();
         let build = Build { timebase, phase: StartPhase::Half, pins: [PinTiming::SHORTEST; AXES] };
         let build = EngineBuild::minimal(&build, 1);
-        let id = Line::Spi.build_id(&build);
+        let id = LineKind::Spi.build_id(&build);
         assert_synthesizes(Link::<6>::new(&build, id), "carrystep_link");
     }
 }

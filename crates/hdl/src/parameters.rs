@@ -50,29 +50,29 @@ pub const CLOCKS_PER_TICK: Described = Described::new(
 /// The start value of P.
 pub const START_HALF: Described =
     Described::new("START_HALF", "0 or 1", "start value of P: 1 half a step, 0 zero");
-/// The pulse width W of STEP.
+/// The least time of STEP high.
 pub const STEP_HIGH: Described = Described::per_axis(
     "STEP_HIGH",
     "1 to 65536",
-    "W, the minimum time in clocks for which STEP is high",
+    "the minimum time in clocks for which STEP is high",
 );
-/// The gap S between two pulses of STEP.
+/// The least time of STEP low.
 pub const STEP_LOW: Described = Described::per_axis(
     "STEP_LOW",
     "1 to 65536",
-    "S, the minimum time in clocks for which STEP is low",
+    "the minimum time in clocks for which STEP is low",
 );
-/// The set-up time D of DIR before STEP.
+/// The set-up time of DIR before STEP.
 pub const DIR_SETUP: Described = Described::per_axis(
     "DIR_SETUP",
     "1 to 65536",
-    "D, the minimum time in clocks from a change of DIR to a rising edge of STEP",
+    "the minimum time in clocks from a change of DIR to a rising edge of STEP",
 );
-/// The hold time H of DIR after STEP.
+/// The hold time of DIR after STEP.
 pub const DIR_HOLD: Described = Described::per_axis(
     "DIR_HOLD",
     "1 to 65536",
-    "H, the minimum time in clocks from a rising edge of STEP to a change of DIR",
+    "the minimum time in clocks from a rising edge of STEP to a change of DIR",
 );
 /// The acceleration of the ramp in a controlled stop.
 pub const STOP_ACCEL: Described = Described::per_axis(
@@ -88,8 +88,8 @@ pub const ROUND_TICKS: Described = Described::new(
     "length of a round, the unit of the times below, in ticks",
 );
 /// The number of samples by which the limits are debounced.
-pub const DEBOUNCE_LOOKS: Described = Described::new(
-    "DEBOUNCE_LOOKS",
+pub const DEBOUNCE_SAMPLES: Described = Described::new(
+    "DEBOUNCE_SAMPLES",
     "1 to 127",
     "equal consecutive samples, one per round, that change a limit's debounced state",
 );
@@ -165,7 +165,7 @@ pub const PARAMETERS: [Described; 20] = [
     ROUND_TICKS,
     WATCHDOG_ROUNDS,
     ENABLE_ROUNDS,
-    DEBOUNCE_LOOKS,
+    DEBOUNCE_SAMPLES,
     LIMITS,
     LIMITS_LOW,
     LIMIT_FREEZES,

@@ -3,7 +3,7 @@
 
 pub mod constant;
 pub mod formula;
-pub mod lanes;
 pub mod memory;
+pub mod per_axis;
 pub mod register;
 pub mod word;

@@ -69,14 +69,14 @@ pub enum ProgramError {
 }
 
 /// A source of segments: memory, a file, or a planner that runs at the same time.
-pub trait Source {
+pub trait SegmentSource {
     /// The next segment of an axis; `None` when there are no more.
     fn segment(&mut self, axis: u8) -> Option<Segment>;
     /// Mask of the next start; `None` when there are no more.
     fn start(&mut self) -> Option<u8>;
 }
 
-/// Segments and starts in order, as a [`Source`] that gives each axis its own segments.
+/// Segments and starts in order, as a [`SegmentSource`] that gives each axis its own segments.
 #[derive(Debug, Clone)]
 pub struct Program<'a> {
     commands: &'a [Command],
@@ -130,7 +130,7 @@ impl<'a> Program<'a> {
     }
 }
 
-impl Source for Program<'_> {
+impl SegmentSource for Program<'_> {
     fn segment(&mut self, axis: u8) -> Option<Segment> {
         let at = self.segment.get_mut(usize::from(axis))?;
         while let Some(command) = self.commands.get(*at) {

@@ -1,7 +1,7 @@
 //! The feeder: sends the segments of a program in the order in which the queues need them, and each
 //! start as early as possible.
 
-pub use crate::command::Source;
+pub use crate::command::SegmentSource;
 use crate::command::{ProgramError, Segment};
 use crate::frame::Body;
 use crate::registers::{MOST_AXES, START};
@@ -31,7 +31,7 @@ pub struct Feeder<S> {
     last_start: bool,
 }
 
-impl<S: Source> Feeder<S> {
+impl<S: SegmentSource> Feeder<S> {
     /// A feeder that has sent nothing yet.
     pub fn new(source: S) -> Self {
         Self { source, axes: [Axis::default(); MOST_AXES as usize], start: None, last_start: false }

@@ -2,7 +2,7 @@
 //! caller passes bytes and milliseconds.
 
 use crate::command::ProgramError;
-use crate::feeder::{Feeder, Source};
+use crate::feeder::{Feeder, SegmentSource};
 use crate::frame::{Answer, Body, Request, axis_of, of_axis};
 use crate::reads::Reads;
 use crate::registers::{ANSWER_BYTES, CONTROL, CONTROL_ENABLE, MOST_AXES, POSITION, START};
@@ -177,7 +177,7 @@ impl<const N: usize> Session<N> {
     /// # Errors
     /// [`ProgramError`]. After [`ProgramError::NoPower`] the program can continue once CONTROL = 1
     /// was written.
-    pub fn feed<S: Source>(&mut self, feeder: &mut Feeder<S>) -> Result<bool, ProgramError> {
+    pub fn feed<S: SegmentSource>(&mut self, feeder: &mut Feeder<S>) -> Result<bool, ProgramError> {
         while self.window.room() > 0 {
             let free = !self.starting && !self.armed;
             let Some(body) = feeder.next(self.axes, &self.room, free && self.may_start())? else {

@@ -5,8 +5,8 @@
 mod support;
 
 use carrystep_link::{
-    Command, Ended, Host, HostError, Patience, Program, ProgramError, Refusal, Segment, Timing,
-    Wish,
+    Command, Ended, GatewareMismatch, Host, HostError, Patience, Program, ProgramError, Segment,
+    Timing, Wish,
 };
 use std::convert::Infallible;
 use support::bench_line::{End, Peer};
@@ -20,7 +20,7 @@ const QUICK: Patience = Patience {
     silence: 500,
     lost: 500,
     change: 2000,
-    look: 20,
+    status_period: 20,
 };
 
 type Error = HostError<Infallible>;
@@ -79,7 +79,7 @@ fn gateware_that_stops_answering_is_reported_as_lost() {
     // An idle hour between two calls does not count as silence.
     end.0.borrow_mut().peer = Peer::Gateware;
     end.0.borrow_mut().now += 3_600_000;
-    host.look().unwrap();
+    host.read_status().unwrap();
 }
 
 #[test]
@@ -109,8 +109,8 @@ fn program_that_no_gateware_accepts_is_refused_before_it_is_sent() {
 #[test]
 fn refusals_are_separate_errors() {
     assert_eq!(
-        HostError::<Infallible>::from(Refusal::Identity(1)),
-        HostError::Refused(Refusal::Identity(1))
+        HostError::<Infallible>::from(GatewareMismatch::Identity(1)),
+        HostError::Refused(GatewareMismatch::Identity(1))
     );
 }
 
@@ -172,7 +172,7 @@ fn clear_while_the_estop_is_pressed_is_an_error() {
     let mut host = connect(&end, Some(BUILD)).unwrap();
     host.enable().unwrap();
     end.0.borrow_mut().device.press(true);
-    host.look().unwrap();
+    host.read_status().unwrap();
     let begun = end.0.borrow().now;
     assert_eq!(host.clear(), Err(HostError::StillPressed));
     let took = end.0.borrow().now - begun;

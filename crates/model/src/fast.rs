@@ -22,7 +22,7 @@
 mod crossings;
 mod edges;
 mod engine;
-mod lane;
+mod one_axis;
 mod passage;
 mod pins;
 
@@ -65,11 +65,11 @@ impl Fast {
 
     /// Advances by one cycle and reports the edges on the pins to `to`.
     pub fn clock(&mut self, inputs: &Inputs, to: &mut impl Edges) {
-        let before = self.core.lanes.map(|lane| lane.shaper);
+        let before = self.core.axis_models.map(|axis_model| axis_model.shaper);
         self.core.clock(inputs);
         self.cycle += 1;
-        for ((axis, lane), before) in (0..).zip(&self.core.lanes).zip(&before) {
-            edges::changes(self.cycle, axis, before, &lane.shaper, to);
+        for ((axis, axis_model), before) in (0..).zip(&self.core.axis_models).zip(&before) {
+            edges::changes(self.cycle, axis, before, &axis_model.shaper, to);
         }
     }
 
@@ -80,18 +80,24 @@ impl Fast {
         let mut clocks = most;
         if !self.core.is_still(inputs) {
             clocks = if self.core.only_adds(inputs) { most.min(self.clocks_to_load()) } else { 0 };
-            let mut lanes = self.core.lanes.map(|lane| lane.moving());
+            let mut axis_models = self.core.axis_models.map(|axis_model| axis_model.moving());
             let build = &self.core.build;
             let from =
                 passage::From { cycle: self.cycle, clock_of_tick: self.core.clock_of_tick() };
             let strobes;
-            (clocks, strobes) =
-                self.passages.pass(&mut lanes, from, clocks, &build.timebase, &build.pins, to);
+            (clocks, strobes) = self.passages.pass(
+                &mut axis_models,
+                from,
+                clocks,
+                &build.timebase,
+                &build.pins,
+                to,
+            );
             self.core
-                .lanes
+                .axis_models
                 .iter_mut()
-                .zip(&lanes)
-                .for_each(|(lane, moved)| lane.moved(moved, strobes));
+                .zip(&axis_models)
+                .for_each(|(axis_model, moved)| axis_model.moved(moved, strobes));
         }
         self.cycle += clocks;
         self.core.pass(clocks);
@@ -100,10 +106,10 @@ impl Fast {
 
     /// Cycles before the strobe that ends the first of the running segments.
     fn clocks_to_load(&self) -> u64 {
-        let left = |lane: &crate::parallel::six_axis::Lane| {
-            lane.axis.running.then_some(lane.axis.left.saturating_sub(1))
+        let left = |axis_model: &crate::parallel::six_axis::AxisModel| {
+            axis_model.axis.running.then_some(axis_model.axis.left.saturating_sub(1))
         };
-        let plain = self.core.lanes.iter().filter_map(left).min().unwrap_or(u32::MAX);
+        let plain = self.core.axis_models.iter().filter_map(left).min().unwrap_or(u32::MAX);
         let clocks = u64::from(self.core.build.timebase.clocks_per_tick());
         (u64::from(plain) + 1) * clocks - 1 - self.core.clock_of_tick()
     }

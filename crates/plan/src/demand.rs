@@ -9,7 +9,7 @@ use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_core::engine::SEGMENT_WORDS;
 use carrystep_core::{StartPhase, Timebase};
 use carrystep_files::{MoveFile, PathKind};
-use carrystep_profile::{Constant, Limits, Real, Refusal, SharedProfile, kinds};
+use carrystep_profile::{Constant, LimitRefusal, Limits, Real, SharedProfile, kinds};
 use std::sync::Arc;
 
 /// The greatest number of ticks of a move: 2^42, which is 1.1 x 10^6 s at 250 ns. Up to there the
@@ -62,7 +62,7 @@ pub(crate) fn demand<F: Real>(
     if straight {
         line::share_limits(moved.profile, &mut axes);
     }
-    let refused = |axis: usize, refusal: Refusal, least_time| {
+    let refused = |axis: usize, refusal: LimitRefusal, least_time| {
         let (axis, refusal) = if straight {
             line::blame(moved.profile, &own, axis, refusal)
         } else {
@@ -94,7 +94,7 @@ pub(crate) fn demand<F: Real>(
 
     // Where several axes refuse the time, the error names the slowest one: its least time works for
     // all axes.
-    let mut worst: Option<(usize, Refusal)> = None;
+    let mut worst: Option<(usize, LimitRefusal)> = None;
     let mut profiles: Vec<SharedProfile<F>> = Vec::with_capacity(axes.len());
     for (axis, (steps, limits)) in axes.iter().enumerate() {
         if steps.is_zero() {

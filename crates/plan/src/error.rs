@@ -3,7 +3,7 @@
 //! The messages are part of the command's interface: transcripts in tests/ quote them.
 
 use carrystep_files::{TooManyAxes, Unit};
-use carrystep_profile::Refusal;
+use carrystep_profile::LimitRefusal;
 use thiserror::Error;
 
 /// A move that cannot be done as requested, and what to change. `index` counts moves from 0; the
@@ -21,7 +21,7 @@ pub enum PlanError {
         /// The axis that needs the longest time.
         axis: String,
         /// The limit with the wanted and the available value, in steps and seconds.
-        refusal: Refusal,
+        refusal: LimitRefusal,
         /// The unit in which the message gives the values.
         unit: Unit,
         /// Least time in which all axes can do the move, seconds, rounded up to whole ticks; `None`
@@ -133,8 +133,8 @@ impl PlanError {
     }
 }
 
-fn refused(refusal: &Refusal, unit: &Unit, least_time: Option<f64>) -> String {
-    let Refusal { limit, wanted, available, .. } = refusal;
+fn refused(refusal: &LimitRefusal, unit: &Unit, least_time: Option<f64>) -> String {
+    let LimitRefusal { limit, wanted, available, .. } = refusal;
     let seconds = limit.seconds();
     let has = unit.both(*available, seconds);
     match least_time {

@@ -7,7 +7,7 @@
 //! A new kind of limit has to be added to [`share_limits`] and to `value`.
 
 use carrystep_core::ProfileKind;
-use carrystep_profile::{Limit, Limits, Real, Refusal};
+use carrystep_profile::{Limit, LimitRefusal, Limits, Real};
 
 /// The steps of an axis in this move, as a magnitude, and its limits in steps and seconds.
 type Travel<F> = (F, Limits<F>);
@@ -38,13 +38,13 @@ pub(crate) fn blame<F: Real>(
     kind: ProfileKind,
     axes: &[Travel<F>],
     on: usize,
-    refusal: Refusal,
-) -> (usize, Refusal) {
+    refusal: LimitRefusal,
+) -> (usize, LimitRefusal) {
     let Some((guilty, _)) = tightest(refusal.limit, kind, axes) else { return (on, refusal) };
     let wide = |x: F| x.to_f64().unwrap_or(f64::NAN);
     let scale = wide(axes[guilty].0) / wide(axes[on].0);
     let available = wide(value(refusal.limit, &axes[guilty].1));
-    (guilty, Refusal { wanted: refusal.wanted * scale, available, ..refusal })
+    (guilty, LimitRefusal { wanted: refusal.wanted * scale, available, ..refusal })
 }
 
 /// Returns the axis with the least quotient of a limit and its steps, and that quotient.

@@ -316,7 +316,7 @@ impl<'a> Planner<'a> {
         let mut before = still(rest);
         let mut early = None;
         let mut borrowed = 0;
-        if own_rest > 0 && strokes.is_some_and(|s| self.pins[axis].turns(&s)) {
+        if own_rest > 0 && strokes.is_some_and(|s| self.pins[axis].changes_dir(&s)) {
             before = turning_rest(u32::try_from(rest).map_err(|_| Broken::Range)?, backward, phase);
             early = Some(i128::from(self.build.timebase.clocks_per_tick()));
             if borrows(phase, backward) {

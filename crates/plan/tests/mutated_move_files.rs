@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // Tests may panic.
 
-use carrystep_files::{MoveFile, Source};
+use carrystep_files::{MoveFile, SourceText};
 use carrystep_plan::plan;
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -186,7 +186,7 @@ impl Mutation {
 /// Reads and plans a text within a second; returns the result as a message.
 fn read_and_plan(text: &str) -> Result<String, TestCaseError> {
     let started = Instant::now();
-    let source = Source { path: "mutated.toml".into(), text: text.into() };
+    let source = SourceText { path: "mutated.toml".into(), text: text.into() };
     let said = match MoveFile::from_source(source) {
         Err(error) => {
             if let Some((_, span)) = &error.place {

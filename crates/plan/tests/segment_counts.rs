@@ -3,7 +3,7 @@
 
 #![allow(clippy::expect_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-use carrystep_files::{MoveFile, Source};
+use carrystep_files::{MoveFile, SourceText};
 use carrystep_plan::{PlannedAxis, plan};
 
 /// Plans the reference move with a tolerance in ns. Only the seven-segment profile gets a jerk
@@ -12,11 +12,12 @@ fn reference(profile: &str, fit_ns: u32) -> PlannedAxis {
     let jerk = if profile == "scurve" { "jerk_limit = 50_000_000\n" } else { "" };
     let text = format!(
         "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nspeed_limit = 150_000\n\
-         accel_limit = 500_000\n{jerk}step_ns = 100\ngap_ns = 100\nsetup_ns = 100\nhold_ns = 100\n\
+         accel_limit = 500_000\n{jerk}step_high_ns = 100\nstep_low_ns = 100\ndir_setup_ns = 100\ndir_hold_ns = 100\n\
          [[move]]\nprofile = \"{profile}\"\nfit_ns = {fit_ns}\nto = {{ x = 20_000 }}\n"
     );
-    let file = MoveFile::from_source(Source { path: "reference.toml".into(), text: text.into() })
-        .expect("a move file");
+    let file =
+        MoveFile::from_source(SourceText { path: "reference.toml".into(), text: text.into() })
+            .expect("a move file");
     plan::<f64>(&file).expect("a plan").moves.remove(0).axes.remove(0)
 }
 

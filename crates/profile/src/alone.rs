@@ -9,7 +9,7 @@ use crate::bad_ramp::BadRamp;
 use crate::curve::Curve;
 use crate::logistic::{self, LogisticRamp, SHORTFALL};
 use crate::profile::{Profile, Real, real};
-use crate::refusal::{Limit, Limits, Refusal};
+use crate::refusal::{Limit, LimitRefusal, Limits};
 use crate::scurve::ScurveRamp;
 use crate::sine::SineRamp;
 use crate::solve::smallest;
@@ -17,24 +17,24 @@ use crate::solve::smallest;
 /// The ramp of constant acceleration from rest.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that `time` breaks and the least time.
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
 pub fn trapezoid_ramp<F: Real>(
     top: F,
     time: Option<F>,
     limits: &Limits<F>,
-) -> Result<ScurveRamp<F>, Refusal> {
+) -> Result<ScurveRamp<F>, LimitRefusal> {
     ranade_ramp(top, time, &Limits { start_speed: F::zero(), ..*limits })
 }
 
 /// The ramp of constant acceleration from the start speed, which must be below `top`.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that `time` breaks and the least time.
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
 pub fn ranade_ramp<F: Real>(
     top: F,
     time: Option<F>,
     limits: &Limits<F>,
-) -> Result<ScurveRamp<F>, Refusal> {
+) -> Result<ScurveRamp<F>, LimitRefusal> {
     scurve_ramp(top, time, &Limits { jerk: F::infinity(), ..*limits })
 }
 
@@ -44,12 +44,12 @@ pub fn ranade_ramp<F: Real>(
 /// limit it is therefore a ramp of constant acceleration.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that `time` breaks and the least time.
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
 pub fn scurve_ramp<F: Real>(
     top: F,
     time: Option<F>,
     limits: &Limits<F>,
-) -> Result<ScurveRamp<F>, Refusal> {
+) -> Result<ScurveRamp<F>, LimitRefusal> {
     let start = limits.start_speed;
     let ramp = |acceleration, jerk| ScurveRamp::steepest(start, top, acceleration, jerk);
     let lasting = |time: F| {
@@ -69,12 +69,12 @@ pub fn scurve_ramp<F: Real>(
 /// The sinusoidal ramp from rest.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that `time` breaks and the least time.
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
 pub fn sine_ramp<F: Real>(
     top: F,
     time: Option<F>,
     limits: &Limits<F>,
-) -> Result<SineRamp<F>, Refusal> {
+) -> Result<SineRamp<F>, LimitRefusal> {
     in_time(
         time,
         limits,
@@ -89,12 +89,12 @@ pub fn sine_ramp<F: Real>(
 /// It starts at 0.5 %, or at the start speed if that is over 0 and smaller.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that `time` breaks and the least time.
+/// A [`LimitRefusal`] names the limit that `time` breaks and the least time.
 pub fn logistic_ramp<F: Real>(
     top: F,
     time: Option<F>,
     limits: &Limits<F>,
-) -> Result<LogisticRamp<F>, Refusal> {
+) -> Result<LogisticRamp<F>, LimitRefusal> {
     let start = logistic::start_fraction(limits, top);
     let ramp = |steepness| LogisticRamp::between(top, steepness, start);
     // With a steepness of 1/s, the duration of the ramp is the product k T.
@@ -122,7 +122,7 @@ fn in_time<F: Real, R: Curve<F>>(
     limits: &Limits<F>,
     steepest: impl Fn(&Limits<F>) -> R,
     lasting: impl Fn(F) -> R,
-) -> Result<R, Refusal> {
+) -> Result<R, LimitRefusal> {
     let Some(time) = time else { return Ok(steepest(limits)) };
     let duration = |limits: &Limits<F>| steepest(limits).duration();
     let least = duration(limits);
@@ -132,7 +132,7 @@ fn in_time<F: Real, R: Curve<F>>(
     let free = Limits { jerk: F::infinity(), ..*limits };
     if free.acceleration.is_finite() && duration(&free) > time {
         let does = |acceleration| duration(&Limits { acceleration, ..free }) <= time;
-        return Err(Refusal::new(
+        return Err(LimitRefusal::new(
             Limit::Acceleration,
             smallest(free.acceleration, does),
             free.acceleration,
@@ -140,5 +140,5 @@ fn in_time<F: Real, R: Curve<F>>(
         ));
     }
     let does = |jerk| duration(&Limits { jerk, ..*limits }) <= time;
-    Err(Refusal::new(Limit::Jerk, smallest(limits.jerk, does), limits.jerk, least))
+    Err(LimitRefusal::new(Limit::Jerk, smallest(limits.jerk, does), limits.jerk, least))
 }

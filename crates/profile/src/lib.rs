@@ -33,13 +33,13 @@ mod widened;
 
 pub use bad_ramp::BadRamp;
 pub use constant::Constant;
-pub use curve::{Curve, Figures};
-pub use line::Line;
+pub use curve::{Curve, CurveFigures};
+pub use line::StraightLine;
 pub use logistic::{LogisticRamp, SHORTFALL};
 pub use profile::{Profile, Real, SharedProfile};
 pub use ramp::Ramp;
 pub use ramped::RampedMove;
-pub use refusal::{Limit, Limits, Refusal};
+pub use refusal::{Limit, LimitRefusal, Limits};
 pub use scurve::ScurveRamp;
 pub use sine::SineRamp;
 pub use timeline::{Crossing, Leg, Timeline};

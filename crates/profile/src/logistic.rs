@@ -10,7 +10,7 @@ use crate::curve::Curve;
 use crate::numeric::{ln_exp_m1, softplus};
 use crate::profile::{Profile, Real, real};
 use crate::ramped::RampedMove;
-use crate::refusal::{Limits, Refusal};
+use crate::refusal::{LimitRefusal, Limits};
 use crate::timed;
 
 /// The fraction of the asymptote that is missing at the end of a ramp, and present at its start:
@@ -278,12 +278,12 @@ impl<F: Real> Curve<F> for LogisticRamp<F> {
 /// the jump, which is 0.5 % then too. [`Curve::figures`] gives its value.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
+/// A [`LimitRefusal`] names the limit that fails and the least time.
 pub fn logistic<F: Real>(
     distance: F,
     time: F,
     limits: &Limits<F>,
-) -> Result<RampedMove<F, LogisticRamp<F>>, Refusal> {
+) -> Result<RampedMove<F, LogisticRamp<F>>, LimitRefusal> {
     timed::in_time(distance, time, limits, &ramps)
 }
 

@@ -10,18 +10,18 @@ use crate::constant::Constant;
 use crate::curve::Curve;
 use crate::profile::{Real, real};
 use crate::ramp::Ramp;
-use crate::refusal::{Limit, Limits, Refusal};
+use crate::refusal::{Limit, LimitRefusal, Limits};
 use std::sync::Arc;
 
 /// The move of `distance` steps (over 0) in `time` seconds by Ranade's rule.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
+/// A [`LimitRefusal`] names the limit that fails and the least time.
 pub fn ranade<F: Real>(
     distance: F,
     time: F,
     limits: &Limits<F>,
-) -> Result<Arc<dyn Curve<F>>, Refusal> {
+) -> Result<Arc<dyn Curve<F>>, LimitRefusal> {
     let Limits { start_speed, speed, acceleration: limit, .. } = *limits;
     let average = distance / time;
     if average <= start_speed {
@@ -34,7 +34,7 @@ pub fn ranade<F: Real>(
     let top = real::<F>(2.0) * average - start_speed;
     if top <= speed {
         if too_short {
-            return Err(Refusal::new(Limit::Acceleration, acceleration, limit, least));
+            return Err(LimitRefusal::new(Limit::Acceleration, acceleration, limit, least));
         }
         return Ok(Arc::new(Ramp::triangle(distance, time, start_speed, acceleration.min(limit))));
     }
@@ -44,9 +44,9 @@ pub fn ranade<F: Real>(
     let acceleration = if spare > F::zero() { rise * rise / spare } else { F::infinity() };
     if too_short {
         return Err(if spare > F::zero() {
-            Refusal::new(Limit::Acceleration, acceleration, limit, least)
+            LimitRefusal::new(Limit::Acceleration, acceleration, limit, least)
         } else {
-            Refusal::new(Limit::Speed, average, speed, least)
+            LimitRefusal::new(Limit::Speed, average, speed, least)
         });
     }
     let acceleration = acceleration.min(limit);

@@ -1,8 +1,9 @@
 //! Profiles in the units of their sources, with their step times, delays, figures and pictures.
 //!
-//! The curves are those of `carrystep-profile`. A [`Request`] gives the limits and the distance in
-//! millimetres, degrees or turns of a [`Drive`], or in steps. It returns a [`Reference`] for each
-//! [`ProfileKind`]. The modules are private; the public items are listed below.
+//! The curves are those of `carrystep-profile`. A [`ReferenceRequest`] gives the limits and the
+//! distance in millimetres, degrees or turns of a [`Drive`], or in steps. It returns a
+//! [`Reference`] for each [`ProfileKind`]. The modules are private; the public items are listed
+//! below.
 //!
 //! ```
 //! use carrystep_core::ProfileKind;
@@ -40,5 +41,5 @@ pub use error::ReferenceError;
 pub use length::Length;
 pub use picture::{PictureError, Scale, picture};
 pub use quantity::Quantity;
-pub use request::{Request, Travel};
+pub use request::{ReferenceDistance, ReferenceRequest};
 pub use row::{Listing, MOST_ROWS, Row};

@@ -8,7 +8,7 @@ use crate::bad_ramp::{BadRamp, in_range, wide};
 use crate::curve::Curve;
 use crate::profile::{Profile, Real, real};
 use crate::ramped::RampedMove;
-use crate::refusal::{Limits, Refusal};
+use crate::refusal::{LimitRefusal, Limits};
 use crate::timed;
 
 /// One acceleration ramp of at most three segments.
@@ -277,12 +277,12 @@ impl<F: Real> Curve<F> for ScurveRamp<F> {
 /// below the start speed, the whole move has constant speed, as in Ranade's rule.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
+/// A [`LimitRefusal`] names the limit that fails and the least time.
 pub fn scurve<F: Real>(
     distance: F,
     time: F,
     limits: &Limits<F>,
-) -> Result<RampedMove<F, ScurveRamp<F>>, Refusal> {
+) -> Result<RampedMove<F, ScurveRamp<F>>, LimitRefusal> {
     scurve_to(distance, time, limits.start_speed, limits)
 }
 
@@ -294,13 +294,13 @@ pub fn scurve_least_time<F: Real>(distance: F, limits: &Limits<F>) -> F {
 /// [`scurve`] with another jump at the end: from at most `end_speed` steps/s to rest.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
+/// A [`LimitRefusal`] names the limit that fails and the least time.
 pub fn scurve_to<F: Real>(
     distance: F,
     time: F,
     end_speed: F,
     limits: &Limits<F>,
-) -> Result<RampedMove<F, ScurveRamp<F>>, Refusal> {
+) -> Result<RampedMove<F, ScurveRamp<F>>, LimitRefusal> {
     timed::in_time(distance, time, limits, &ramps(end_speed))
 }
 

@@ -9,7 +9,7 @@ use crate::curve::Curve;
 use crate::numeric::x_minus_sin;
 use crate::profile::{Profile, Real, real};
 use crate::ramped::RampedMove;
-use crate::refusal::{Limits, Refusal};
+use crate::refusal::{LimitRefusal, Limits};
 use crate::timed;
 use std::f64::consts::PI;
 
@@ -179,12 +179,12 @@ impl<F: Real> Curve<F> for SineRamp<F> {
 /// The sinusoidal move of `distance` steps (over 0) in `time` seconds, from rest to rest.
 ///
 /// # Errors
-/// A [`Refusal`] names the limit that fails and the least time.
+/// A [`LimitRefusal`] names the limit that fails and the least time.
 pub fn sine<F: Real>(
     distance: F,
     time: F,
     limits: &Limits<F>,
-) -> Result<RampedMove<F, SineRamp<F>>, Refusal> {
+) -> Result<RampedMove<F, SineRamp<F>>, LimitRefusal> {
     timed::in_time(distance, time, limits, &ramps)
 }
 

@@ -10,7 +10,7 @@
 use crate::curve::Curve;
 use crate::profile::Real;
 use crate::ramped::{RampedMove, time_with_cruise};
-use crate::refusal::{Limit, Limits, Refusal};
+use crate::refusal::{Limit, LimitRefusal, Limits};
 use crate::solve::{largest, smallest};
 
 /// The ramps of one curve: returns the ramps up and down for the limits and the common top speed in
@@ -58,13 +58,13 @@ pub(crate) fn least_time<F: Real, R: Curve<F>>(
 /// the move takes that long.
 ///
 /// # Errors
-/// A [`Refusal`] if `time` is not a number or below the least time.
+/// A [`LimitRefusal`] if `time` is not a number or below the least time.
 pub(crate) fn in_time<F: Real, R: Curve<F>>(
     distance: F,
     time: F,
     limits: &Limits<F>,
     ramps: &impl Ramps<F, R>,
-) -> Result<RampedMove<F, R>, Refusal> {
+) -> Result<RampedMove<F, R>, LimitRefusal> {
     let distance = distance.max(F::zero());
     let least = least_time(distance, limits, ramps);
     if time.is_nan() || limits.too_short(time, least) {
@@ -87,20 +87,20 @@ fn refusal<F: Real, R: Curve<F>>(
     least: F,
     limits: &Limits<F>,
     ramps: &impl Ramps<F, R>,
-) -> Refusal {
+) -> LimitRefusal {
     let does = |limits: &Limits<F>| least_time(distance, limits, ramps) <= time;
     let infinity = F::infinity();
     let free = Limits { speed: infinity, jerk: infinity, ..*limits };
     if !does(&free) {
         let wanted =
             smallest(limits.acceleration, |acceleration| does(&Limits { acceleration, ..free }));
-        return Refusal::new(Limit::Acceleration, wanted, limits.acceleration, least);
+        return LimitRefusal::new(Limit::Acceleration, wanted, limits.acceleration, least);
     }
     let free = Limits { jerk: limits.jerk, ..free };
     if !does(&free) {
         let wanted = smallest(limits.jerk, |jerk| does(&Limits { jerk, ..free }));
-        return Refusal::new(Limit::Jerk, wanted, limits.jerk, least);
+        return LimitRefusal::new(Limit::Jerk, wanted, limits.jerk, least);
     }
     let wanted = smallest(limits.speed, |speed| does(&Limits { speed, ..free }));
-    Refusal::new(Limit::Speed, wanted, limits.speed, least)
+    LimitRefusal::new(Limit::Speed, wanted, limits.speed, least)
 }

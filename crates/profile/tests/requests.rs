@@ -3,9 +3,10 @@
 
 use carrystep_core::ProfileKind;
 use carrystep_core::StartPhase;
-use carrystep_profile::Figures;
+use carrystep_profile::CurveFigures;
 use carrystep_profile::reference::{
-    Drive, Length, Listing, Quantity, ReferenceError, Request, Scale, Travel, picture, write_csv,
+    Drive, Length, Listing, Quantity, ReferenceDistance, ReferenceError, ReferenceRequest, Scale,
+    picture, write_csv,
 };
 use proptest::prelude::*;
 
@@ -31,18 +32,21 @@ fn quantity(sane: std::ops::Range<f64>) -> impl Strategy<Value = Option<Quantity
     prop::option::weighted(0.8, some)
 }
 
-fn any_request() -> impl Strategy<Value = Request> {
+fn any_request() -> impl Strategy<Value = ReferenceRequest> {
     let travel = prop_oneof![
-        Just(Travel::Ramp),
-        (1_u32..3000).prop_map(|steps| Travel::Move(Quantity::new(f64::from(steps), Length::Step))),
+        Just(ReferenceDistance::Ramp),
+        (1_u32..3000).prop_map(|steps| ReferenceDistance::Move(Quantity::new(
+            f64::from(steps),
+            Length::Step
+        ))),
         (prop::num::f64::ANY, any_length())
-            .prop_map(|(value, unit)| Travel::Move(Quantity::new(value, unit))),
+            .prop_map(|(value, unit)| ReferenceDistance::Move(Quantity::new(value, unit))),
     ];
     let time = prop::option::weighted(0.4, prop_oneof![9 => 1e-3..10.0, 1 => prop::num::f64::ANY]);
     let centre = prop::option::weighted(0.1, prop_oneof![9 => -1.0..2.0, 1 => prop::num::f64::ANY]);
     let values = (quantity(1.0..5e3), quantity(0.0..100.0), quantity(1.0..1e5), quantity(1.0..1e6));
     (travel, time, centre, values).prop_map(
-        |(travel, time, centre, (speed, start_speed, acceleration, jerk))| Request {
+        |(travel, time, centre, (speed, start_speed, acceleration, jerk))| ReferenceRequest {
             drive: DRIVE,
             travel,
             time,
@@ -62,9 +66,9 @@ fn any_kind() -> impl Strategy<Value = ProfileKind> {
 /// Checks that no limit is exceeded. The speed limit of a ramp is its own top speed, and the jerk
 /// of a trapezoid consists of impulses that do not count.
 fn within(
-    request: &Request,
+    request: &ReferenceRequest,
     kind: ProfileKind,
-    figures: &Figures<f64>,
+    figures: &CurveFigures<f64>,
 ) -> Result<(), TestCaseError> {
     let limit = |quantity: Option<Quantity>| {
         quantity.map_or(f64::INFINITY, |q| {
@@ -87,7 +91,7 @@ fn within(
 /// Raises the limits one after the other to the values that the refusals name, until the profile is
 /// possible. A limit that is met to the last digit leaves little for the next one, so that one
 /// limit may be named twice.
-fn raised(mut request: Request, kind: ProfileKind) -> Result<(), TestCaseError> {
+fn raised(mut request: ReferenceRequest, kind: ProfileKind) -> Result<(), TestCaseError> {
     for _ in 0..6 {
         let Err(ReferenceError::Refused { limit, wanted, unit, .. }) = request.reference(kind)
         else {
@@ -148,7 +152,7 @@ proptest! {
     fn values_named_by_a_refusal_make_the_profile_possible(request in any_request(), kind in any_kind()) {
         if let Err(ReferenceError::Refused { least_time, .. }) = request.reference(kind) {
             if let Some(time) = least_time.filter(|time| (1e-9..1e12).contains(time)) {
-                let later = Request { time: Some(time), ..request.clone() };
+                let later = ReferenceRequest { time: Some(time), ..request.clone() };
                 prop_assert!(later.reference(kind).is_ok(), "{time}: {:?}", later.reference(kind));
             }
             raised(request, kind)?;
@@ -170,11 +174,14 @@ proptest! {
 
 #[test]
 fn csv_of_a_profile_that_cannot_be_listed_stays_empty() {
-    let long = Request {
+    let long = ReferenceRequest {
         acceleration: Some(Quantity::new(1e5, Length::Step)),
-        ..Request::new(DRIVE, Travel::Move(Quantity::new(1e9, Length::Step)))
+        ..ReferenceRequest::new(DRIVE, ReferenceDistance::Move(Quantity::new(1e9, Length::Step)))
     };
-    let short = Request { travel: Travel::Move(Quantity::new(10.0, Length::Step)), ..long.clone() };
+    let short = ReferenceRequest {
+        travel: ReferenceDistance::Move(Quantity::new(10.0, Length::Step)),
+        ..long.clone()
+    };
     let both = [
         short.reference(ProfileKind::Sine).expect("a sine"),
         long.reference(ProfileKind::Sine).expect("a sine"),

@@ -6,7 +6,7 @@ use crate::verilator::Simulation;
 use crate::{LevelError, bench};
 use carrystep_core::EngineBuild;
 use carrystep_core::engine::{CAUSES, Cause};
-use carrystep_core::link::Line;
+use carrystep_core::link::LineKind;
 use carrystep_verilog::{engine_verilog, line_verilog, link_verilog};
 use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -67,7 +67,7 @@ impl BoardProcess {
     ///
     /// # Errors
     /// [`LevelError`] if Verilator is missing or fails, or if there is no such gateware.
-    pub fn new(build: &EngineBuild, line: Line) -> Result<Self, LevelError> {
+    pub fn new(build: &EngineBuild, line: LineKind) -> Result<Self, LevelError> {
         let what = "a simulation";
         let parts = [
             line_verilog(line, what),
@@ -82,7 +82,7 @@ impl BoardProcess {
         }
         verilog += "`end_keywords\n";
         let axes = format!("-GAXES={}", build.axes());
-        let define = if line == Line::Spi { "-DSPI" } else { "-DUART" };
+        let define = if line == LineKind::Spi { "-DSPI" } else { "-DUART" };
         let options: &[&str] = &[&axes, define];
         let board = Simulation { name: "board", top: "board_bench", bench: BENCH, options };
         let mut command = Command::new(board.compiled(&verilog)?);

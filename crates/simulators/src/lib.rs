@@ -29,7 +29,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 use thiserror::Error;
 
-pub use how_far::{HowFar, Stage};
+pub use how_far::{HowFar, RunStage};
 
 /// A level: the implementation on which a program is run. The fastest is the first.
 #[derive(
@@ -88,8 +88,8 @@ impl<'a> Job<'a> {
     /// last pulse.
     pub fn new(build: &'a Build, program: &'a Program, ticks: u64) -> Self {
         let clocks = u64::from(build.timebase.clocks_per_tick());
-        let slack =
-            4 * clocks + build.pins.iter().map(|p| u64::from(p.width + p.gap)).max().unwrap_or(0);
+        let slack = 4 * clocks
+            + build.pins.iter().map(|p| u64::from(p.step_high + p.step_low)).max().unwrap_or(0);
         Self {
             build,
             program,

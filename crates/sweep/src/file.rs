@@ -3,7 +3,7 @@
 //! Case i depends only on the file, the seed and i. Any change of the order in which values are
 //! chosen changes every case.
 
-use carrystep_files::{InputError, MoveFile, Source};
+use carrystep_files::{InputError, MoveFile, SourceText};
 use minijinja::{Environment, UndefinedBehavior};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -71,7 +71,7 @@ pub enum SweepError {
 
 /// A sweep that can create each of its cases.
 pub struct SweepFile {
-    source: Source,
+    source: SourceText,
     template: Environment<'static>,
     vary: BTreeMap<String, Choice>,
     sample: Option<u64>,
@@ -99,7 +99,7 @@ impl SweepFile {
         if sample == Some(0) {
             return Err(SweepError::NothingToTry);
         }
-        let source = Source::read(path)?;
+        let source = SourceText::read(path)?;
         let wrong =
             |message: String| SweepError::Format { path: path.display().to_string(), message };
         let raw: Raw = source.parse()?;
@@ -177,9 +177,10 @@ impl SweepFile {
         let filled = minijinja::Value::from_pairs(filled);
         let text = self.template.get_template("move").and_then(|template| template.render(filled));
         let file = match text {
-            Ok(text) => {
-                MoveFile::from_source(Source { path: self.source.path.clone(), text: text.into() })
-            }
+            Ok(text) => MoveFile::from_source(SourceText {
+                path: self.source.path.clone(),
+                text: text.into(),
+            }),
             Err(error) => Err(InputError::new(format!("{}: {error}", self.source.path.display()))),
         };
         Case { number, values, file }

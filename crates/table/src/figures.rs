@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// Figures of a table. "Real" figures are those of the rounded counts that the timer plays.
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
-pub struct Figures {
+pub struct TableFigures {
     /// Timer counts per second.
     pub timer_hz: f64,
     /// Number of entries.
@@ -37,7 +37,7 @@ pub struct Figures {
     pub bytes: usize,
 }
 
-impl Figures {
+impl TableFigures {
     pub(crate) fn new(
         request: &TableRequest,
         ideal: &[f64],

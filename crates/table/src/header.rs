@@ -5,7 +5,7 @@
 use crate::error::TableError;
 use crate::request::{Arithmetic, Kind, Pulses, Speed, TableRequest};
 use crate::table::Table;
-use crate::timer::Mode;
+use crate::timer::TimerMode;
 use minijinja::{Environment, context};
 use std::fmt::Write;
 
@@ -73,7 +73,7 @@ impl Table {
             speeds => speeds(request),
             timer => timer(request),
             pulses => pulses(request),
-            ctc => request.timer.mode == Mode::Ctc,
+            ctc => request.timer.mode == TimerMode::Ctc,
             clock_hz => request.timer.clock_hz,
             prescaler => request.timer.prescaler,
             bits => request.timer.width.bits(),
@@ -135,8 +135,8 @@ fn speeds(request: &TableRequest) -> String {
 fn timer(request: &TableRequest) -> String {
     let timer = &request.timer;
     let mode = match timer.mode {
-        Mode::Ctc => "clear on compare: a period is the value + 1",
-        Mode::FreeRunning => "free-running: add the value to the compare register",
+        TimerMode::Ctc => "clear on compare: a period is the value + 1",
+        TimerMode::FreeRunning => "free-running: add the value to the compare register",
     };
     format!("{} bits, {} Hz / {}, {mode}", timer.width.bits(), timer.clock_hz, timer.prescaler)
 }

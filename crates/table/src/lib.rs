@@ -37,11 +37,11 @@ mod table;
 mod timer;
 
 pub use error::TableError;
-pub use figures::Figures;
+pub use figures::TableFigures;
 pub use groups::Group;
 pub use header::Options;
 pub use inverse_table::InverseTable;
 pub use player::PLAYER;
 pub use request::{Arithmetic, Kind, Motor, Pulses, Speed, TableRequest};
 pub use table::Table;
-pub use timer::{AVR_PRESCALERS, Mode, Timer, Width};
+pub use timer::{AVR_PRESCALERS, Timer, TimerMode, Width};

@@ -4,7 +4,7 @@
 
 use crate::austin::{ConstantAcceleration, FloatRecurrence, IntegerRecurrence};
 use crate::error::TableError;
-use crate::figures::Figures;
+use crate::figures::TableFigures;
 use crate::groups::{self, Group};
 use crate::inverse_table::InverseTable;
 use crate::logistic::Logistic;
@@ -17,7 +17,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct Table {
     request: TableRequest,
-    figures: Figures,
+    figures: TableFigures,
     compare: Vec<u16>,
     cruise: u16,
     groups: Vec<Group>,
@@ -76,7 +76,8 @@ impl Table {
             }
             _ => None,
         };
-        let figures = Figures::new(&request, &ideal, &counts, &sizes, &groups, inverse.as_deref());
+        let figures =
+            TableFigures::new(&request, &ideal, &counts, &sizes, &groups, inverse.as_deref());
         Ok(Self { request, figures, compare, cruise, groups, inverse, ideal })
     }
 
@@ -86,7 +87,7 @@ impl Table {
     }
 
     /// The figures that a user needs to judge the table.
-    pub fn figures(&self) -> &Figures {
+    pub fn figures(&self) -> &TableFigures {
         &self.figures
     }
 

@@ -4,14 +4,14 @@
 mod support;
 
 use carrystep_table::{
-    Arithmetic, Kind, Mode, Motor, Options, Pulses, Speed, Table, TableError, TableRequest, Timer,
-    Width,
+    Arithmetic, Kind, Motor, Options, Pulses, Speed, Table, TableError, TableRequest, Timer,
+    TimerMode, Width,
 };
 use proptest::prelude::*;
 use support::source;
 
 fn refusal(change: impl FnOnce(&mut TableRequest)) -> String {
-    let mut request = source(Mode::Ctc, 1000, Pulses::One);
+    let mut request = source(TimerMode::Ctc, 1000, Pulses::One);
     change(&mut request);
     Table::new(request).expect_err("a refusal").to_string()
 }
@@ -134,7 +134,7 @@ fn value_that_does_not_fit_names_a_prescaler_that_works() {
 
 #[test]
 fn start_frequency_is_named_where_no_prescaler_works() {
-    let mut request = source(Mode::Ctc, 1000, Pulses::One);
+    let mut request = source(TimerMode::Ctc, 1000, Pulses::One);
     request.timer.width = Width::Bits8;
     request.start_frequency = 2.0;
     request.kind = Kind::Logistic { entries: 1000, steepness: 14.0, centre: None };
@@ -154,7 +154,7 @@ fn start_frequency_is_named_where_no_prescaler_works() {
 
 #[test]
 fn top_speed_too_fast_for_the_interrupt_is_refused() {
-    let mut request = source(Mode::Ctc, 1000, Pulses::One);
+    let mut request = source(TimerMode::Ctc, 1000, Pulses::One);
     request.timer.interrupt_clocks = 1500; // 24 counts; the top speed needs 18.75
     let Err(TableError::TooFast { prescaler: None, least: 24, speed, .. }) =
         Table::new(request.clone())
@@ -209,7 +209,7 @@ fn any_request() -> impl Strategy<Value = TableRequest> {
                 prescaler: prescalers[0],
                 prescalers,
                 width: if small { Width::Bits8 } else { Width::Bits16 },
-                mode: if ctc { Mode::Ctc } else { Mode::FreeRunning },
+                mode: if ctc { TimerMode::Ctc } else { TimerMode::FreeRunning },
                 interrupt_clocks: if slow { interrupt } else { 0 },
             };
             let motor = if slow {

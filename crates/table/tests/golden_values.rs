@@ -6,7 +6,9 @@ use carrystep_table::austin::{
 };
 use carrystep_table::logistic::Logistic;
 use carrystep_table::sine::{self, Sine};
-use carrystep_table::{InverseTable, Kind, Mode, Motor, Pulses, Speed, Table, TableRequest, Timer};
+use carrystep_table::{
+    InverseTable, Kind, Motor, Pulses, Speed, Table, TableRequest, Timer, TimerMode,
+};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::f64::consts::PI;
@@ -60,7 +62,7 @@ fn whole(value: &Value) -> Vec<u32> {
 const MOTOR: Motor = Motor { step_angle_deg: 1.8, microsteps: 8 };
 const F: f64 = 250_000.0;
 
-fn logistic(start_frequency: f64, entries: u32, mode: Mode, pulses: Pulses) -> Table {
+fn logistic(start_frequency: f64, entries: u32, mode: TimerMode, pulses: Pulses) -> Table {
     let kind = Kind::Logistic { entries, steepness: 6.0, centre: None };
     let timer = Timer::avr16(16_000_000, 64, mode);
     let top_speed = Speed::Rpm(500.0);
@@ -116,7 +118,7 @@ fn logistic_table_equals_the_golden_values() {
     close(peak.0, &golden["peak_accel_steps_s2"]);
     assert_eq!(golden["peak_at_index"], peak.1);
 
-    let free = logistic(500.0, 1000, Mode::FreeRunning, Pulses::One);
+    let free = logistic(500.0, 1000, TimerMode::FreeRunning, Pulses::One);
     let ocr: Vec<u32> = free.compare().iter().copied().map(u32::from).collect();
     assert_eq!(ocr[..10], whole(&golden["OCR_0..9"]));
     for i in [100, 250, 500, 750, 999] {
@@ -130,7 +132,7 @@ fn logistic_table_equals_the_golden_values() {
 
     // The same delays for CTC: each value is one less. The values of a free-running timer would
     // make the ramp 4 ms longer.
-    let ctc = logistic(500.0, 1000, Mode::Ctc, Pulses::One);
+    let ctc = logistic(500.0, 1000, TimerMode::Ctc, Pulses::One);
     assert!(ctc.compare().iter().zip(&ocr).all(|(&c, &f)| u32::from(c) + 1 == f));
     close(ctc.figures().ramp_seconds, &golden["ramp_time_OCR_s"]);
     close(ctc.figures().ramp_seconds + 1000.0 / F, &golden["ramp_time_if_OCR+1_s"]);
@@ -144,11 +146,11 @@ fn logistic_table_equals_the_golden_values() {
 #[test]
 fn pulses_by_group_and_by_time_equal_the_golden_values() {
     let golden = &timer_table()["update_2018_08"];
-    let bands = logistic(600.0, 600, Mode::Ctc, Pulses::ByGroup(whole(&golden["bands"])));
+    let bands = logistic(600.0, 600, TimerMode::Ctc, Pulses::ByGroup(whole(&golden["bands"])));
     assert_eq!(golden["total_pulses_bands"], bands.figures().ramp_pulses);
     close(bands.figures().ramp_seconds, &golden["time_bands_s"]);
 
-    let table = logistic(600.0, 600, Mode::Ctc, Pulses::ByTime(1e-3));
+    let table = logistic(600.0, 600, TimerMode::Ctc, Pulses::ByTime(1e-3));
     let mut sizes = vec![0_u32; 600];
     table.ramp_entries().for_each(|entry| sizes[entry] += 1);
     assert_eq!(sizes[..10], whole(&golden["cstep_first10"]));

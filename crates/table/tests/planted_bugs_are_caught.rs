@@ -3,7 +3,7 @@
 
 mod support;
 
-use carrystep_table::{Mode, Options, PLAYER, Pulses, Table};
+use carrystep_table::{Options, PLAYER, Pulses, Table, TimerMode};
 use support::{Bench, Move, judge, lengths, source};
 
 /// Name of the bug, the right text (which occurs once in carrystep_player.c), and the wrong text.
@@ -38,7 +38,7 @@ const BUGS: [(&str, &str, &str); 12] = [
     ),
 ];
 
-fn table(mode: Mode) -> Table {
+fn table(mode: TimerMode) -> Table {
     Table::new(source(mode, 60, Pulses::ByTime(1e-3))).expect("a table")
 }
 
@@ -55,7 +55,7 @@ fn verdict(table: &Table, bench: &Bench) -> Result<(), String> {
 
 #[test]
 fn bugs_in_the_player_are_caught() {
-    let table = table(Mode::Ctc);
+    let table = table(TimerMode::Ctc);
     assert_eq!(verdict(&table, &Bench::of(&table)), Ok(()));
     let (file, text) = PLAYER[1];
     for (bug, right, wrong) in BUGS {
@@ -70,12 +70,14 @@ fn bugs_in_the_player_are_caught() {
 
 #[test]
 fn table_for_the_other_timer_mode_is_caught() {
-    for (mode, other) in [(Mode::Ctc, Mode::FreeRunning), (Mode::FreeRunning, Mode::Ctc)] {
+    for (mode, other) in
+        [(TimerMode::Ctc, TimerMode::FreeRunning), (TimerMode::FreeRunning, TimerMode::Ctc)]
+    {
         // A table for one mode on a timer in the other mode: every delay is off by one.
         let (right, wrong) = (table(mode), table(other));
         let header = wrong.header(&Options::new("ramp").unwrap());
         let ctc = |yes: bool| format!("#define RAMP_CTC {}\n", i32::from(yes));
-        let header = header.replace(&ctc(other == Mode::Ctc), &ctc(mode == Mode::Ctc));
+        let header = header.replace(&ctc(other == TimerMode::Ctc), &ctc(mode == TimerMode::Ctc));
         let caught = verdict(&right, &Bench::new(&header));
         assert!(caught.is_err(), "{other:?} values on a {mode:?} timer");
     }

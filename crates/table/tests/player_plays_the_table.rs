@@ -4,7 +4,7 @@
 mod support;
 
 use carrystep_table::{
-    Arithmetic, Kind, Mode, Motor, Options, Pulses, Speed, Table, TableError, TableRequest,
+    Arithmetic, Kind, Motor, Options, Pulses, Speed, Table, TableError, TableRequest, TimerMode,
 };
 use carrystep_table::{Timer, Width};
 use proptest::prelude::*;
@@ -43,7 +43,7 @@ fn check(table: &Table, extra: &[u32]) {
 
 #[test]
 fn source_table_is_played_exactly_in_both_modes() {
-    for mode in [Mode::Ctc, Mode::FreeRunning] {
+    for mode in [TimerMode::Ctc, TimerMode::FreeRunning] {
         let table = Table::new(source(mode, 1000, Pulses::One)).unwrap();
         check(&table, &[40_000]);
         // Each delay is the rounded one, and not only close to it.
@@ -57,7 +57,7 @@ fn source_table_is_played_exactly_in_both_modes() {
 fn tables_by_group_and_by_time_are_played_exactly() {
     let bands = vec![5, 5, 10, 10, 20, 20, 30, 30, 40, 40];
     for pulses in [Pulses::ByGroup(bands), Pulses::ByTime(1e-3)] {
-        for mode in [Mode::Ctc, Mode::FreeRunning] {
+        for mode in [TimerMode::Ctc, TimerMode::FreeRunning] {
             check(&Table::new(source(mode, 600, pulses.clone())).unwrap(), &[17, 4444]);
         }
     }
@@ -66,7 +66,7 @@ fn tables_by_group_and_by_time_are_played_exactly() {
 #[test]
 fn player_reads_nothing_outside_its_table() {
     for pulses in [Pulses::One, Pulses::ByTime(1e-3), Pulses::ByGroup(vec![3, 1, 2])] {
-        let table = Table::new(source(Mode::Ctc, 60, pulses)).unwrap();
+        let table = Table::new(source(TimerMode::Ctc, 60, pulses)).unwrap();
         let moves: Vec<Move> = lengths(&table).into_iter().map(Move::of).collect();
         let bench = Bench::of(&table)
             .flag("-fsanitize=address,undefined")
@@ -77,7 +77,7 @@ fn player_reads_nothing_outside_its_table() {
 
 #[test]
 fn stop_follows_the_ramp_down() {
-    let table = Table::new(source(Mode::Ctc, 100, Pulses::ByTime(1e-3))).unwrap();
+    let table = Table::new(source(TimerMode::Ctc, 100, Pulses::ByTime(1e-3))).unwrap();
     let ramp = u32::try_from(table.figures().ramp_pulses).unwrap();
     let stops = [1, 2, ramp / 2, ramp, ramp + 1, ramp + 50, 4 * ramp - 3, 4 * ramp];
     let moves: Vec<Move> =
@@ -102,7 +102,7 @@ fn stop_follows_the_ramp_down() {
 
 #[test]
 fn table_for_an_8_bit_timer_is_played_exactly() {
-    for mode in [Mode::Ctc, Mode::FreeRunning] {
+    for mode in [TimerMode::Ctc, TimerMode::FreeRunning] {
         let mut request = source(mode, 50, Pulses::One);
         request.timer = Timer { width: Width::Bits8, ..Timer::avr16(1_000_000, 8, mode) };
         request.start_frequency = 400.0;
@@ -116,7 +116,7 @@ fn table_for_an_8_bit_timer_is_played_exactly() {
 
 #[test]
 fn table_in_program_memory_is_read_with_pgm_read_word_only() {
-    let table = Table::new(source(Mode::Ctc, 60, Pulses::ByTime(1e-3))).unwrap();
+    let table = Table::new(source(TimerMode::Ctc, 60, Pulses::ByTime(1e-3))).unwrap();
     let header = table.header(&Options::new("ramp").unwrap().program_memory(true));
     // Every word in "program memory" is scrambled, and only pgm_read_word restores it.
     let mut inside = false;
@@ -151,7 +151,7 @@ fn table_in_program_memory_is_read_with_pgm_read_word_only() {
 
 #[test]
 fn compiler_refuses_a_header_for_another_clock_or_memory() {
-    let table = Table::new(source(Mode::Ctc, 20, Pulses::One)).unwrap();
+    let table = Table::new(source(TimerMode::Ctc, 20, Pulses::One)).unwrap();
     let options = || Options::new("ramp").unwrap();
     let words = |bench: Bench| bench.compile(&["timer_bench.c", "carrystep_player.c"]).unwrap_err();
     assert!(
@@ -209,7 +209,8 @@ fn requests() -> impl Strategy<Value = TableRequest> {
     );
     (kind, pulses, start, 1.02..30.0, timer).prop_map(
         |(kind, pulses, start, ratio, (clock, ctc, small))| {
-            let mut timer = Timer::avr16(clock, 8, if ctc { Mode::Ctc } else { Mode::FreeRunning });
+            let mut timer =
+                Timer::avr16(clock, 8, if ctc { TimerMode::Ctc } else { TimerMode::FreeRunning });
             timer.width = if small { Width::Bits8 } else { Width::Bits16 };
             let top_speed = Speed::StepsPerSecond(f64::max(start, 60.0) * ratio);
             let motor = Motor { step_angle_deg: 1.8, microsteps: 1 };

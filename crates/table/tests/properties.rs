@@ -5,7 +5,7 @@ mod support;
 use carrystep_table::austin::{ConstantAcceleration, FloatRecurrence, IntegerRecurrence};
 use carrystep_table::sine::{Sine, distance, speed};
 use carrystep_table::{
-    Arithmetic, Kind, Mode, Motor, Options, Pulses, Speed, Table, TableRequest, Timer,
+    Arithmetic, Kind, Motor, Options, Pulses, Speed, Table, TableRequest, Timer, TimerMode,
 };
 use proptest::prelude::*;
 use support::{Bench, run};
@@ -49,7 +49,7 @@ proptest! {
     /// Both arithmetics give one ramp, and it ends at the top speed.
     #[test]
     fn avr446_ramp_ends_at_the_top_speed_in_both_arithmetics(ramp_steps in 2_u32..2000, start in prop_oneof![Just(0.0), 10.0..400.0], top in 500.0..4000.0) {
-        let timer = Timer::avr16(2_000_000, 8, Mode::Ctc);
+        let timer = Timer::avr16(2_000_000, 8, TimerMode::Ctc);
         let make = |arithmetic| Table::new(TableRequest {
             timer: timer.clone(),
             motor: Motor { step_angle_deg: 1.8, microsteps: 1 },
@@ -77,7 +77,7 @@ proptest! {
 #[test]
 fn ramp_computed_on_the_controller_stays_within_its_error_bound() {
     let request = TableRequest {
-        timer: Timer::avr16(16_000_000, 64, Mode::Ctc),
+        timer: Timer::avr16(16_000_000, 64, TimerMode::Ctc),
         motor: Motor { step_angle_deg: 1.8, microsteps: 8 },
         start_frequency: 0.0,
         top_speed: Speed::StepsPerSecond(10_000.0),

@@ -3,7 +3,7 @@
 pub mod page;
 
 use crate::SynthesisError;
-use crate::ice40::{self, Part, Placed, Size};
+use crate::ice40::{self, NextpnrPart, PlacedDesign, Size};
 use crate::tool::{self, ICEPACK, ICETIME};
 
 /// Seeds of placement, tried in this order until one reaches the clock. The board's `build.sh` uses
@@ -12,7 +12,7 @@ pub const SEEDS: [u32; 5] = [1, 2, 3, 4, 5];
 
 /// A design to be built.
 #[derive(Debug, Clone, Copy)]
-pub struct Job<'a> {
+pub struct BuildJob<'a> {
     /// Verilog of all modules.
     pub verilog: &'a str,
     /// Name of the top module.
@@ -20,7 +20,7 @@ pub struct Job<'a> {
     /// Constraints that assign each port to a pin.
     pub pcf: &'a str,
     /// The part.
-    pub part: Part<'a>,
+    pub part: NextpnrPart<'a>,
     /// Clock, Hz.
     pub clock_hz: u64,
 }
@@ -51,10 +51,10 @@ impl Built {
 /// # Errors
 /// [`SynthesisError`] if a tool is missing or refuses the design. If the design is too large, the
 /// tool is nextpnr.
-pub fn build(job: &Job<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
+pub fn build(job: &BuildJob<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, SynthesisError> {
     stage("yosys");
     let netlist = ice40::synthesise_tight(job.verilog, job.top)?;
-    let mut best: Option<(u32, Placed)> = None;
+    let mut best: Option<(u32, PlacedDesign)> = None;
     let mut failed = None;
     for seed in SEEDS {
         stage(&format!("nextpnr-ice40, seed {seed}"));

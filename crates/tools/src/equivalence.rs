@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 
 /// Result of a proof.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Verdict {
+pub enum EquivalenceVerdict {
     /// This number of pairs of wires is proved to be equal at all times.
     Proved(u32),
     /// The first number is how many pairs could not be proved to be equal; the second is the number
@@ -41,7 +41,7 @@ pub fn verilog_and_netlist(
     core: &str,
     netlist: &Netlist,
     verilog: &str,
-) -> Result<Verdict, SynthesisError> {
+) -> Result<EquivalenceVerdict, SynthesisError> {
     let top = netlist.top();
     let gold = format!(
         "read_verilog core.v; {}; opt_expr -mux_undef; {CUT}; \
@@ -66,7 +66,7 @@ pub fn verilog_and_netlist(
 pub fn netlist_and_bitstream(
     netlist: &Netlist,
     read_back: &str,
-) -> Result<Verdict, SynthesisError> {
+) -> Result<EquivalenceVerdict, SynthesisError> {
     let top = netlist.top();
     prove(top, &cells_in("core.v", top), &netlist.verilog, read_back)
 }
@@ -124,7 +124,7 @@ fn prove(
     gold: &str,
     gold_text: &str,
     gate_text: &str,
-) -> Result<Verdict, SynthesisError> {
+) -> Result<EquivalenceVerdict, SynthesisError> {
     let folder = tool::folder()?;
     let both = format!("{gold_text}{gate_text} SB_RAM40_4K");
     for (name, text) in
@@ -144,8 +144,8 @@ fn prove(
         .captures(&status)
         .and_then(|found| Some((found[1].parse().ok()?, found[2].parse().ok()?)));
     match counts {
-        Some((proved, 0)) if proved > 0 => Ok(Verdict::Proved(proved)),
-        Some((proved, open)) if open > 0 => Ok(Verdict::Open(open, proved + open)),
+        Some((proved, 0)) if proved > 0 => Ok(EquivalenceVerdict::Proved(proved)),
+        Some((proved, open)) if open > 0 => Ok(EquivalenceVerdict::Open(open, proved + open)),
         _ => Err(SynthesisError::Unread { tool: YOSYS.name, what: "the verdict".to_owned() }),
     }
 }

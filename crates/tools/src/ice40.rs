@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// A part: nextpnr's names of its device and of its package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part<'a> {
+pub struct NextpnrPart<'a> {
     /// Device, such as `hx8k` or `up5k`.
     pub device: &'a str,
     /// Package, such as `ct256`.
@@ -47,7 +47,7 @@ pub struct Netlist {
 }
 
 /// A placed and routed design.
-pub struct Placed {
+pub struct PlacedDesign {
     /// Configuration bits as text, one tile after the other.
     pub asc: String,
     /// Greatest clock, MHz, at which every path between flip-flops and memories meets its timing,
@@ -111,7 +111,7 @@ impl Netlist {
     ///
     /// # Errors
     /// [`SynthesisError`] if nextpnr is missing or fails.
-    pub fn size(&self, part: Part<'_>) -> Result<Size, SynthesisError> {
+    pub fn size(&self, part: NextpnrPart<'_>) -> Result<Size, SynthesisError> {
         let (_, log) = self.nextpnr(part, None, &["--pack-only"])?;
         Size::of(&log)
     }
@@ -123,10 +123,10 @@ impl Netlist {
     /// [`SynthesisError`] if nextpnr is missing, or if the part is too small.
     pub fn place(
         &self,
-        part: Part<'_>,
+        part: NextpnrPart<'_>,
         clock_hz: u64,
         seed: u32,
-    ) -> Result<Placed, SynthesisError> {
+    ) -> Result<PlacedDesign, SynthesisError> {
         self.placed(part, None, clock_hz, seed)
     }
 
@@ -137,21 +137,21 @@ impl Netlist {
     /// [`SynthesisError`] if nextpnr is missing, if the part is too small, or if a port has no pin.
     pub fn place_on(
         &self,
-        part: Part<'_>,
+        part: NextpnrPart<'_>,
         pcf: &str,
         clock_hz: u64,
         seed: u32,
-    ) -> Result<Placed, SynthesisError> {
+    ) -> Result<PlacedDesign, SynthesisError> {
         self.placed(part, Some(pcf), clock_hz, seed)
     }
 
     fn placed(
         &self,
-        part: Part<'_>,
+        part: NextpnrPart<'_>,
         pcf: Option<&str>,
         clock_hz: u64,
         seed: u32,
-    ) -> Result<Placed, SynthesisError> {
+    ) -> Result<PlacedDesign, SynthesisError> {
         let (mhz, seed) = ((clock_hz as f64 / 1e6).to_string(), seed.to_string());
         let more = [
             "--freq",
@@ -165,7 +165,7 @@ impl Netlist {
         ];
         let (folder, log) = self.nextpnr(part, pcf, &[&more[..], &["placed.json"]].concat())?;
         let placement = serde_json::from_str(&tool::read(folder.path(), "placed.json")?);
-        Ok(Placed {
+        Ok(PlacedDesign {
             asc: tool::read(folder.path(), "placed.asc")?,
             mhz: greatest_clock(&log)?,
             size: Size::of(&log)?,
@@ -176,7 +176,7 @@ impl Netlist {
     /// Runs nextpnr. Returns its directory and its log.
     fn nextpnr(
         &self,
-        part: Part<'_>,
+        part: NextpnrPart<'_>,
         pcf: Option<&str>,
         more: &[&str],
     ) -> Result<(tempfile::TempDir, String), SynthesisError> {
@@ -207,9 +207,9 @@ impl Netlist {
     }
 }
 
-impl Placed {
+impl PlacedDesign {
     /// Reads the bitstream of these configuration bits back as Verilog. Of the netlist, only the
-    /// ports and the names of its flip-flops and memories are used. `asc` is [`Placed::asc`],
+    /// ports and the names of its flip-flops and memories are used. `asc` is [`PlacedDesign::asc`],
     /// possibly with a bit changed.
     ///
     /// # Errors

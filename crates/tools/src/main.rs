@@ -4,7 +4,7 @@
 
 use carrystep_boards::MEASURED_AT;
 use carrystep_tools::board::page;
-use carrystep_tools::resources::{self, FAMILIES, Measured, PAGE, ROWS};
+use carrystep_tools::resources::{self, FAMILIES, PAGE, ROWS, RowMeasurement};
 use carrystep_tools::xilinx;
 use std::io::Write as _;
 use std::path::Path;
@@ -62,7 +62,7 @@ fn write(page: &str, text: &str) -> Result<(), String> {
 fn resources() -> Result<(), String> {
     let (mut rows, mut families) = (Vec::new(), Vec::new());
     for row in &ROWS {
-        let found = Measured::of(row).map_err(|error| error.to_string())?;
+        let found = RowMeasurement::of(row).map_err(|error| error.to_string())?;
         say(&format!("{} at {} ns: {found:?}", row.part.device, row.tick_ns));
         rows.push(found);
     }

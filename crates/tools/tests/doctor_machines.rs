@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 use carrystep_boards::board;
-use carrystep_tools::doctor::{Access, Host, Refusal, Report, User};
+use carrystep_tools::doctor::{AccessRefusal, Computer, DoctorReport, PortAccess, User};
 use std::fs;
 use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
@@ -48,10 +48,11 @@ impl Machine {
         fs::write(self.path(name), text).unwrap();
     }
 
-    fn seen_by(&self, name: &str, groups: &[u32], may: fn(&Path) -> bool) -> Report {
+    fn seen_by(&self, name: &str, groups: &[u32], may: fn(&Path) -> bool) -> DoctorReport {
         let user = User { name: Some(name.into()), groups: groups.to_vec() };
-        let host = Host { root: self.0.path().into(), path: self.path("bin").into(), user, may };
-        Report::of(&host, board("icestick").ok())
+        let host =
+            Computer { root: self.0.path().into(), path: self.path("bin").into(), user, may };
+        DoctorReport::of(&host, board("icestick").ok())
     }
 
     fn mode(&self, name: &str, mode: u32) {
@@ -65,7 +66,7 @@ fn usable_board_is_listed() {
     let port = &report.serial_ports[0];
     assert_eq!(report.serial_ports.len(), 1, "{report:?}");
     assert!(port.path.ends_with("dev/ttyUSB1"));
-    assert_eq!((port.usb.as_deref(), &port.access), (Some("0403:6010"), &Access::Granted));
+    assert_eq!((port.usb.as_deref(), &port.access), (Some("0403:6010"), &PortAccess::Granted));
     assert!(
         port.maybe.contains(&"icestick".to_owned()) && !port.maybe.contains(&"upduino3".to_owned())
     );
@@ -82,11 +83,17 @@ fn three_reasons_of_a_refusal_are_distinguished() {
     let found = |name, groups: &[u32]| {
         machine.seen_by(name, groups, |_| false).serial_ports.remove(0).access
     };
-    assert_eq!(found("eve", &[]), Access::Refused(Refusal::NotInGroup { group: group() }));
-    assert_eq!(found("bob", &[]), Access::Refused(Refusal::LogInAgain { group: group() }));
-    assert_eq!(found("bob", &[gid]), Access::Refused(Refusal::NoRule));
+    assert_eq!(
+        found("eve", &[]),
+        PortAccess::Refused(AccessRefusal::NotInGroup { group: group() })
+    );
+    assert_eq!(
+        found("bob", &[]),
+        PortAccess::Refused(AccessRefusal::LogInAgain { group: group() })
+    );
+    assert_eq!(found("bob", &[gid]), PortAccess::Refused(AccessRefusal::NoRule));
     machine.mode("dev/ttyUSB1", 0o600);
-    assert_eq!(found("bob", &[]), Access::Refused(Refusal::NoRule));
+    assert_eq!(found("bob", &[]), PortAccess::Refused(AccessRefusal::NoRule));
     assert!(found("eve", &[]).to_string().contains("docs/flashing.md"));
 }
 
@@ -98,7 +105,10 @@ fn port_in_use_is_reported_with_the_program() {
     fs::create_dir_all(machine.path("proc/41/fd")).unwrap();
     symlink(machine.path("dev/ttyUSB1"), machine.path("proc/41/fd/3")).unwrap();
     let report = machine.seen_by("ann", &[], |_| true);
-    assert_eq!(report.serial_ports[0].access, Access::InUse { pid: 41, program: "minicom".into() });
+    assert_eq!(
+        report.serial_ports[0].access,
+        PortAccess::InUse { pid: 41, program: "minicom".into() }
+    );
     assert!(!report.has_all_access());
 }
 
@@ -121,13 +131,13 @@ fn tools_are_found_with_their_versions_and_pip_names() {
 
 #[test]
 fn empty_machine_does_not_panic() {
-    let host = Host {
+    let host = Computer {
         root: "/nowhere/at/all".into(),
         path: "".into(),
         user: User { name: None, groups: vec![] },
         may: |_| false,
     };
-    let report = Report::of(&host, None);
+    let report = DoctorReport::of(&host, None);
     assert!(
         report.serial_ports.is_empty() && report.usb_devices.is_empty() && !report.has_all_tools()
     );

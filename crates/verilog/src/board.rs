@@ -13,7 +13,9 @@ pub(crate) use page::pages;
 
 use crate::ExportError;
 use crate::write::TextFile;
-use carrystep_boards::{Board, BoardError, OSCILLATOR, PORTS, Part, Place, Port, Tie, Way, Wire};
+use carrystep_boards::{
+    Board, BoardError, BoardPort, OSCILLATOR, PORTS, Part, Place, Tie, Way, Wire,
+};
 use carrystep_core::link::Uart;
 use carrystep_core::tick::mhz;
 use minijinja::syntax::SyntaxConfig;
@@ -177,7 +179,7 @@ fn place(wire: &Wire) -> (&str, &str) {
 }
 
 /// The port of [`PORTS`] to which a wire belongs.
-fn kind(wire: &Wire) -> Option<&'static Port> {
+fn kind(wire: &Wire) -> Option<&'static BoardPort> {
     let name = wire.port.split('[').next();
     PORTS.iter().find(|port| Some(port.name) == name)
 }

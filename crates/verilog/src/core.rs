@@ -7,7 +7,7 @@ use crate::names::{Names, split_index};
 use crate::netlist::{self, Module};
 use crate::parameters;
 use crate::write::{TextFile, write};
-use carrystep_core::link::{BYTE_PORTS, Line};
+use carrystep_core::link::{BYTE_PORTS, LineKind};
 use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_hdl::primitives::formula::ParameterValue;
 use carrystep_hdl::{HdlError, SixAxis, Spi, UartLine, engine, link};
@@ -56,7 +56,7 @@ const PURPOSES: [(&str, &str); 35] = [
         "Six parallel axes on one tick counter: accepts segments and starts, freezes at a fault.",
     ),
     (
-        "carrystep_turn",
+        "carrystep_time_slot",
         "The schedule: in each tick every axis has a time slot of thirteen clocks (beats).",
     ),
     (
@@ -82,7 +82,7 @@ const PURPOSES: [(&str, &str); 35] = [
         "Memory of the event wheel: the steps of all axes in each phase of four ticks.",
     ),
     (
-        "carrystep_wheel",
+        "carrystep_event_wheel",
         "The event wheel: holds the pending steps of all axes, ordered by tick and phase.",
     ),
     (
@@ -102,7 +102,7 @@ const PURPOSES: [(&str, &str); 35] = [
         "The reset: freezes the engine, waits for rest, and restores the state at configuration.",
     ),
     (
-        "carrystep_homes",
+        "carrystep_homing_control",
         "Homing: which axes wait for their limit, and which ones have reached it and ramp down.",
     ),
     (
@@ -110,7 +110,7 @@ const PURPOSES: [(&str, &str); 35] = [
         "Latches the first cause of a stop, and controls the stop until the host clears it.",
     ),
     (
-        "carrystep_watch",
+        "carrystep_supervisor",
         "Monitors the e-stop and the host (watchdog), and times the power of the drivers.",
     ),
     ("carrystep_uart_in", "The UART receiver: eight data bits, no parity, one stop bit."),
@@ -118,25 +118,25 @@ const PURPOSES: [(&str, &str); 35] = [
     ("carrystep_uart", "A UART: receiver and transmitter."),
     ("carrystep_spi", "An SPI peripheral in mode 0; SCK may be up to a fifth of the clock."),
     (
-        "carrystep_check",
+        "carrystep_crc",
         "Computes the CRC-32 of frames, and assembles words from bytes; one bit per clock.",
     ),
     (
-        "carrystep_machine",
+        "carrystep_processor",
         "A small processor that reads the host's requests, executes them and writes the answers.",
     ),
-    ("carrystep_instructions", "Program memory of the processor carrystep_machine."),
+    ("carrystep_instructions", "Program memory of the processor carrystep_processor."),
     (
-        "carrystep_facts",
+        "carrystep_register_mirror",
         "What the host can read: constants of the build, and the last known state of each axis.",
     ),
     (
         "carrystep_known",
-        "Memory of carrystep_facts: constants of the build, and the last known state of each axis.",
+        "Memory of carrystep_register_mirror: constants of the build, and the last known state of each axis.",
     ),
     (
         "carrystep_data",
-        "Data memory of carrystep_machine: the request, its answer, constants and variables.",
+        "Data memory of carrystep_processor: the request, its answer, constants and variables.",
     ),
     ("carrystep_ring", "Ring buffer of the received bytes that the processor has not read yet."),
     (
@@ -173,7 +173,7 @@ pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, 
 /// [`ExportError`] if the link cannot be generated.
 pub fn link_verilog(
     build: &EngineBuild,
-    line: Line,
+    line: LineKind,
     description: &str,
 ) -> Result<String, ExportError> {
     let id = line.build_id(build);
@@ -190,7 +190,7 @@ pub fn link_verilog(
 ///
 /// # Errors
 /// [`ExportError`] if the module cannot be generated.
-pub fn line_verilog(line: Line, description: &str) -> Result<String, ExportError> {
+pub fn line_verilog(line: LineKind, description: &str) -> Result<String, ExportError> {
     let facts = Facts {
         title: "the line to the host".to_owned(),
         lines: format!("// Line         {line}\n"),
@@ -198,10 +198,10 @@ pub fn line_verilog(line: Line, description: &str) -> Result<String, ExportError
     file_text(line_block(line).as_mut(), line_name(line), &facts, description)
 }
 
-fn line_block(line: Line) -> Box<dyn Block> {
+fn line_block(line: LineKind) -> Box<dyn Block> {
     match line {
-        Line::Uart(uart) => Box::new(UartLine::new(uart)),
-        Line::Spi => Box::new(Spi::new()),
+        LineKind::Uart(uart) => Box::new(UartLine::new(uart)),
+        LineKind::Spi => Box::new(Spi::new()),
     }
 }
 
@@ -214,7 +214,7 @@ pub(crate) struct Overrides {
 }
 
 impl Overrides {
-    pub(crate) fn of(build: &EngineBuild, line: Line) -> Result<Self, ExportError> {
+    pub(crate) fn of(build: &EngineBuild, line: LineKind) -> Result<Self, ExportError> {
         let of = |block: &mut dyn Block| {
             block.connect_all();
             parameters::of(&netlist::read(block)?)
@@ -228,10 +228,10 @@ impl Overrides {
 }
 
 /// Name of a line's top module and of its file.
-pub const fn line_name(line: Line) -> &'static str {
+pub const fn line_name(line: LineKind) -> &'static str {
     match line {
-        Line::Uart(_) => "carrystep_uart",
-        Line::Spi => "carrystep_spi",
+        LineKind::Uart(_) => "carrystep_uart",
+        LineKind::Spi => "carrystep_spi",
     }
 }
 
@@ -239,7 +239,10 @@ pub const fn line_name(line: Line) -> &'static str {
 pub(crate) type Ports = Vec<(String, usize)>;
 
 /// The ports between link and line, and the ports between link and engine.
-pub(crate) fn link_ports(build: &EngineBuild, line: Line) -> Result<(Ports, Ports), ExportError> {
+pub(crate) fn link_ports(
+    build: &EngineBuild,
+    line: LineKind,
+) -> Result<(Ports, Ports), ExportError> {
     let mut link = link(build, line.build_id(build))?;
     link.connect_all();
     let ports = Names::new(&netlist::read(link.as_ref())?)?.ports.into_iter();
@@ -360,9 +363,11 @@ impl Facts {
             phases = time.phases(),
             latency = time.latency_clocks(),
         );
-        for (axis, PinTiming { width, gap, setup, hold }) in pins.iter().enumerate() {
+        for (axis, PinTiming { step_high, step_low, dir_setup, dir_hold }) in
+            pins.iter().enumerate()
+        {
             lines.push_str(&format!(
-                "//   axis {axis}     W {width}, S {gap}, D {setup}, H {hold}\n"
+                "//   axis {axis}     STEP_HIGH {step_high}, STEP_LOW {step_low}, DIR_SETUP {dir_setup}, DIR_HOLD {dir_hold}\n"
             ));
         }
         let count =

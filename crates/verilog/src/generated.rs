@@ -5,8 +5,8 @@ use crate::core::{LINK_NAME, line_name, line_verilog, link_verilog};
 use crate::write::{TextFile, write};
 use crate::{ExportError, Gateware, board, registers};
 use carrystep_boards::boards;
-use carrystep_core::link::Line;
-use carrystep_files::{Machine, Source};
+use carrystep_core::link::LineKind;
+use carrystep_files::{Machine, SourceText};
 use std::path::Path;
 
 /// Where the modules are that boards share.
@@ -38,11 +38,11 @@ pub fn generated_files() -> Result<Vec<TextFile>, ExportError> {
 /// The modules of the host's link, each once, with the parameters of the shipped machine as defaults.
 fn core_files() -> Result<Vec<TextFile>, ExportError> {
     let machine =
-        Machine::from_source(&Source { path: SHIPPED.into(), text: SHIPPED_TEXT.into() })?;
+        Machine::from_source(&SourceText { path: SHIPPED.into(), text: SHIPPED_TEXT.into() })?;
     let (build, line) = (machine.engine(), machine.line()?);
     let file = |name: &str, text| TextFile::new(format!("{CORE}/{name}.v"), text);
     let mut files = vec![file(LINK_NAME, link_verilog(&build, line, SHIPPED)?)];
-    for line in [line, Line::Spi] {
+    for line in [line, LineKind::Spi] {
         files.push(file(line_name(line), line_verilog(line, SHIPPED)?));
     }
     Ok(files)

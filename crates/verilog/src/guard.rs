@@ -2,7 +2,7 @@
 //! the machine file.
 
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::{Between, Limits};
+use carrystep_core::engine::{Between, LimitWiring};
 
 /// The lines of the header.
 pub(crate) fn lines(build: &EngineBuild) -> String {
@@ -16,10 +16,10 @@ pub(crate) fn lines(build: &EngineBuild) -> String {
             format!("{} from ENABLE to the first start", between(time, "ms"))
         });
     let wiring = match figures.limits {
-        Limits::None => None,
-        Limits::Pair => Some("two per axis"),
-        Limits::Each => Some("one per axis"),
-        Limits::One => Some("one for all axes, bit 0 of limit_min"),
+        LimitWiring::None => None,
+        LimitWiring::Pair => Some("two per axis"),
+        LimitWiring::Each => Some("one per axis"),
+        LimitWiring::One => Some("one for all axes, bit 0 of limit_min"),
     };
     let limits = wiring.zip(figures.debounce_us).map_or("none".into(), |(wiring, time)| {
         let (level, stop) = (figures.limit_level, figures.limit_stop);

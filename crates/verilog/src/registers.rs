@@ -3,7 +3,7 @@
 
 use crate::ExportError;
 use carrystep_core::link::registers::{self, PER_AXIS, REGISTERS};
-use carrystep_core::link::{self, ANSWER, ANSWER_DATA, CAUSE_NAMES, Constant, Field, WRITE};
+use carrystep_core::link::{self, ANSWER, ANSWER_DATA, CAUSE_NAMES, Field, LinkConstant, WRITE};
 use minijinja::{Environment, Value, context};
 
 /// The generated files: path in the workspace, and template.
@@ -39,7 +39,7 @@ pub(crate) fn files() -> Result<Vec<(&'static str, String)>, ExportError> {
 }
 
 /// The values of a constant. Lengths are decimal, all other values hexadecimal.
-fn constant(row: &Constant) -> Value {
+fn constant(row: &LinkConstant) -> Value {
     let (rust, c) = match row.kind {
         "u8" => (format!("{:#04x}", row.value), format!("{:#04x}u", row.value)),
         "u32" => {

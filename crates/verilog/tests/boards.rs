@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_boards::{Board, OSCILLATOR, PORTS, Way, board, boards};
-use carrystep_files::Source;
+use carrystep_files::SourceText;
 use carrystep_verilog::{Design, ExportError, Gateware, TextFile, shipped_machine};
 use std::path::Path;
 use std::process::Command;
@@ -141,7 +141,7 @@ fn asked(name: &str, was: &str, becomes: &str) -> Result<(), String> {
     let text = shipped_machine(board, &board.clocks[0]).unwrap();
     assert!(text.contains(was), "the text is gone: {was}");
     let source =
-        Source { path: "machine.toml".into(), text: text.replacen(was, becomes, 1).into() };
+        SourceText { path: "machine.toml".into(), text: text.replacen(was, becomes, 1).into() };
     Gateware::new(board, &board.parts[0], source).map(|_| ()).map_err(|error| error.to_string())
 }
 
@@ -179,7 +179,12 @@ fn impossible_request_is_refused_with_an_alternative() {
             "5600000",
             "a clock of 48000000 Hz does not make 5600000 baud within 2 %",
         ),
-        ("icestick", "driver = \"a4988\"", "driver = \"a4988\"\nstep_ns = 9000000", "step_ns"),
+        (
+            "icestick",
+            "driver = \"a4988\"",
+            "driver = \"a4988\"\nstep_high_ns = 9000000",
+            "step_high_ns",
+        ),
         (
             "icestick",
             "[[machine.axis]]",
@@ -224,7 +229,7 @@ fn machine_can_use_an_spi() {
         let gateware = Gateware::new(
             board,
             &board.parts[0],
-            Source { path: "spi.toml".into(), text: text.into() },
+            SourceText { path: "spi.toml".into(), text: text.into() },
         );
         if board.bits("spi_sck") == 0 {
             let refused = gateware.unwrap_err().to_string();

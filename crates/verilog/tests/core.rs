@@ -2,7 +2,7 @@
 //! date.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-use carrystep_core::engine::{Guard, Limits};
+use carrystep_core::engine::{Guard, LimitWiring};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_verilog::{
@@ -45,14 +45,14 @@ const CORES: [Core; 2] = [
 ];
 
 fn pins() -> [PinTiming; AXES] {
-    [PinTiming { width: 96, gap: 5, setup: 2, hold: 7 }; AXES]
+    [PinTiming { step_high: 96, step_low: 5, dir_setup: 2, dir_hold: 7 }; AXES]
 }
 
 /// An engine whose guard watches something of every kind.
 fn guarded(build: &Build) -> EngineBuild {
     let engine = EngineBuild::minimal(build, 1 << 40);
     let guard =
-        Guard { watchdog: 100, enable: 5, debounce: 3, limits: Limits::Pair, ..engine.guard };
+        Guard { watchdog: 100, enable: 5, debounce: 3, limits: LimitWiring::Pair, ..engine.guard };
     EngineBuild { guard, ..engine }
 }
 
@@ -126,10 +126,10 @@ fn same_build_gives_the_same_text() {
 #[test]
 fn timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
     let mut build = build(48_000_000, 16);
-    build.pins[3].gap = 0;
+    build.pins[3].step_low = 0;
     let folder = tempfile::tempdir().unwrap();
     let error = write_core(folder.path(), &build, "a test").unwrap_err();
-    assert!(error.to_string().contains("gap is 0 clocks"), "{error}");
+    assert!(error.to_string().contains("step_low is 0 clocks"), "{error}");
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
 }
 
@@ -162,10 +162,10 @@ fn engine_with_invalid_parameters_is_refused_by_name() {
         (|build| build.pins.clear(), "0 axes: an engine has 1 to 8"),
         (|build| build.guard.stop.truncate(4), "4 stop accelerations for 6 axes"),
         (phase_of_one_clock, "16 phases in the 16 clocks of a tick"),
-        (|build| build.pins[5].width = 0, "axis 5: width is 0 clocks"),
+        (|build| build.pins[5].step_high = 0, "axis 5: step_high is 0 clocks"),
         (
-            |build| build.pins[1].setup = 65_537,
-            "axis 1: setup is 65537 clocks: from 1 to 65536 can be counted",
+            |build| build.pins[1].dir_setup = 65_537,
+            "axis 1: dir_setup is 65537 clocks: from 1 to 65536 can be counted",
         ),
     ];
     for (spoil, says) in refusals {
@@ -186,8 +186,8 @@ fn a_machine_that_no_engine_can_drive_is_refused_by_name() {
     let refusals = [
         (
             "driver = \"tmc2209\"",
-            "step_ns = 15000\ngap_ns = 15000\nsetup_ns = 20\nhold_ns = 20",
-            "width and gap",
+            "step_high_ns = 15000\nstep_low_ns = 15000\ndir_setup_ns = 20\ndir_hold_ns = 20",
+            "step_high and step_low",
         ),
         (
             "tick_ns = 1000",

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_boards::{Board, Way, board, boards};
-use carrystep_files::Source;
+use carrystep_files::SourceText;
 use carrystep_verilog::{CLOCK_NAME, Gateware, shipped_machine};
 use std::process::Command;
 
@@ -17,8 +17,12 @@ fn gateware(board: &'static Board, spi: bool) -> Gateware<'static> {
     let (baud, axes) = tail.split_once('\n').unwrap();
     let line = if spi { "spi = true" } else { baud };
     let text = format!("{head}[machine.link]\n{line}\n{axes}");
-    Gateware::new(board, &board.parts[0], Source { path: "machine.toml".into(), text: text.into() })
-        .unwrap()
+    Gateware::new(
+        board,
+        &board.parts[0],
+        SourceText { path: "machine.toml".into(), text: text.into() },
+    )
+    .unwrap()
 }
 
 /// The Verilog of the gateware, with the clock module of this bench.

@@ -2,8 +2,8 @@
 //! refuses values that are out of range.
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
-use carrystep_core::engine::Limits;
-use carrystep_core::link::{Line, Uart};
+use carrystep_core::engine::LimitWiring;
+use carrystep_core::link::{LineKind, Uart};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_verilog::{
     ENGINE_NAME, engine_verilog, line_verilog, link_verilog, six_axis_verilog,
@@ -16,7 +16,12 @@ fn build(clock_hz: u64, clocks: u32, start: StartPhase) -> Build {
     Build {
         timebase,
         phase: start,
-        pins: [PinTiming { width: clocks, gap: clocks + 1, setup: 3, hold: clocks }; AXES],
+        pins: [PinTiming {
+            step_high: clocks,
+            step_low: clocks + 1,
+            dir_setup: 3,
+            dir_hold: clocks,
+        }; AXES],
     }
 }
 
@@ -27,7 +32,7 @@ fn first() -> EngineBuild {
 fn second() -> EngineBuild {
     let mut second = EngineBuild::minimal(&build(96_000_000, 200, StartPhase::Zero), 1 << 50);
     second.pins[3] = PinTiming::SHORTEST;
-    second.guard.limits = Limits::Each;
+    second.guard.limits = LimitWiring::Each;
     second.guard.round = 1024;
     (second.guard.watchdog, second.guard.enable, second.guard.debounce) = (4095, 17, 127);
     (second.guard.limit_freezes, second.guard.limits_low, second.guard.estop_low) =
@@ -52,7 +57,7 @@ fn without_values(text: &str) -> String {
 #[test]
 fn builds_differ_in_the_values_of_parameters_alone() {
     let (first, second) = (first(), second());
-    let uart = |clock, baud| Line::Uart(Uart::new(clock, baud).unwrap());
+    let uart = |clock, baud| LineKind::Uart(Uart::new(clock, baud).unwrap());
     let lines = [uart(80_000_000, 1_000_000), uart(96_000_000, 3_000_000)];
     let parallel =
         [build(80_000_000, 2, StartPhase::Half), build(96_000_000, 200, StartPhase::Zero)];
@@ -107,7 +112,7 @@ fn value_out_of_range_is_refused_by_name_and_the_ends_of_the_range_are_not() {
         ("ROUND_TICKS", ["4", "512"], ["3", "0"], "round_ticks_out_of_range"),
         ("WATCHDOG_ROUNDS", ["0", "4095"], ["4096", "65536"], "watchdog_rounds_out_of_range"),
         ("ENABLE_ROUNDS", ["0", "4095"], ["4096", "65536"], "enable_rounds_out_of_range"),
-        ("DEBOUNCE_LOOKS", ["1", "127"], ["0", "128"], "debounce_looks_out_of_range"),
+        ("DEBOUNCE_SAMPLES", ["1", "127"], ["0", "128"], "debounce_samples_out_of_range"),
         ("LIMITS", ["0", "3"], ["4", "5"], "limits_out_of_range"),
         ("LIMITS_LOW", ["0", "1"], ["2", "3"], "limits_low_out_of_range"),
         ("LIMIT_FREEZES", ["0", "1"], ["2", "3"], "limit_freezes_out_of_range"),
@@ -137,7 +142,7 @@ fn value_out_of_range_is_refused_by_name_and_the_ends_of_the_range_are_not() {
         }
     }
     // The parameter of the UART.
-    let line = Line::Uart(Uart::new(80_000_000, 1_000_000).unwrap());
+    let line = LineKind::Uart(Uart::new(80_000_000, 1_000_000).unwrap());
     std::fs::write(folder.path().join("core.v"), line_verilog(line, "a test").unwrap()).unwrap();
     for (value, fits) in [("7", false), ("8", true), ("40000", true), ("40001", false)] {
         let (fine, said) = elaborated(folder.path(), "carrystep_uart", "BIT_CLOCKS", value);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "clippy.toml's allowance reaches unit tests only")]
 
 use carrystep_core::engine::ENGINE_PORTS;
-use carrystep_core::link::{Line, Uart, line_ports, link_ports};
+use carrystep_core::link::{LineKind, Uart, line_ports, link_ports};
 use carrystep_core::ports::{Direction, Peer, Port, SIX_AXIS_PORTS, Width};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_verilog::{
@@ -76,7 +76,7 @@ fn exported_modules_have_the_ports_of_their_tables() {
     let six = declared(&text, CORE_NAME);
     assert!(six.iter().map(|(name, _)| name.as_str()).eq(SIX_AXIS_PORTS.map(|port| port.name)));
     assert_eq!(six.into_iter().collect::<Ports>(), tabled(SIX_AXIS_PORTS, AXES));
-    let uart = Line::Uart(Uart::new(80_000_000, 921_600).unwrap());
+    let uart = LineKind::Uart(Uart::new(80_000_000, 921_600).unwrap());
     for axes in 1..=8 {
         let build = engine_of(axes);
         let engine = declared(&engine_verilog(&build, "a test").unwrap(), ENGINE_NAME);
@@ -87,7 +87,7 @@ fn exported_modules_have_the_ports_of_their_tables() {
         let link = declared(&link_verilog(&build, uart, "a test").unwrap(), LINK_NAME);
         assert_eq!(link.into_iter().collect::<Ports>(), tabled(link_ports(), axes), "{axes} axes");
     }
-    for line in [uart, Line::Spi] {
+    for line in [uart, LineKind::Spi] {
         let found = declared(&line_verilog(line, "a test").unwrap(), line_name(line));
         assert_eq!(found.into_iter().collect::<Ports>(), tabled(line_ports(line), AXES), "{line}");
     }

@@ -14,7 +14,7 @@ use carrystep_core::engine::Cause;
 use carrystep_core::link::Uart;
 use carrystep_link::{Command, Ended, HostError, Program, Wish};
 use carrystep_model::fast::Edge;
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::random::Random;
 use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, Kind, asked, waves};
@@ -99,9 +99,9 @@ fn pulses_on_a_bad_line_equal_those_on_a_clean_line() {
     let (mut sent, mut moves, mut stops, mut edges, mut harmed) = (0, 0_u64, 0_u64, 0, 0);
     while sent < frames {
         let commands = waves(&mut random, SEGMENTS, TICKS);
-        let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
+        let (clean, _) = on_a_line::<ModelBoard>(Faults::default(), 0, &commands);
         assert_eq!(clean.stop, None);
-        let (went, harms) = on_a_line::<Board>(Faults::BAD, random.next(), &commands);
+        let (went, harms) = on_a_line::<ModelBoard>(Faults::BAD, random.next(), &commands);
         compare(&went, &clean.edges);
         if let Some((_, cause)) = went.stop {
             // A damaged frame can only have been missing or late, so no other cause is possible.
@@ -125,7 +125,7 @@ fn pulses_on_a_bad_line_equal_those_on_a_clean_line() {
 #[test]
 fn pulses_of_the_verilog_on_a_bad_line_equal_those_of_models_on_a_clean_line() {
     let commands = waves(&mut Random::new(12), 9, 3000);
-    let (clean, _) = on_a_line::<Board>(Faults::default(), 0, &commands);
+    let (clean, _) = on_a_line::<ModelBoard>(Faults::default(), 0, &commands);
     let (went, harms) = on_a_line::<VerilatedBoard>(Faults::BAD, 5, &commands);
     compare(&went, &clean.edges);
     eprintln!(
@@ -140,7 +140,7 @@ fn pulses_of_the_verilog_on_a_bad_line_equal_those_of_models_on_a_clean_line() {
 /// `CARRYSTEP_GARBAGE` sets the length of the test in ms.
 #[test]
 fn garbage_hangs_nothing() {
-    hears_garbage::<Board>(asked("CARRYSTEP_GARBAGE", 2000));
+    hears_garbage::<ModelBoard>(asked("CARRYSTEP_GARBAGE", 2000));
 }
 
 /// `CARRYSTEP_VERILOG_MS` sets the length of the test in ms.

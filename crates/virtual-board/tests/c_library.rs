@@ -7,11 +7,11 @@ mod support;
 
 use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
-use carrystep_core::link::{Line, Uart};
+use carrystep_core::link::{LineKind, Uart};
 use carrystep_link::line::spi::SpiLine;
 use carrystep_link::{Command, Program, Wish};
 use carrystep_model::fast::Edge;
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::bus::Bus;
 use support::link::c_library::CClient;
 use support::link::client::{Client, RustClient};
@@ -35,7 +35,7 @@ fn connect<'a, B: Kind>(client: &'a mut dyn Client, end: &End<B>) -> WordHost<'a
 
 /// The edges that the driver in Rust makes with a board of models on a clean line.
 fn clean(commands: &[Command]) -> Vec<Edge> {
-    let end = End::<Board>::new(uart(), Faults::default(), 0);
+    let end = End::<ModelBoard>::new(uart(), Faults::default(), 0);
     let mut host = end.connect(uart());
     host.enable().unwrap();
     host.stream(Program::new(commands, AXES as u8).unwrap(), |_| Wish::GoOn).unwrap();
@@ -74,12 +74,12 @@ fn c_client_makes_the_pulses_of_the_rust_driver() {
     for seed in 0..4 {
         let mut c = CClient::shared();
         assert!(
-            moves::<Board>(&mut c, &commands, Faults::default(), seed).0 == clean,
+            moves::<ModelBoard>(&mut c, &commands, Faults::default(), seed).0 == clean,
             "on a clean line"
         );
-        let (edges, harmed) = moves::<Board>(&mut c, &commands, Faults::BAD, seed);
+        let (edges, harmed) = moves::<ModelBoard>(&mut c, &commands, Faults::BAD, seed);
         assert!(edges == clean && harmed > 0, "on a bad line, {seed}");
-        let rust = moves::<Board>(&mut RustClient::default(), &commands, Faults::BAD, seed);
+        let rust = moves::<ModelBoard>(&mut RustClient::default(), &commands, Faults::BAD, seed);
         assert!(rust == (edges, harmed), "the client in Rust says something else, {seed}");
     }
 }
@@ -119,7 +119,7 @@ fn stops<B: Kind>() {
 
 #[test]
 fn c_client_stops_and_resumes() {
-    stops::<Board>();
+    stops::<ModelBoard>();
     stops::<VerilatedBoard>();
 }
 
@@ -129,13 +129,13 @@ fn c_client_works_over_spi() {
     let mut client =
         CClient::with(&["-UCARRYSTEP_SLOTS", "-DCARRYSTEP_SLOTS=6"], |_, text| text.to_owned());
     let clean = clean(&commands(3000));
-    assert!(over_bus::<Board>(&mut client) == clean, "models");
+    assert!(over_bus::<ModelBoard>(&mut client) == clean, "models");
     assert!(over_bus::<VerilatedBoard>(&mut client) == clean, "the Verilog");
 }
 
 fn over_bus<B: Kind>(client: &mut dyn Client) -> Vec<Edge> {
     let bus = Bus::<B>::new(10_000_000);
-    let id = Line::Spi.build_id(&build()).0;
+    let id = LineKind::Spi.build_id(&build()).0;
     let mut host =
         WordHost::connect(client, SpiLine::new(bus.clone()), bus.clone(), 12, id).unwrap();
     host.enable();
@@ -146,14 +146,14 @@ fn over_bus<B: Kind>(client: &mut dyn Client) -> Vec<Edge> {
 
 #[test]
 fn another_build_is_refused_and_named() {
-    refused::<Board>();
+    refused::<ModelBoard>();
     refused::<VerilatedBoard>();
 }
 
 /// The same engine with an SPI is another build.
 fn refused<B: Kind>() {
     let end = End::<B>::new(uart(), Faults::default(), 1);
-    let other = Line::Spi.build_id(&build());
+    let other = LineKind::Spi.build_id(&build());
     let mut client = CClient::shared();
     let refused = WordHost::connect(&mut client, end.clone(), end.clone(), 12, other.0).err();
     assert_eq!(

@@ -13,14 +13,14 @@ use carrystep_core::AXES;
 use carrystep_core::engine::Cause;
 use carrystep_core::link::Uart;
 use carrystep_link::{Ended, HostError, Program, Wish};
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::random::Random;
 use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, FASTEST, Kind, MS, STOP, TICK, asked, build, waves};
 
 #[test]
 fn the_board_stops_when_its_host_dies_and_another_host_continues() {
-    hosts_die::<Board>(asked("CARRYSTEP_DEATHS", 4), 700, Faults::BAD);
+    hosts_die::<ModelBoard>(asked("CARRYSTEP_DEATHS", 4), 700, Faults::BAD);
 }
 
 #[test]

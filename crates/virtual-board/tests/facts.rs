@@ -11,7 +11,7 @@ use carrystep_link::registers::{
     POSITION, SEGMENT, START, WATCHDOG_TICKS, WRITE,
 };
 use carrystep_link::{Answer, Patience, frame};
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::link::device::on_the_line;
 use support::{CLOCK_HZ, Kind, MS};
 
@@ -240,7 +240,7 @@ fn refusals_feed<B: Kind>() {
 #[test]
 fn timeouts_equal_those_of_the_page() {
     let page = include_str!("../../../docs/protocol.md");
-    let Patience { timing, silence, lost, change, look } = Patience::default();
+    let Patience { timing, silence, lost, change, status_period } = Patience::default();
     for row in [
         format!("| no progress, send again from `next` on | after {} ms |", timing.resend),
         format!("| busy, try again | after {} ms |", timing.pause),
@@ -248,7 +248,7 @@ fn timeouts_equal_those_of_the_page() {
             "| no answer at all, give up | after {silence} ms, or {lost} ms once the board has answered |"
         ),
         format!("| power, a stop by ramps, a clear | {change} ms at most |"),
-        format!("| read of the state while there is nothing to send | every {look} ms |"),
+        format!("| read of the state while there is nothing to send | every {status_period} ms |"),
     ] {
         assert!(page.contains(&row), "{row}");
     }
@@ -265,7 +265,7 @@ fn all<B: Kind>() {
 
 #[test]
 fn statements_of_the_page_hold_for_the_models() {
-    all::<Board>();
+    all::<ModelBoard>();
 }
 
 #[test]

@@ -11,7 +11,7 @@ use carrystep_core::link::Uart;
 use carrystep_core::link::registers::{DISCARDED, POSITION, of_axis};
 use carrystep_link::{Command, HostError, Program, Segment, Wish};
 use carrystep_model::fast::{Change, Edge};
-use carrystep_virtual_board::{Board, Switches, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
 use std::ops::Range;
 use support::random::Random;
 use support::wire::Faults;
@@ -25,7 +25,7 @@ fn rises(edges: &[Edge], axis: u8, before: u64) -> u32 {
 
 #[test]
 fn freeze_counts_every_discarded_step() {
-    let (_, discarded) = freezes::<Board>(0..12, 100, Faults::BAD);
+    let (_, discarded) = freezes::<ModelBoard>(0..12, 100, Faults::BAD);
     assert!(discarded > 0, "nothing was ever discarded");
 }
 
@@ -52,7 +52,7 @@ fn freezes<B: Kind>(seeds: Range<u64>, within: u64, faults: Faults) -> (u32, u32
         };
         let commands: Vec<_> = waves(&mut random, 10, 8000).into_iter().map(faster).collect();
         let program = || Program::new(&commands, AXES as u8).unwrap();
-        let clean = End::<Board>::new(uart, Faults::default(), 0);
+        let clean = End::<ModelBoard>::new(uart, Faults::default(), 0);
         let mut host = clean.connect(uart);
         host.enable().unwrap();
         host.stream(program(), |_| Wish::GoOn).unwrap();

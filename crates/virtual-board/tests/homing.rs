@@ -16,8 +16,8 @@ use axes::{Bench, Make, Start, machine};
 use carrystep_core::engine::Cause;
 use carrystep_files::Machine;
 use carrystep_files::machine::{End, overrun};
-use carrystep_link::{AxisHoming, Homed, HomingFault, HostError, Stage, Wish};
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_link::{AxisHoming, Homed, HomingFault, HomingStage, HostError, Wish};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use random::Random;
 
 const STARTS: [Start; 3] = [Start::Open, Start::Closed, Start::Bouncing];
@@ -65,7 +65,7 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
     let mut host = bench.connect(machine);
     host.enable().unwrap();
     let homing = homing_of(machine);
-    let mut stage = Stage::MoveOff;
+    let mut stage = HomingStage::MoveOff;
     let homed = host.home(&homing.as_homing(), |_, now, _| {
         stage = now;
         Wish::GoOn
@@ -73,7 +73,7 @@ fn homes<B: Make>(bench: &Bench<B>, machine: &Machine, what: &str) -> Vec<i32> {
     let homed =
         homed.unwrap_or_else(|error| panic!("{what}: {error}, while it {stage}; {machine:?}"));
     let Homed::At(edges) = homed else { panic!("{what}: stopped") };
-    let answer = host.look().unwrap().answer;
+    let answer = host.read_status().unwrap().answer;
     assert!(answer.idle && !answer.fault && answer.homing == 0, "{what}: {answer:?}");
     let guard = &machine.guard;
     for (number, axis) in machine.axes.iter().enumerate() {
@@ -127,7 +127,7 @@ fn model_homes_from_every_start_in_each_wiring() {
         for (stop, level) in [("ramp", "high"), ("freeze", "low")] {
             for x in STARTS {
                 for y in STARTS {
-                    twice::<Board>(&two(limits, stop, level), &[x, y], 1);
+                    twice::<ModelBoard>(&two(limits, stop, level), &[x, y], 1);
                 }
             }
         }
@@ -191,7 +191,7 @@ fn random_machines(limits: &str, rest: u64) {
         let machine = random_machine(&mut random, limits);
         let starts: Vec<Start> =
             machine.axes.iter().map(|_| STARTS[random.below(3) as usize]).collect();
-        twice::<Board>(&machine, &starts, seed);
+        twice::<ModelBoard>(&machine, &starts, seed);
     }
 }
 
@@ -211,15 +211,18 @@ fn random_machines_home_with_one_input_for_all() {
 }
 
 /// The error of homing with the switches changed by `change`, and the final positions.
-fn fails(limits: &str, change: impl FnOnce(&Bench<Board>)) -> (HostError<axes::Never>, [i32; 2]) {
+fn fails(
+    limits: &str,
+    change: impl FnOnce(&Bench<ModelBoard>),
+) -> (HostError<axes::Never>, [i32; 2]) {
     let machine = two(limits, "ramp", "high");
-    let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Open], 3);
+    let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, Start::Open], 3);
     change(&bench);
     let mut host = bench.connect(&machine);
     host.enable().unwrap();
     let homing = homing_of(&machine);
     let error = host.home(&homing.as_homing(), |_, _, _| Wish::GoOn).unwrap_err();
-    let answer = host.look().unwrap().answer;
+    let answer = host.read_status().unwrap().answer;
     assert_eq!(answer.homing, 0, "no axis waits for a limit behind the error");
     (error, [0, 1].map(|axis| host.status().positions[axis]))
 }
@@ -254,16 +257,22 @@ fn limit_that_closes_while_moving_away_is_an_error_except_at_the_far_end() {
         assert_eq!(error, HostError::Homing { axes, why: HomingFault::Closed }, "{limits}");
     }
     let machine = two("pair", "freeze", "high");
-    let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Open], 3);
+    let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, Start::Open], 3);
     bench.far(1, -20);
     homes(&bench, &machine, "near the far end");
 }
 
 #[test]
 fn estop_and_stop_request_end_homing() {
-    for stage in [Stage::MoveOff, Stage::Seek, Stage::BackOff, Stage::Approach, Stage::PullOff] {
+    for stage in [
+        HomingStage::MoveOff,
+        HomingStage::Seek,
+        HomingStage::BackOff,
+        HomingStage::Approach,
+        HomingStage::PullOff,
+    ] {
         let machine = two("each", "ramp", "high");
-        let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Closed], 4);
+        let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, Start::Closed], 4);
         let mut host = bench.connect(&machine);
         host.enable().unwrap();
         let homing = homing_of(&machine);
@@ -273,7 +282,7 @@ fn estop_and_stop_request_end_homing() {
                 |_, now, _| if now == stage { Wish::Stop } else { Wish::GoOn },
             );
         assert_eq!(stopped, Ok(Homed::Stopped), "{stage}");
-        let answer = host.look().unwrap().answer;
+        let answer = host.read_status().unwrap().answer;
         assert_eq!((answer.cause_name(), answer.homing), (Some("stop"), 0), "{stage}");
         host.clear().unwrap();
         let pressed = host.home(&homing.as_homing(), |_, now, _| {
@@ -287,7 +296,7 @@ fn estop_and_stop_request_end_homing() {
             Err(HostError::Fault { cause: Cause::EStop as u8, culprits: 0 }),
             "{stage}"
         );
-        assert_eq!(host.look().unwrap().answer.homing, 0, "{stage}");
+        assert_eq!(host.read_status().unwrap().answer.homing, 0, "{stage}");
         bench.press_estop(false);
         host.clear().unwrap();
         homes(&bench, &machine, "after stops");
@@ -297,7 +306,7 @@ fn estop_and_stop_request_end_homing() {
 #[test]
 fn homing_that_cannot_succeed_is_refused_before_any_motion() {
     let machine = two("pair", "ramp", "high");
-    let bench = Bench::<Board>::new(&machine, &[Start::Open, Start::Open], 5);
+    let bench = Bench::<ModelBoard>::new(&machine, &[Start::Open, Start::Open], 5);
     let mut host = bench.connect(&machine);
     host.enable().unwrap();
     let homing = homing_of(&machine);

@@ -5,11 +5,11 @@
 mod support;
 
 use carrystep_core::engine::Cause;
-use carrystep_core::link::{Line, Uart};
+use carrystep_core::link::{LineKind, Uart};
 use carrystep_link::{
     Command, Ended, HostError, Patience, Program, ProgramError, Progress, Segment, Timing, Wish,
 };
-use carrystep_virtual_board::{Board, Switches, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, Switches, VerilatedBoard};
 use support::random::Random;
 use support::wire::Faults;
 use support::{BoardHost, CLOCK_HZ, End, Kind, MS, build, waves};
@@ -19,7 +19,7 @@ const QUICK: Patience = Patience {
     silence: 500,
     lost: 500,
     change: 100,
-    look: 20,
+    status_period: 20,
 };
 
 /// Runs a function with both kinds of board.
@@ -28,7 +28,7 @@ macro_rules! on_both {
         $(mod $name {
             #[test]
             fn of_models() {
-                super::$name::<super::Board>();
+                super::$name::<super::ModelBoard>();
             }
 
             #[test]
@@ -94,7 +94,7 @@ fn positions_are_true<B: Kind>(end: &End<B>, host: &BoardHost<B>) {
 /// The same engine with an SPI is another build.
 fn other_build_is_refused_and_both_ids_are_named<B: Kind>() {
     let end = End::<B>::new(uart(), Faults::default(), 1);
-    let (own, other) = (uart().build_id(&build()), Line::Spi.build_id(&build()));
+    let (own, other) = (uart().build_id(&build()), LineKind::Spi.build_id(&build()));
     let refused = end.connect_to(other, QUICK).err().unwrap().to_string();
     let expected = format!("the gateware is build {own}, this machine needs build {other}: ");
     assert!(refused.starts_with(&expected), "{refused}");
@@ -126,7 +126,7 @@ fn stop_request_stops_the_axes_and_clear_resumes<B: Kind>() {
     // A clear without a stop in force writes nothing.
     let next = host.status().answer.next;
     host.clear().unwrap();
-    assert_eq!(host.look().unwrap().answer.next, next);
+    assert_eq!(host.read_status().unwrap().answer.next, next);
 }
 
 fn stop_of_the_machine_is_reported_with_its_cause<B: Kind>() {

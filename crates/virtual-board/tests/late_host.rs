@@ -9,7 +9,7 @@ use carrystep_link::Line as _;
 use carrystep_link::line::serial::SerialLine;
 use carrystep_link::registers::{CONTROL, END, POSITION, SEGMENT, START, WRITE};
 use carrystep_link::{Answer, frame};
-use carrystep_virtual_board::{Board, Desk, Gateware, KEPT, Pace, Terminal};
+use carrystep_virtual_board::{KEPT, ModelBoard, Pace, RealTimeBoard, SimulatedBoard, Terminal};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use support::link::device::on_the_line;
@@ -92,17 +92,17 @@ fn host_delayed_in_real_time_is_never_late_for_a_fast_board() {
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
         let board = scope.spawn(|| {
-            let mut desk = Desk::new(
-                Board::new(&build(), uart),
+            let mut real_time = RealTimeBoard::new(
+                ModelBoard::new(&build(), uart),
                 terminal,
                 Pace::fast(CLOCK_HZ, 25 * MS),
                 CLOCK_HZ,
             );
             let mut least = usize::MAX;
             while !is_over.load(Ordering::Relaxed) {
-                desk.step(&mut ()).unwrap();
-                let waits = support::Kind::least_waiting(&desk.board)
-                    .filter(|_| desk.board.alone().is_some());
+                real_time.step(&mut ()).unwrap();
+                let waits = support::Kind::least_waiting(&real_time.board)
+                    .filter(|_| real_time.board.alone().is_some());
                 least = least.min(waits.unwrap_or(usize::MAX));
             }
             least

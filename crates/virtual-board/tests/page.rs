@@ -7,7 +7,7 @@ mod support;
 use carrystep_core::link::Uart;
 use carrystep_link::registers::{CONTROL, END, POSITION, SEGMENT, START, WRITE};
 use carrystep_link::{Answer, frame};
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::link::device::on_the_line;
 use support::link::{hex, unhex};
 use support::{CLOCK_HZ, Kind};
@@ -98,7 +98,7 @@ fn replayed<B: Kind>() -> (&'static str, String) {
 
 #[test]
 fn example_frames_equal_the_answers_of_the_models() {
-    let (block, said) = replayed::<Board>();
+    let (block, said) = replayed::<ModelBoard>();
     assert_eq!(said, block);
 }
 

@@ -9,7 +9,7 @@ mod support;
 
 use carrystep_core::link::Uart;
 use carrystep_link::{Ended, Program, Wish};
-use carrystep_virtual_board::{Board, VerilatedBoard};
+use carrystep_virtual_board::{ModelBoard, VerilatedBoard};
 use support::bus::Bus;
 use support::random::Random;
 use support::wire::Faults;
@@ -48,7 +48,7 @@ fn carries<B: Kind>(baud: u32, per_second: u32, milliseconds: u32) {
 /// (docs/protocol.md).
 #[test]
 fn spi_at_10_mhz_carries_500_segments_per_second_for_six_axes() {
-    let bus = Bus::<Board>::new(10_000_000);
+    let bus = Bus::<ModelBoard>::new(10_000_000);
     let mut host = bus.connect();
     host.enable().unwrap();
     let per_second = 500;
@@ -75,7 +75,7 @@ fn spi_at_10_mhz_carries_500_segments_per_second_for_six_axes() {
 
 #[test]
 fn uart_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
-    carries::<Board>(3_000_000, 500, 1500);
+    carries::<ModelBoard>(3_000_000, 500, 1500);
 }
 
 /// The number of queued segments is not visible at the Verilog's pins, but an empty queue is a
@@ -87,5 +87,5 @@ fn verilog_at_3_megabaud_carries_500_segments_per_second_for_six_axes() {
 
 #[test]
 fn uart_at_921_600_baud_carries_200_segments_per_second_for_six_axes() {
-    carries::<Board>(921_600, 200, 1500);
+    carries::<ModelBoard>(921_600, 200, 1500);
 }

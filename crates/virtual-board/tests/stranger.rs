@@ -5,7 +5,7 @@
 
 use carrystep_core::link::Uart;
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
-use carrystep_virtual_board::Board;
+use carrystep_virtual_board::ModelBoard;
 use std::collections::VecDeque;
 
 const CLOCK_HZ: u64 = 48_000_000;
@@ -96,7 +96,7 @@ struct Written {
 }
 
 struct Stranger {
-    board: Board,
+    board: ModelBoard,
     came: Vec<u8>,
     answers: u64,
     /// Number of answers lost per hundred.
@@ -121,7 +121,7 @@ impl Stranger {
         build.guard.round = 1024;
         build.guard.watchdog = 49;
         Self {
-            board: Board::new(&build, Uart::new(CLOCK_HZ, 3_000_000).unwrap()),
+            board: ModelBoard::new(&build, Uart::new(CLOCK_HZ, 3_000_000).unwrap()),
             came: Vec::new(),
             answers: 0,
             lost,

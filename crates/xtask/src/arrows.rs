@@ -5,7 +5,7 @@
 //! `docs/architecture.md` shows the crates as they are.
 
 use crate::circles::Modules;
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -124,7 +124,7 @@ fn page() -> Result<(String, String), String> {
 }
 
 /// Shows the crates in `docs/architecture.md` as they are.
-pub fn write() -> Done {
+pub fn write() -> TaskResult {
     let (_, after) = page()?;
     fs::write(shell::root().join(PAGE), after).map_err(|error| format!("{PAGE}: {error}"))
 }
@@ -144,7 +144,7 @@ fn circles() -> Result<BTreeSet<String>, String> {
 }
 
 /// Fails on an arrow that may not be, on a circle of files, and where the page shows others.
-pub fn check() -> Done {
+pub fn check() -> TaskResult {
     let crates = crates()?;
     for (one, other) in STRANGERS {
         for (from, to) in [(one, other), (other, one)] {

@@ -11,7 +11,7 @@
 //! `index.md` lists all pages by subject, and `SUMMARY.md` lists them by number. `SUMMARY.md` also
 //! lists the boards, in the order of the generated `docs/boards/index.md`.
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
@@ -155,7 +155,7 @@ fn expected() -> Result<[(&'static str, String); 2], String> {
 }
 
 /// Writes the index and the summary.
-pub fn write() -> Done {
+pub fn write() -> TaskResult {
     for (file, text) in expected()? {
         fs::write(shell::root().join(file), text).map_err(|error| format!("{file}: {error}"))?;
     }
@@ -163,7 +163,7 @@ pub fn write() -> Done {
 }
 
 /// Fails where the index or the summary is not that of the pages.
-pub fn check() -> Done {
+pub fn check() -> TaskResult {
     for (file, text) in expected()? {
         let found = fs::read_to_string(shell::root().join(file))
             .map_err(|error| format!("{file}: {error}"))?;

@@ -1,10 +1,10 @@
 //! The ladder: tools, arrows, lints, then every rung as a test of its own.
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use crate::{accuracy, arrows, decisions, readme, testing, tools};
 
 /// Everything, in the order in which failing is cheapest. No rung is skipped: a missing tool is an error.
-pub fn climb() -> Done {
+pub fn climb() -> TaskResult {
     tools::install()?;
     arrows::check()?;
     decisions::check()?;
@@ -17,7 +17,7 @@ pub fn climb() -> Done {
 }
 
 /// Rung 7 by itself, with its table.
-pub fn prove() -> Done {
+pub fn prove() -> TaskResult {
     tools::install()?;
     let rung =
         ["test", "--release", "-p", "carrystep-tests", "--test", "rung_7_promises_are_proved"];
@@ -28,7 +28,7 @@ pub fn prove() -> Done {
 const BARE: &str = "thumbv6m-none-eabi";
 
 /// The link's core on a bare microcontroller; where its target cannot be had, on this machine without `std`.
-pub fn bare() -> Done {
+pub fn bare() -> TaskResult {
     let check =
         ["check", "--quiet", "-p", "carrystep-link", "--no-default-features", "--features", "spi"];
     let there = shell::is_there("rustup") && shell::run("rustup", &["target", "add", BARE]).is_ok();
@@ -40,7 +40,7 @@ pub fn bare() -> Done {
 }
 
 /// Formatting and lints.
-pub fn lint() -> Done {
+pub fn lint() -> TaskResult {
     shell::run("cargo", &["fmt", "--all", "--check"])?;
     shell::run(
         "cargo",
@@ -49,7 +49,7 @@ pub fn lint() -> Done {
 }
 
 /// The long lock-step: what a test run does in part, it does whole.
-pub fn lockstep() -> Done {
+pub fn lockstep() -> TaskResult {
     tools::install()?;
     let run = |test| {
         let arguments =
@@ -62,7 +62,7 @@ pub fn lockstep() -> Done {
 }
 
 /// All mutants of the engine, where a test run takes a few.
-pub fn mutants(write: bool) -> Done {
+pub fn mutants(write: bool) -> TaskResult {
     tools::install()?;
     let test = [
         "test",

@@ -6,7 +6,7 @@
 
 mod inputs;
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use crate::tools;
 use std::fmt::Write as _;
 use std::fs;
@@ -124,7 +124,7 @@ const RUNS: [Run; 11] = [
 const NOT_YET: &str = "| not run yet | | | | |";
 
 /// Makes the runs that a change since a commit can break, and writes the page.
-pub fn run_since(base: &str) -> Done {
+pub fn run_since(base: &str) -> TaskResult {
     let names = inputs::touched(base)?;
     if names.is_empty() {
         shell::say(&format!("no long run depends on what has changed since {base}"));
@@ -135,7 +135,7 @@ pub fn run_since(base: &str) -> Done {
 }
 
 /// Makes the runs of these names, or all, and writes the page.
-pub fn run(names: &[String]) -> Done {
+pub fn run(names: &[String]) -> TaskResult {
     if let Some(stranger) = names.iter().find(|name| RUNS.iter().all(|run| run.name != **name)) {
         let known: Vec<&str> = RUNS.iter().map(|run| run.name).collect();
         return Err(format!("no long run is called {stranger}; there are {}", known.join(", ")));
@@ -203,7 +203,7 @@ impl Run {
 }
 
 /// Fails where a file but the page is not as it was committed.
-fn committed() -> Done {
+fn committed() -> TaskResult {
     let changed = shell::read("git", &["status", "--porcelain", "--", ".", &format!(":!{PAGE}")])?;
     if changed.is_empty() {
         Ok(())
@@ -217,7 +217,7 @@ fn minutes(took: Duration) -> String {
 }
 
 /// Replaces the row of one run; the page appears whole or not at all.
-fn write(run: &Run, row: &str) -> Done {
+fn write(run: &Run, row: &str) -> TaskResult {
     let path = shell::root().join(PAGE);
     let page = fs::read_to_string(&path).map_err(|error| format!("{PAGE}: {error}"))?;
     let lost = || format!("{PAGE} has lost a mark of its table");

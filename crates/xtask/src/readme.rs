@@ -2,7 +2,7 @@
 //! every test run.
 
 use crate::decisions;
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use std::fs;
 use std::path::PathBuf;
 
@@ -16,7 +16,7 @@ const GRAB: &str = "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File 
 
 /// Generates `hdl-out/` and the files that are made from tables: register map, pages of boards,
 /// JSON Schemas. The list of boards in `docs/SUMMARY.md` follows.
-pub fn generate() -> Done {
+pub fn generate() -> TaskResult {
     let write = ["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core", "--core"];
     ["parallel", "engine"]
         .iter()
@@ -33,7 +33,7 @@ pub fn generate() -> Done {
 }
 
 /// Fails if the README or the committed plot differs from the current output of the demo.
-pub fn check() -> Done {
+pub fn check() -> TaskResult {
     let (table, plot) = demo()?;
     let stale =
         |what: &str| Err(format!("{what} is not what the demo gives: run `cargo xtask readme`"));
@@ -51,7 +51,7 @@ pub fn check() -> Done {
 }
 
 /// Writes the table of the README and both pictures.
-pub fn write() -> Done {
+pub fn write() -> TaskResult {
     let (table, plot) = demo()?;
     let readme = read("README.md")?;
     let (before, rest) =
@@ -74,7 +74,7 @@ fn block(table: &str) -> String {
 }
 
 /// Saves a picture of the waveform in GTKWave with the save file that the demo writes.
-fn waveform() -> Done {
+fn waveform() -> TaskResult {
     for (tool, package) in [("gtkwave", "gtkwave"), ("xvfb-run", "xvfb xauth")] {
         if !shell::is_there(tool) {
             return Err(format!(
@@ -107,6 +107,6 @@ fn read(name: &str) -> Result<String, String> {
     fs::read_to_string(path(name)).map_err(|error| format!("{name}: {error}"))
 }
 
-fn save(name: &str, text: &str) -> Done {
+fn save(name: &str, text: &str) -> TaskResult {
     fs::write(path(name), text).map_err(|error| format!("{name}: {error}"))
 }

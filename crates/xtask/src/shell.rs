@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
 /// Result of a task; the error is a sentence that says what failed.
-pub type Done = Result<(), String>;
+pub type TaskResult = Result<(), String>;
 
 /// The root directory of the workspace.
 pub fn root() -> PathBuf {
@@ -30,12 +30,12 @@ pub fn command(program: &str, arguments: &[&str]) -> Command {
 }
 
 /// Runs a command; its output goes to the terminal.
-pub fn run(program: &str, arguments: &[&str]) -> Done {
+pub fn run(program: &str, arguments: &[&str]) -> TaskResult {
     run_with(&[], program, arguments)
 }
 
 /// As [`run`], with additional environment variables.
-pub fn run_with(variables: &[(&str, &str)], program: &str, arguments: &[&str]) -> Done {
+pub fn run_with(variables: &[(&str, &str)], program: &str, arguments: &[&str]) -> TaskResult {
     let set: String = variables.iter().map(|(name, value)| format!("{name}={value} ")).collect();
     say(&format!("$ {set}{program} {}", arguments.join(" ")));
     let mut command = command(program, arguments);

@@ -1,7 +1,7 @@
 //! Installs the tools that the tests need beside Cargo, by apt where possible. A new tool is a row
 //! of `NEEDED`.
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 
 /// Each program, and the Debian package that contains it.
 const NEEDED: [(&str, &str); 14] = [
@@ -22,7 +22,7 @@ const NEEDED: [(&str, &str); 14] = [
 ];
 
 /// Installs the missing tools, or reports which ones must be installed by hand.
-pub fn install() -> Done {
+pub fn install() -> TaskResult {
     let missing = missing();
     if missing.is_empty() {
         return Ok(());

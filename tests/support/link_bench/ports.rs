@@ -1,7 +1,7 @@
 //! The recordings of link and line, with the ports of the tables in `core`.
 
 use carrystep_core::AXES;
-use carrystep_core::link::{Line, LinkInputs, LinkOutputs, line_ports, link_ports};
+use carrystep_core::link::{LineKind, LinkInputs, LinkOutputs, line_ports, link_ports};
 use carrystep_core::ports::{Direction, Peer, Port};
 use carrystep_hdl::line::LineOutputs;
 use carrystep_simulators::vectors::{Bits, Vectors};
@@ -13,7 +13,7 @@ pub struct Both {
     pub link: Vectors,
     /// Cycles of its line.
     pub line: Vectors,
-    kind: Line,
+    kind: LineKind,
 }
 
 /// The value of a port, by its name; `None` where it is not valid.
@@ -21,7 +21,7 @@ type Value = (&'static str, Option<u64>);
 
 impl Both {
     /// Empty recordings of a link and of this line.
-    pub fn new(kind: Line) -> Self {
+    pub fn new(kind: LineKind) -> Self {
         let empty = |ports: Vec<Port>| {
             let of = |way| {
                 let named = |port: &Port| (port.name, port.width.of(AXES));

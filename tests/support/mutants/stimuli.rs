@@ -6,7 +6,7 @@ mod work;
 
 use crate::moves::root;
 use carrystep_core::{EngineBuild, Program};
-use carrystep_files::{Machine, Source};
+use carrystep_files::{Machine, SourceText};
 use carrystep_simulators::engine::Events;
 use carrystep_simulators::engine::replay::Recording;
 use proptest::strategy::{Strategy, ValueTree as _};
@@ -38,7 +38,7 @@ pub fn build() -> EngineBuild {
     let shipped = "clock_hz = 80_000_000\ntick_ns = 1000\n";
     assert!(text.contains(shipped), "the shipped machine has another clock or tick");
     let text = text.replace(shipped, "clock_hz = 48_000_000\ntick_ns = 2000\n");
-    Machine::from_source(&Source { path, text: text.into() }).expect("a fine machine").engine()
+    Machine::from_source(&SourceText { path, text: text.into() }).expect("a fine machine").engine()
 }
 
 /// The Verilog that is exported for it.

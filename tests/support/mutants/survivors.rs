@@ -2,7 +2,7 @@
 //! the reason below it.
 //!
 //! ```text
-//! - `watch: eq B[3] always 1: wire silent = silence == WATCHDOG;`
+//! - `supervisor: eq B[3] always 1: wire silent = silence == WATCHDOG;`
 //!   Proved equal: its module, for any inputs.
 //! ```
 

@@ -1,5 +1,5 @@
-//! The proof of the engine's adder. A turn is proved as a whole, so the induction is as deep as a
-//! turn has clocks.
+//! The proof of the engine's adder. A time slot is proved as a whole, so the induction is as deep
+//! as a time slot has clocks.
 
 use super::builds::BuiltEngine;
 use super::{Bug, Case, Promises, Proof};

@@ -10,7 +10,7 @@
 use super::builds::{small, small_engine};
 use super::solver::{LIMIT, ProofError, reached, run, run_until};
 use super::{Bug, Case, Promises};
-use carrystep_core::engine::Limits;
+use carrystep_core::engine::LimitWiring;
 use carrystep_core::{AXES, Build, PinTiming};
 use carrystep_tools::programs::{YOSYS, YOSYS_ABC};
 use std::fmt::Write as _;
@@ -83,14 +83,17 @@ pub const BUGS: &[(&str, Bug)] = &[
         Bug { breaks: "equal_step", text: "read_word = A_HIGH;", becomes: "read_word = A_LOW;" },
     ),
     (
-        "wheel",
+        "event_wheel",
         Bug {
             breaks: "equal_step",
             text: "now = when + ONE_TICK;",
             becomes: "now = when + ONE_TICK + ONE_TICK;",
         },
     ),
-    ("wheel", Bug { breaks: "equal_dir", text: "SIGN_KIND | LAST_PHASE;", becomes: "SIGN_KIND;" }),
+    (
+        "event_wheel",
+        Bug { breaks: "equal_dir", text: "SIGN_KIND | LAST_PHASE;", becomes: "SIGN_KIND;" },
+    ),
     (
         "queue",
         Bug {
@@ -105,13 +108,13 @@ pub const BUGS: &[(&str, Bug)] = &[
         Bug {
             breaks: "equal_start",
             text: "decides & !unfed",
-            becomes: "decides & watch_tick_0 & !unfed",
+            becomes: "decides & supervisor_tick_0 & !unfed",
         },
     ),
 ];
 
 fn new_move(axes: usize, clocks: u32, phases: u32, ticks: [u32; 2], free: u64) -> Move {
-    let (build, engine) = small_engine(axes, clocks, phases, Limits::Pair);
+    let (build, engine) = small_engine(axes, clocks, phases, LimitWiring::Pair);
     let mut pins = [PinTiming::SHORTEST; AXES];
     pins[..axes].copy_from_slice(&build.pins);
     let parallel = Build { timebase: build.timebase, pins, ..small(phases).0 };
@@ -134,8 +137,8 @@ fn new_move(axes: usize, clocks: u32, phases: u32, ticks: [u32; 2], free: u64) -
             numbers: numbers.into(),
         },
         axes: carrystep_verilog::six_axis_verilog(&parallel, "a proof").expect("the axes").into(),
-        // One tick without turns, 16 ticks for the words, 2 until the start, 2 until the pins, and
-        // one for the delay of the pins.
+        // One tick without time slots, 16 ticks for the words, 2 until the start, 2 until the pins,
+        // and one for the delay of the pins.
         clocks: clocks * (1 + 16 + 2 + ticks[0] + ticks[1] + 3),
     }
 }

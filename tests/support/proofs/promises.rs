@@ -7,12 +7,12 @@ pub struct Promises {
 }
 
 impl Promises {
-    /// Labels of what must hold: `promise_3_setup: assert (...)`.
+    /// Labels of what must hold: `promise_3_dir_setup: assert (...)`.
     pub fn labels(&self) -> Vec<&'static str> {
         self.labelled("assert (").filter(|label| !label.starts_with("invariant_")).collect()
     }
 
-    /// Labels of what must be reached: `cover_3_tightest_setup: cover (...)`.
+    /// Labels of what must be reached: `cover_3_tightest_dir_setup: cover (...)`.
     pub fn covers(&self) -> Vec<&'static str> {
         self.labelled("cover (").collect()
     }

@@ -3,37 +3,41 @@
 
 use super::builds::{BuiltEngine, pin_cases, small_engine};
 use super::{Bug, Promises, Proof};
-use carrystep_core::engine::Limits;
+use carrystep_core::engine::LimitWiring;
 
 const BUGS: &[Bug] = &[
     Bug {
-        breaks: "promise_1_width",
-        text: "since != PULSE_OVER",
-        becomes: "since + SINCE_ONE != PULSE_OVER",
+        breaks: "promise_1_step_high",
+        text: "since != STEP_HIGH_OVER",
+        becomes: "since + SINCE_ONE != STEP_HIGH_OVER",
     },
     Bug {
-        breaks: "promise_1_width",
+        breaks: "promise_1_step_high",
         text: "(step_pin & (since",
         becomes: "(step_pin & !frozen & (since",
     },
     Bug {
-        breaks: "promise_2_gap",
+        breaks: "promise_2_step_low",
         text: "!frozen & !busy &",
-        becomes: "!frozen & (!busy | (since == GAP_OVER)) &",
+        becomes: "!frozen & (!busy | (since == STEP_LOW_OVER)) &",
     },
-    Bug { breaks: "promise_3_setup", text: "settled <= 1'b0;", becomes: "settled <= settled;" },
-    Bug { breaks: "promise_3_setup", text: "settled = 1'b0;", becomes: "settled = 1'b1;" },
-    Bug { breaks: "promise_4_hold", text: "held & (since != HOLD_OVER)", becomes: "1'b0" },
+    Bug { breaks: "promise_3_dir_setup", text: "settled <= 1'b0;", becomes: "settled <= settled;" },
+    Bug { breaks: "promise_3_dir_setup", text: "settled = 1'b0;", becomes: "settled = 1'b1;" },
+    Bug { breaks: "promise_4_dir_hold", text: "held & (since != HOLD_OVER)", becomes: "1'b0" },
     Bug {
         breaks: "promise_5_no_new_edge",
         text: "rise = pending & !frozen",
         becomes: "rise = pending",
     },
-    Bug { breaks: "promise_5_dir_stays", text: "turn = !frozen & !held", becomes: "turn = !held" },
+    Bug {
+        breaks: "promise_5_dir_stays",
+        text: "dir_changes = !frozen & !held",
+        becomes: "dir_changes = !held",
+    },
     Bug {
         breaks: "promise_5_never_left_high",
-        text: "(since != PULSE_OVER)",
-        becomes: "((since != PULSE_OVER) | frozen)",
+        text: "(since != STEP_HIGH_OVER)",
+        becomes: "((since != STEP_HIGH_OVER) | frozen)",
     },
     Bug {
         breaks: "promise_6_nothing_lost",
@@ -72,7 +76,7 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
-    let builds = [small_engine(6, 80, 16, Limits::Pair), built.clone()]
+    let builds = [small_engine(6, 80, 16, LimitWiring::Pair), built.clone()]
         .map(|(build, verilog)| (build.pins, verilog));
     Proof {
         module: "pulser",

@@ -74,7 +74,7 @@ const BUGS: &[Bug] = &[
         becomes: "next_known = NO;",
     },
     Bug {
-        breaks: "promise_12_only_its_own_turn",
+        breaks: "promise_12_only_its_own_time_slot",
         text: "if (beat[12]) begin",
         becomes: "if (beat[11]) begin",
     },

@@ -2,7 +2,7 @@
 
 use super::builds::{BuiltEngine, small_engine};
 use super::{Bug, Case, Promises, Proof};
-use carrystep_core::engine::{EngineBuild, Limits};
+use carrystep_core::engine::{EngineBuild, LimitWiring};
 
 const BUGS: &[Bug] = &[
     Bug { breaks: "promise_5_reset_freezes", text: "asked <= 1'b1;", becomes: "asked <= settled;" },
@@ -40,7 +40,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         promises: Promises {
             text: include_str!("../../../crates/hdl/src/engine/resets/promises.sv"),
         },
-        cases: [small_engine(6, 80, 4, Limits::Pair), built.clone()]
+        cases: [small_engine(6, 80, 4, LimitWiring::Pair), built.clone()]
             .into_iter()
             .map(case)
             .collect(),

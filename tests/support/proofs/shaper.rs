@@ -4,25 +4,33 @@ use super::builds::{pin_cases, shipped, small};
 use super::{Bug, Promises, Proof};
 
 const BUGS: &[Bug] = &[
-    Bug { breaks: "promise_1_width", text: "busy != GAP)", becomes: "busy != GAP + BUSY_ONE)" },
     Bug {
-        breaks: "promise_1_width",
+        breaks: "promise_1_step_high",
+        text: "busy != STEP_FALLS_AT)",
+        becomes: "busy != STEP_FALLS_AT + BUSY_ONE)",
+    },
+    Bug {
+        breaks: "promise_1_step_high",
         text: "(step_pin & (busy",
         becomes: "(step_pin & !frozen & (busy",
     },
-    Bug { breaks: "promise_2_gap", text: "& (busy == 17'd0) &", becomes: "& (busy <= BUSY_ONE) &" },
     Bug {
-        breaks: "promise_3_setup",
+        breaks: "promise_2_step_low",
+        text: "& (busy == 17'd0) &",
+        becomes: "& (busy <= BUSY_ONE) &",
+    },
+    Bug {
+        breaks: "promise_3_dir_setup",
         text: "setup <= SETUP_LOAD;",
         becomes: "setup <= SETUP_LOAD - TIMER_ONE;",
     },
     Bug {
-        breaks: "promise_3_setup",
+        breaks: "promise_3_dir_setup",
         text: "setup = DIR_SETUP[15:0] - 16'd1;",
         becomes: "setup = 16'd0;",
     },
     Bug {
-        breaks: "promise_4_hold",
+        breaks: "promise_4_dir_hold",
         text: "hold <= HOLD_LOAD;",
         becomes: "hold <= HOLD_LOAD - TIMER_ONE;",
     },
@@ -33,8 +41,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_5_never_left_high",
-        text: "(busy != GAP)",
-        becomes: "((busy != GAP) | frozen)",
+        text: "(busy != STEP_FALLS_AT)",
+        becomes: "((busy != STEP_FALLS_AT) | frozen)",
     },
     Bug {
         breaks: "promise_6_nothing_lost",

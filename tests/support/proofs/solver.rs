@@ -14,18 +14,19 @@ use thiserror::Error;
 /// Time limit for one question in seconds; the slowest takes a tenth of it on an idle machine.
 pub(super) const LIMIT: &str = "300";
 
-/// Declares `look`, which reads a word of a memory inside the exported module. It is used as
-/// `look #("\\dut.words", ABITS, WIDTH) name (1'b0, 1'b1, address, word);`.
-const LOOK: &str = r#"
+/// Declares `memory_probe`, which reads a word of a memory inside the exported module. It is used
+/// as `memory_probe #("\\dut.words", ABITS, WIDTH) name (1'b0, 1'b1, address, word);`.
+const MEMORY_PROBE: &str = r#"
 (* blackbox *)
-module look #(parameter MEMID = "", ABITS = 1, WIDTH = 1)
+module memory_probe #(parameter MEMID = "", ABITS = 1, WIDTH = 1)
     (input wire CLK, input wire EN, input wire [ABITS-1:0] ADDR, output wire [WIDTH-1:0] DATA);
 endmodule
 "#;
 
-/// After `flatten` the memory has its own name, and a `look` becomes one more read port of it.
-const LOOKS_ARE_READ_PORTS: &str = "setparam -set CLK_ENABLE 0 -set CLK_POLARITY 0 -set TRANSPARENT 0 t:look\n\
-     chtype -set $memrd t:look\n";
+/// After `flatten` the memory has its own name, and a `memory_probe` becomes one more read port of
+/// it.
+const PROBES_ARE_READ_PORTS: &str = "setparam -set CLK_ENABLE 0 -set CLK_POLARITY 0 -set TRANSPARENT 0 t:memory_probe\n\
+     chtype -set $memrd t:memory_probe\n";
 
 /// Conversion of the system to gates; flip-flops without a value at configuration may have any
 /// value.
@@ -94,7 +95,7 @@ pub fn ask(promises: &Promises, case: &Case, question: Question) -> Result<(), P
         _ => promises.text.to_owned(),
     };
     fs::write(dir.path().join("promises.sv"), text)?;
-    fs::write(dir.path().join("look.sv"), LOOK)?;
+    fs::write(dir.path().join("memory_probe.sv"), MEMORY_PROBE)?;
     fs::write(dir.path().join("prove.ys"), script(promises, case, question))?;
     let (fine, said) = run(dir.path(), YOSYS, &["-q", "prove.ys"])?;
     if !fine {
@@ -152,7 +153,7 @@ fn any_reached(dir: &Path, clocks: u32) -> Result<(bool, String), ProofError> {
 /// The commands of yosys: they read the unchanged exported text and the promises, and name the
 /// internal signals that the promises refer to.
 fn script(promises: &Promises, case: &Case, question: Question) -> String {
-    let mut text = "read_verilog -sv exported.v look.sv\n".to_owned();
+    let mut text = "read_verilog -sv exported.v memory_probe.sv\n".to_owned();
     for (name, value) in &case.parameters {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "chparam -set {name} {value} {}", case.dut);
@@ -169,7 +170,7 @@ fn script(promises: &Promises, case: &Case, question: Question) -> String {
     for (name, signal) in promises.inside(case.axes()) {
         let _ = writeln!(text, "connect -set {name} {signal}");
     }
-    text.push_str(LOOKS_ARE_READ_PORTS);
+    text.push_str(PROBES_ARE_READ_PORTS);
     for signal in promises.free() {
         let _ = writeln!(text, "cutpoint w:{signal}");
     }

@@ -2,7 +2,7 @@
 
 use super::builds::{BuiltEngine, axes, small_engine};
 use super::{Bug, Case, Promises, Proof};
-use carrystep_core::engine::{EngineBuild, Limits};
+use carrystep_core::engine::{EngineBuild, LimitWiring};
 
 const BUGS: &[Bug] = &[
     Bug {
@@ -78,7 +78,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         promises: Promises {
             text: include_str!("../../../crates/hdl/src/engine/stops/promises.sv"),
         },
-        cases: [small_engine(6, 80, 16, Limits::Each), built.clone()]
+        cases: [small_engine(6, 80, 16, LimitWiring::Each), built.clone()]
             .into_iter()
             .map(case)
             .collect(),

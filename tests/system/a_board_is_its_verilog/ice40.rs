@@ -5,7 +5,7 @@
 use carrystep_boards::{Board, Family, board, boards};
 use carrystep_tests::board_session::Session;
 use carrystep_tests::{effort, jobs};
-use carrystep_tools::ice40::{self, Part};
+use carrystep_tools::ice40::{self, NextpnrPart};
 use carrystep_tools::kept;
 
 const PLL: &str = "
@@ -65,7 +65,7 @@ fn from_verilog_to_bitstream(board: &'static Board) {
         assert!(compare(&verilog).is_some(), "{name}: {fault} is not seen");
     }
 
-    let part = Part { device: &board.parts[0].name, package: &board.parts[0].package };
+    let part = NextpnrPart { device: &board.parts[0].name, package: &board.parts[0].package };
     let netlist =
         ice40::synthesise_tight(&session.verilog, &session.gateware.top()).expect("a netlist");
     let clock_hz = session.gateware.build().timebase.clock_hz();

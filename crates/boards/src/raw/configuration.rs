@@ -1,7 +1,7 @@
 //! Checks of a board's file that concern configuration: a port lies on a configuration pin only
 //! with a reason, and a gate holds outputs that exist.
 
-use super::super::configuration::{Gate, Mode, Package, Shared, packages};
+use super::super::configuration::{ConfigurationMode, Gate, Package, Shared, packages};
 use super::super::port::PORTS;
 use super::super::{Part, Wire};
 use super::{RawPart, Reader};
@@ -74,13 +74,13 @@ impl Reader<'_> {
     pub(super) fn configuration(
         &self,
         own: &[Package],
-        configured: &Spanned<Vec<Mode>>,
+        configured: &Spanned<Vec<ConfigurationMode>>,
         exceptions: &[Exception],
         written: &[Spanned<RawPart>],
         parts: &[Part],
     ) -> Result<(Vec<Shared>, Vec<String>), InputError> {
         let modes = configured.as_ref();
-        if modes.is_empty() || modes.contains(&Mode::Any) {
+        if modes.is_empty() || modes.contains(&ConfigurationMode::Any) {
             return self.refuse(
                 configured.span(),
                 "the modes in which the board is configured are expected, as in [\"spi\"]",
@@ -106,7 +106,7 @@ impl Reader<'_> {
         for (pin, (port, span)) in
             self.used.iter().filter(|(_, (port, _))| !port.starts_with(RESERVED))
         {
-            let found: BTreeSet<(Mode, &str)> =
+            let found: BTreeSet<(ConfigurationMode, &str)> =
                 tables.iter().flat_map(|table| table.functions(pin)).collect();
             if found.is_empty() {
                 continue;
@@ -122,7 +122,9 @@ impl Reader<'_> {
             let why = exceptions
                 .iter()
                 .find(|exception| exception.pins.iter().any(|named| named.as_ref() == pin));
-            let now = in_modes.iter().find(|mode| **mode == Mode::Any || modes.contains(mode));
+            let now = in_modes
+                .iter()
+                .find(|mode| **mode == ConfigurationMode::Any || modes.contains(mode));
             if let (Some(mode), None) = (now, why) {
                 let message =
                     format!("{port} is on {pin}, which is {function} in configuration ({mode})");

@@ -4,7 +4,7 @@
 
 use super::{Curves, Plot};
 use crate::error::TraceError;
-use crate::report::{AxisReport, Report};
+use crate::report::{AxisReport, CheckReport};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -48,7 +48,7 @@ impl Clock {
     }
 }
 
-pub(super) fn svg(plot: &Plot<'_>, report: &Report) -> Result<String, TraceError> {
+pub(super) fn svg(plot: &Plot<'_>, report: &CheckReport) -> Result<String, TraceError> {
     let count = plot.axes.len().max(1);
     let columns = match count {
         1 => 1,
@@ -79,7 +79,7 @@ fn label(size: u32, colour: RGBColor) -> TextStyle<'static> {
     (FONT, size).into_font().color(&colour)
 }
 
-fn heading(area: &Area<'_>, plot: &Plot<'_>, report: &Report) -> Result<(), TraceError> {
+fn heading(area: &Area<'_>, plot: &Plot<'_>, report: &CheckReport) -> Result<(), TraceError> {
     area.draw(&Text::new(plot.title.to_owned(), (24, 14), label(22, INK))).map_err(failed)?;
     let (verdict, colour) = if report.passed { ("passed", ERROR) } else { ("FAILED", BOUND) };
     let right = label(18, colour).pos(Pos::new(HPos::Right, VPos::Top));

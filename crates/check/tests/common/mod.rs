@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 pub const ORIGIN_PS: i64 = 123_456_789;
 pub const NAMES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
-pub const PINS_NS: PinTimes = PinTimes { width: 1000, gap: 1000, setup: 200, hold: 200 };
+pub const PINS_NS: PinTimes =
+    PinTimes { step_high: 1000, step_low: 1000, dir_setup: 200, dir_hold: 200 };
 pub const HIGH_PS: u64 = 1_041_667;
 
 pub struct Machine {
@@ -104,11 +105,11 @@ impl Machine {
         all
     }
 
-    pub fn check(&self, train: &[PinChange], origin: Origin) -> Report {
+    pub fn check(&self, train: &[PinChange], origin: Origin) -> CheckReport {
         self.check_setup(train, self.setup(origin))
     }
 
-    pub fn check_setup<'a>(&'a self, train: &[PinChange], setup: Setup<'a>) -> Report {
+    pub fn check_setup<'a>(&'a self, train: &[PinChange], setup: Setup<'a>) -> CheckReport {
         let mut checker = Checker::new(setup);
         play(train, &mut checker);
         checker.finish()
@@ -192,7 +193,7 @@ pub fn fall(train: &[PinChange], rise: usize) -> usize {
 }
 
 /// The index of the `k`-th change of DIR of an axis, with k counted from 1.
-pub fn turn(train: &[PinChange], axis: u8, k: usize) -> usize {
+pub fn dir_change(train: &[PinChange], axis: u8, k: usize) -> usize {
     (0..train.len())
         .filter(|&at| train[at].axis == axis && train[at].pin == Pin::Dir)
         .nth(k - 1)

@@ -2,14 +2,16 @@
 
 use carrystep_core::ProfileKind;
 use carrystep_core::StartPhase;
-use carrystep_profile::reference::{Drive, Length, Listing, Quantity, Request, Travel};
+use carrystep_profile::reference::{
+    Drive, Length, Listing, Quantity, ReferenceDistance, ReferenceRequest,
+};
 use clap::Args;
 use std::path::PathBuf;
 
 /// The arguments of `carrystep profile`.
 #[derive(Debug, Args)]
 #[command(after_help = NOTES, next_help_heading = "Curve")]
-pub struct Profile {
+pub struct ProfileArguments {
     /// The curves, one or several.
     #[arg(value_name = "KIND", required = true, value_parser = kind(), help_heading = None)]
     pub kinds: Vec<ProfileKind>,
@@ -183,14 +185,14 @@ fn given<const N: usize>(flags: [(Option<f64>, Length); N]) -> Option<Quantity> 
     flags.into_iter().find_map(|(value, length)| Some(Quantity::new(value?, length)))
 }
 
-impl Profile {
+impl ProfileArguments {
     /// The settings of the listing of each step.
     pub fn listing(&self) -> Listing {
         Listing { phase: self.phase, clock_hz: self.timer_hz }
     }
 
     /// The request that the options describe.
-    pub fn request(&self) -> Request {
+    pub fn request(&self) -> ReferenceRequest {
         use Length::{Degree, Millimetre, Step, Turn};
         let Self { distance, speed, start, acceleration, jerk, motor, .. } = self;
         let per_minute =
@@ -210,7 +212,7 @@ impl Profile {
             (acceleration.accel_mm_s2, Millimetre),
             (acceleration.accel_deg_s2, Degree),
         ];
-        Request {
+        ReferenceRequest {
             time: self.time,
             centre: self.ti,
             speed: minutes.or(given(seconds)),
@@ -222,7 +224,10 @@ impl Profile {
                 (jerk.jerk_mm_s3, Millimetre),
                 (jerk.jerk_deg_s3, Degree),
             ]),
-            ..Request::new(drive, distance.map_or(Travel::Ramp, Travel::Move))
+            ..ReferenceRequest::new(
+                drive,
+                distance.map_or(ReferenceDistance::Ramp, ReferenceDistance::Move),
+            )
         }
     }
 }

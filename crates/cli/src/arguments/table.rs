@@ -1,7 +1,7 @@
 //! The arguments of `carrystep table`. The docstrings of the fields are the command's help.
 
 use carrystep_table::{
-    AVR_PRESCALERS, Arithmetic, Kind, Mode, Motor, Options, Pulses, Speed, TableError,
+    AVR_PRESCALERS, Arithmetic, Kind, Motor, Options, Pulses, Speed, TableError, TimerMode,
 };
 use carrystep_table::{TableRequest, Timer, Width};
 use clap::{Args, Subcommand};
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 /// The arguments of `carrystep table`.
 #[derive(Debug, Args)]
 #[command(after_help = NOTES)]
-pub struct Table {
+pub struct TableArguments {
     #[command(subcommand)]
     pub kind: TableKind,
 }
@@ -89,7 +89,7 @@ pub struct Common {
     #[command(flatten)]
     pulses: PulsesFlags,
     #[command(flatten)]
-    pub output: Output,
+    pub output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
@@ -164,7 +164,7 @@ struct PulsesFlags {
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Output")]
-pub struct Output {
+pub struct OutputArguments {
     /// Folder for NAME.h and the player.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -182,7 +182,7 @@ pub struct Output {
     pub json: bool,
 }
 
-impl Output {
+impl OutputArguments {
     /// The settings of the header.
     pub fn options(&self) -> Result<Options, TableError> {
         Ok(Options::new(&self.name)?.program_memory(self.progmem).player(!self.bare))
@@ -218,7 +218,7 @@ impl TableKind {
             prescaler: timer.prescaler,
             prescalers: timer.prescalers.clone(),
             width: if timer.bits == "8" { Width::Bits8 } else { Width::Bits16 },
-            mode: if timer.mode == "ctc" { Mode::Ctc } else { Mode::FreeRunning },
+            mode: if timer.mode == "ctc" { TimerMode::Ctc } else { TimerMode::FreeRunning },
             interrupt_clocks: timer.interrupt_clocks,
         };
         let motor = Motor { step_angle_deg: speeds.step_angle, microsteps: speeds.microsteps };

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::output;
 use carrystep_boards::{Board, BoardError, Mapped, Measured, Part, Place, Placed, board, boards};
 use carrystep_core::tick::mhz;
-use carrystep_files::Source;
+use carrystep_files::SourceText;
 use carrystep_verilog::Gateware;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -19,7 +19,7 @@ const UNTRIED: &str =
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-pub struct Shown<'a> {
+pub struct ShownBoards<'a> {
     passed: bool,
     /// Whether carrystep was ever tested on real hardware.
     tried_on_hardware: bool,
@@ -42,7 +42,7 @@ pub fn run(arguments: &Boards) -> Result<(), Failure> {
     if arguments.json {
         let boards =
             shown.iter().map(|board| ShownBoard { board, measured: board.measured() }).collect();
-        return output::print_json(&Shown { passed: true, tried_on_hardware: false, boards });
+        return output::print_json(&ShownBoards { passed: true, tried_on_hardware: false, boards });
     }
     output::print(&one.as_deref().map_or_else(list, in_full))
 }
@@ -69,7 +69,7 @@ pub fn gateware<'a>(
 ) -> Result<Gateware<'a>, Failure> {
     let part = board.part(part)?;
     Ok(match machine {
-        Some(path) => Gateware::new(board, part, Source::read(path)?)?,
+        Some(path) => Gateware::new(board, part, SourceText::read(path)?)?,
         None => Gateware::shipped(board, part)?,
     })
 }

@@ -1,10 +1,10 @@
 //! `carrystep check`: checks any VCD against a move file.
 
-use crate::arguments::Check;
+use crate::arguments::CheckArguments;
 use crate::failure::{Failure, refused};
 use crate::junit::JunitFile;
 use crate::{job, output};
-use carrystep_check::{Checker, Origin, Report, SignalMap, TraceError, VcdReader};
+use carrystep_check::{CheckReport, Checker, Origin, SignalMap, TraceError, VcdReader};
 use carrystep_core::Timebase;
 use carrystep_files::MoveFile;
 use carrystep_plan::plan;
@@ -17,11 +17,11 @@ use std::io::BufReader;
 pub struct Checked<'a> {
     passed: bool,
     capture: &'a std::path::Path,
-    check: &'a Report,
+    check: &'a CheckReport,
 }
 
 /// Checks a capture and prints the report.
-pub fn run(arguments: &Check) -> Result<(), Failure> {
+pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let file = job::load(&arguments.file, arguments.fit_ns)?;
     let plan = plan::<f64>(&file).map_err(|error| refused(&file, &error))?;
     let timelines = plan.timelines();
@@ -50,11 +50,11 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
 }
 
 fn read(
-    arguments: &Check,
+    arguments: &CheckArguments,
     file: &MoveFile,
     plan: &carrystep_plan::Plan,
     timelines: &[carrystep_profile::Timeline],
-) -> Result<Report, Failure> {
+) -> Result<CheckReport, Failure> {
     job::fits_a_capture(plan)?;
     let unusable =
         |error: String| Failure::input(format!("{}: {error}", arguments.capture.display()));

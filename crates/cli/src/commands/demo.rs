@@ -3,7 +3,7 @@
 use crate::arguments::Demo;
 use crate::commands::verilog;
 use crate::failure::{Failure, refused};
-use crate::job::{self, Done};
+use crate::job::{self, RunResult};
 use crate::output::{self, write_file};
 use crate::shipped::{MACHINE, MACHINE_FILE};
 use crate::wanted::Wanted;
@@ -35,7 +35,7 @@ pub fn run(arguments: &Demo) -> Result<(), Failure> {
     done.verdict()
 }
 
-fn print(done: &Done, json: bool, out: &Path) -> Result<(), Failure> {
+fn print(done: &RunResult, json: bool, out: &Path) -> Result<(), Failure> {
     if json {
         return output::print_json(done);
     }

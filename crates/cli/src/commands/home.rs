@@ -1,17 +1,17 @@
 //! `carrystep home`: the axes of a machine find their limit switches, and the command stores where
 //! machine zero is.
 
-use crate::arguments::Home;
+use crate::arguments::HomeArguments;
 use crate::connection::{self, Connection};
 use crate::control::StoppedBy;
 use crate::drive::{Culprit, How};
 use crate::failure::Failure;
-use crate::memory::{self, Limit, Memory};
+use crate::memory::{self, BoardMemory, MetLimit};
 use crate::{found, homing, output};
 use carrystep_core::engine::Cause;
 use carrystep_files::Machine;
 use carrystep_files::machine::End;
-use carrystep_link::{Ended, Homed, Homing, HomingFault, HostError, Stage};
+use carrystep_link::{Ended, Homed, Homing, HomingFault, HomingStage, HostError};
 use indicatif::{ProgressBar, ProgressDrawTarget};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -20,7 +20,7 @@ use std::time::Instant;
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-pub struct Report {
+pub struct HomeReport {
     passed: bool,
     port: String,
     build: String,
@@ -48,7 +48,7 @@ struct AxisReport {
     homed: bool,
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for HomeReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: build {}", self.port, self.build)?;
         writeln!(
@@ -91,7 +91,7 @@ impl fmt::Display for Report {
 }
 
 /// Homes the named axes, or all that have a home table.
-pub fn run(arguments: &Home) -> Result<(), Failure> {
+pub fn run(arguments: &HomeArguments) -> Result<(), Failure> {
     let machine = Machine::load(&arguments.machine)?;
     let groups = homing::groups(&machine, &arguments.axes)?;
     let mut homing = homing::of(&machine, &groups);
@@ -99,7 +99,7 @@ pub fn run(arguments: &Home) -> Result<(), Failure> {
         Failure::input(format!("axis {}: {why}", machine.axes[usize::from(axis)].name))
     })?;
     let connection = connection::to_machine(&arguments.port, &machine, &arguments.machine, "home")?;
-    let mut memory = Memory::recall(&connection);
+    let mut memory = BoardMemory::recall(&connection);
     homing.others = homing::others(&machine, homing.mask(), connection.board.status(), &memory);
     let report = drive(connection, &machine, &homing, &mut memory)?;
     if arguments.json {
@@ -114,8 +114,8 @@ fn drive(
     connection: Connection,
     machine: &Machine,
     homing: &Homing<'_>,
-    memory: &mut Memory,
-) -> Result<Report, Failure> {
+    memory: &mut BoardMemory,
+) -> Result<HomeReport, Failure> {
     // `control` is bound before `board` so that it is dropped later: the port is closed before the
     // claim on it ends.
     let Connection { mut control, port, mut board, axes, .. } = connection;
@@ -130,7 +130,7 @@ fn drive(
     let powered = board
         .enable_while(|progress| control.wish(progress.status))
         .map_err(|error| connection::broken(&error, &axes))?;
-    let mut last = (0, Stage::MoveOff);
+    let mut last = (0, HomingStage::MoveOff);
     let outcome = match powered {
         Ended::Stopped => Ok(Homed::Stopped),
         Ended::Done => board.home(homing, |moving, stage, progress| {
@@ -192,7 +192,7 @@ fn drive(
     let end = *board.status();
     let is_culprit = |number: usize| cause.is_some() && answer.culprits >> number & 1 == 1;
     let culprits = (0..axes.len()).filter(|&number| is_culprit(number));
-    let report = Report {
+    let report = HomeReport {
         passed: ended == How::Done,
         port,
         build: format!("{:016x}", facts.build),
@@ -226,8 +226,12 @@ fn drive(
 }
 
 /// The limit to remember for an axis that met a limit while it moved away from its home switch.
-fn closed(machine: &Machine, number: usize, stage: Stage, at: i32) -> Option<Limit> {
+fn closed(machine: &Machine, number: usize, stage: HomingStage, at: i32) -> Option<MetLimit> {
     let home = machine.axes[number].home.as_ref()?;
     let away = if home.toward == End::Max { -1 } else { 1 };
-    (stage != Stage::PullOff).then_some(Limit { direction: away, at, clear: home.move_off })
+    (stage != HomingStage::PullOff).then_some(MetLimit {
+        direction: away,
+        at,
+        clear: home.move_off,
+    })
 }

@@ -1,10 +1,10 @@
 //! `carrystep plan`: the integer segments of a move file, or the reason why it cannot be planned.
 
-use crate::arguments::Plan as Arguments;
+use crate::arguments::PlanArguments as Arguments;
 use crate::failure::{Failure, refused};
 use crate::job;
 use crate::output;
-use crate::table::{self, Limits};
+use crate::table::{self, LimitsJson};
 use carrystep_core::Segment;
 use carrystep_files::{Axis, MoveFile};
 use carrystep_plan::{Plan, PlannedMove, plan};
@@ -17,7 +17,7 @@ use std::fmt::Write as _;
 pub struct Planned<'a> {
     passed: bool,
     tick_ns: u64,
-    limits: Limits,
+    limits: LimitsJson,
     moves: Vec<MoveJson<'a>>,
 }
 

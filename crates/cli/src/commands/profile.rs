@@ -1,6 +1,6 @@
 //! `carrystep profile`: the curves of the literature as figures, tables and plots.
 
-use crate::arguments::Profile;
+use crate::arguments::ProfileArguments;
 use crate::failure::Failure;
 use crate::figures::{self, FiguresJson};
 use crate::output::{self, OutputFile};
@@ -36,7 +36,7 @@ struct ProfileJson {
 }
 
 /// Prints, lists and draws the requested curves.
-pub fn run(arguments: &Profile) -> Result<(), Failure> {
+pub fn run(arguments: &ProfileArguments) -> Result<(), Failure> {
     only_once(arguments)?;
     let request = arguments.request();
     let references = request.references(&arguments.kinds)?;
@@ -66,8 +66,8 @@ pub fn run(arguments: &Profile) -> Result<(), Failure> {
     output::print(&format!("{}{}", figures::table(&references, &request.drive), wrote.concat()))
 }
 
-fn only_once(arguments: &Profile) -> Result<(), Failure> {
-    let Profile { kinds, .. } = arguments;
+fn only_once(arguments: &ProfileArguments) -> Result<(), Failure> {
+    let ProfileArguments { kinds, .. } = arguments;
     if let Some((_, twice)) =
         kinds.iter().enumerate().find(|(place, kind)| kinds[..*place].contains(kind))
     {
@@ -81,13 +81,13 @@ fn only_once(arguments: &Profile) -> Result<(), Failure> {
     Ok(())
 }
 
-fn to_stdout(arguments: &Profile) -> bool {
+fn to_stdout(arguments: &ProfileArguments) -> bool {
     arguments.csv.as_deref() == Some(Path::new("-"))
 }
 
 /// Begins all files, then writes them, then lets them appear.
 fn files(
-    arguments: &Profile,
+    arguments: &ProfileArguments,
     references: &[Reference],
     drive: &Drive,
 ) -> Result<Vec<PathBuf>, Failure> {

@@ -1,17 +1,17 @@
 //! `carrystep run` and `jog`: plan the moves, connect to the board, stream them and report the
 //! outcome.
 
-use crate::arguments::{Jog, Port, Run};
+use crate::arguments::{Jog, PortArguments, RunArguments};
 use crate::connection;
 use crate::drive::{Driven, Streamed, drive};
 use crate::failure::{Failure, refused};
 use crate::{job, output};
-use carrystep_files::{Machine, MoveFile, Source, decimal};
+use carrystep_files::{Machine, MoveFile, SourceText, decimal};
 use carrystep_plan::plan;
 use std::path::Path;
 
 /// Executes the moves of a file.
-pub fn run(arguments: &Run) -> Result<(), Failure> {
+pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let file = job::load(&arguments.file, arguments.fit_ns)?;
     let name = arguments.file.as_path();
     told(&moved(&file, name, &arguments.port, "run", arguments.into_limit)?, arguments.json)
@@ -26,7 +26,7 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
     let time = time.map_or_else(String::new, |seconds| format!("time = {seconds:?}\n"));
     let text =
         format!("[[move]]\nprofile = \"trapezoid\"\n{time}to = {{ {axis} = {distance:?} }}\n");
-    let file = MoveFile::of_moves(machine, Source { path: "jog".into(), text: text.into() })?;
+    let file = MoveFile::of_moves(machine, SourceText { path: "jog".into(), text: text.into() })?;
     if let Some(failure) = nothing_to_do(&file, arguments) {
         return Err(failure);
     }
@@ -41,7 +41,7 @@ pub fn jog(arguments: &Jog) -> Result<(), Failure> {
 fn moved(
     file: &MoveFile,
     name: &Path,
-    port: &Port,
+    port: &PortArguments,
     command: &'static str,
     into_limit: bool,
 ) -> Result<Driven, Failure> {

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// What `--json` prints.
 #[derive(JsonSchema, Serialize)]
-pub struct Written {
+pub struct WrittenVerilog {
     passed: bool,
     top: &'static str,
     /// The tick that is built in, ns.
@@ -96,7 +96,12 @@ fn of_board(arguments: &Verilog, board: &str) -> Result<(), Failure> {
 }
 
 /// Writes a core's Verilog for a machine.
-pub fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Written, Failure> {
+pub fn write(
+    core: Core,
+    out: &Path,
+    machine: &Machine,
+    name: &str,
+) -> Result<WrittenVerilog, Failure> {
     let refused = |error: ExportError| match error {
         ExportError::Io { .. } => Failure::input(error.to_string()),
         _ => Failure::input(format!("{name}: {error}")),
@@ -108,12 +113,19 @@ pub fn write(core: Core, out: &Path, machine: &Machine, name: &str) -> Result<Wr
             let build =
                 machine.build().map_err(|error| Failure::input(format!("{name}: {error}")))?;
             let files = carrystep_verilog::write_core(out, &build, name).map_err(refused)?;
-            Ok(Written { passed: true, top: CORE_NAME, tick_ns, tick_note, guard: None, files })
+            Ok(WrittenVerilog {
+                passed: true,
+                top: CORE_NAME,
+                tick_ns,
+                tick_note,
+                guard: None,
+                files,
+            })
         }
         Core::Engine => {
             let build = gateware::engine(machine, name)?;
             let files = carrystep_verilog::write_engine(out, &build, name).map_err(refused)?;
-            Ok(Written {
+            Ok(WrittenVerilog {
                 passed: true,
                 top: ENGINE_NAME,
                 tick_ns,

@@ -1,7 +1,7 @@
 //! The client end of the socket: a command that sends a request to the command that drives the
 //! board.
 
-use super::{Holder, Request, claim, folder};
+use super::{Holder, SocketRequest, claim, folder};
 use std::io::{self, BufRead as _, BufReader, Write as _};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
@@ -38,7 +38,7 @@ pub fn call(port: &str) -> Option<Caller> {
 
 impl Caller {
     /// Sends a request and waits up to `wait` for the answer.
-    pub fn ask(&mut self, request: Request, wait: Duration) -> Reply {
+    pub fn ask(&mut self, request: SocketRequest, wait: Duration) -> Reply {
         match writeln!(self.stream.get_mut(), "{}", request.word()) {
             Ok(()) => self.line(wait),
             Err(_) => Reply::Ended,

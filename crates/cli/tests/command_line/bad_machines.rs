@@ -151,7 +151,7 @@ fn speeds_too_high_for_gateware_or_driver_are_refused() {
         (
             "speed_limit = 1000",
             "speed_limit = ^96_970",
-            "over what the driver's width and gap allow",
+            "over what the driver's step_high and step_low allow",
         ),
         (
             "speed_limit = 1000",
@@ -167,24 +167,23 @@ fn speeds_too_high_for_gateware_or_driver_are_refused() {
 
 #[test]
 fn unknown_drivers_and_bad_pin_timings_are_refused() {
-    let known =
-        "known: a4988, dm542, drv8825, tb6600, tmc2130, tmc2208, tmc2209, tmc5160; or give step_ns";
+    let known = "known: a4988, dm542, drv8825, tb6600, tmc2130, tmc2208, tmc2209, tmc5160; or give step_high_ns";
     all_refused(&[
         ("\"a4988\"", "^\"a4989\"", "no driver is called 'a4989'"),
         ("\"a4988\"", "^\"a4989\"", known),
         (
             "\"x\"\nsteps_per_unit = 5\nstart_speed = 200\nspeed_limit = 1000\naccel_limit = 5000\ndriver = \"a4988\"",
-            "^\"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\nstep_ns = 100",
-            "axis 'x' has no driver and no gap_ns",
+            "^\"x\"\nsteps_per_unit = 5\nspeed_limit = 1000\naccel_limit = 5000\nstep_high_ns = 100",
+            "axis 'x' has no driver and no step_low_ns",
         ),
         (
             "driver = \"a4988\"",
-            "driver = \"a4988\"\nhold_ns = ^9_000_000_000",
+            "driver = \"a4988\"\ndir_hold_ns = ^9_000_000_000",
             "the timers count to 65535",
         ),
         (
             "driver = \"a4988\"",
-            "driver = \"a4988\"\nhold_ns = ^-1",
+            "driver = \"a4988\"\ndir_hold_ns = ^-1",
             "expected a whole number, zero or more",
         ),
     ]);

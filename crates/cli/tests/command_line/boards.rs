@@ -4,7 +4,7 @@
 
 use crate::command::{Folder, GOOD, Ran};
 use crate::device::{Device, Done};
-use carrystep_files::{Machine, Source};
+use carrystep_files::{Machine, SourceText};
 use serialport::{SerialPort as _, TTYPort};
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::sync::mpsc::{Sender, channel};
@@ -24,7 +24,7 @@ fn machine() -> String {
 }
 
 fn build_id() -> [u32; 2] {
-    let source = Source { path: "machine.toml".into(), text: machine().into() };
+    let source = SourceText { path: "machine.toml".into(), text: machine().into() };
     let machine = Machine::from_source(&source).unwrap();
     machine.line().unwrap().build_id(&machine.engine()).halves()
 }

@@ -124,12 +124,12 @@ fn impossible_builds_are_refused_and_leave_no_file() {
         (
             "speed_limit = 1000",
             "speed_limit = ^97_000",
-            "over what the driver's width and gap allow",
+            "over what the driver's step_high and step_low allow",
         ),
         (
             "driver = \"a4988\"",
-            "driver = \"a4988\"\nstep_ns = ^9_000_000",
-            "step_ns = 9000000 ns is 720000 clocks",
+            "driver = \"a4988\"\nstep_high_ns = ^9_000_000",
+            "step_high_ns = 9000000 ns is 720000 clocks",
         ),
         ("watchdog_ms = 50", "watchdog_ms = ^5000", "at most 4192.256 can be counted"),
         ("enable_ms = 0.1", "enable_ms = ^-0.1", "must be zero or more"),
@@ -260,7 +260,7 @@ fn nine_axes_are_too_many_for_any_core_and_seven_for_the_parallel_one() {
     folder.write("m.toml", axes(7));
     let parallel = "verilog --machine m.toml --core parallel --out out";
     folder.run(parallel).refuses("m.toml: 7 axes: the parallel gateware drives at most 6");
-    // Seven turns do not fit into 80 clocks, and no other core is offered for them.
+    // Seven time slots do not fit into 80 clocks, and no other core is offered for them.
     let engine = folder.run("verilog --machine m.toml --out out");
     engine.refuses("m.toml: 7 axes need 13 clocks each and one to close the tick, 92 in all");
     engine.refuses("a tick of 1200 ns, a clock of 96000000 Hz or fewer axes would do");

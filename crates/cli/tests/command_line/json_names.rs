@@ -20,8 +20,8 @@ const CHECK: &str = "check check.passed check.origin check.origin_ps check.slack
     check.axes[].error_min_ns check.axes[].error_max_ns check.axes[].error_rms_ns
     check.axes[].error_fit_ns check.axes[].error_bound_ns
     check.axes[].error_std_ns check.axes[].error_std_theory_ns
-    check.axes[].high_min_ns check.axes[].high_required_ns check.axes[].low_min_ns check.axes[].low_required_ns
-    check.axes[].setup_min_ns check.axes[].setup_required_ns check.axes[].hold_min_ns check.axes[].hold_required_ns
+    check.axes[].step_high_min_ns check.axes[].step_high_required_ns check.axes[].step_low_min_ns check.axes[].step_low_required_ns
+    check.axes[].dir_setup_min_ns check.axes[].dir_setup_required_ns check.axes[].dir_hold_min_ns check.axes[].dir_hold_required_ns
     check.axes[].period_jitter_max_ns check.axes[].period_jitter_theory_ns
     check.axes[].speed_ripple_max_percent check.axes[].speed_ripple_theory_percent
     check.axes[].line_off_max_steps check.axes[].line_off_bound_steps";

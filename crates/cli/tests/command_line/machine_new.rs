@@ -41,9 +41,9 @@ fn written_machine_files_plan_and_pass_for_many_options() {
             &["phases = 4", "tick_ns = 4000", "in 16 phases it would be 16000"],
         ),
         (
-            "--clock-hz 100000000 --limits pair --axis s,steps_per_unit=1,speed_limit=20000,accel_limit=50000,step_ns=500,gap_ns=600,setup_ns=100,hold_ns=100".to_owned(),
+            "--clock-hz 100000000 --limits pair --axis s,steps_per_unit=1,speed_limit=20000,accel_limit=50000,step_high_ns=500,step_low_ns=600,dir_setup_ns=100,dir_hold_ns=100".to_owned(),
             &["s"],
-            &["tick_ns = 320", "gap_ns = 600"],
+            &["tick_ns = 320", "step_low_ns = 600"],
         ),
         (format!("--clock-hz 48000000 --limits none --axis x,{BELT} --axis y,{BELT} --axis z,{BELT} --axis a,{BELT}"), &["x", "y", "z", "a"], &["tick_ns = 2000"]),
     ];
@@ -88,7 +88,7 @@ fn missing_options_without_a_terminal_are_named_and_nothing_is_written() {
         "--limits pair, each, one or none",
         "of axis x: lead, steps_per_rev, microsteps; or steps_per_unit",
         "of axis x: accel_limit",
-        "of axis x: driver; or step_ns, gap_ns, setup_ns, hold_ns",
+        "of axis x: driver; or step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns",
     ] {
         ran.refuses(says);
     }

@@ -11,7 +11,7 @@ fn plotted_errors_stay_within_the_plotted_bounds() {
             "move.toml",
             format!(
                 "[machine]\n[[machine.axis]]\nname = \"x\"\nsteps_per_unit = 1\nspeed_limit = 150_000\n\
-                 accel_limit = 500_000\nstep_ns = 100\ngap_ns = 100\nsetup_ns = 100\nhold_ns = 100\n\
+                 accel_limit = 500_000\nstep_high_ns = 100\nstep_low_ns = 100\ndir_setup_ns = 100\ndir_hold_ns = 100\n\
                  [[move]]\nprofile = \"{profile}\"\nto = {{ x = 20_000 }}\n"
             ),
         );

@@ -1,7 +1,7 @@
 //! The ports of the link and of its lines, and their values in one clock cycle as the model and the
 //! simulators see them.
 
-use super::Line;
+use super::LineKind;
 use crate::engine::{ENGINE_PORTS, EngineInputs, EngineOutputs};
 use crate::ports::{CLOCK, Peer, Port, Width, input, output};
 
@@ -30,15 +30,15 @@ const SPI_PINS: [Port; 4] = [
 ];
 
 /// The pins of a line, in this order: from the host, then to it.
-pub const fn line_pins(line: Line) -> &'static [Port] {
+pub const fn line_pins(line: LineKind) -> &'static [Port] {
     match line {
-        Line::Uart(_) => &UART_PINS,
-        Line::Spi => &SPI_PINS,
+        LineKind::Uart(_) => &UART_PINS,
+        LineKind::Spi => &SPI_PINS,
     }
 }
 
 /// The ports of `carrystep_uart` or `carrystep_spi`, in no particular order.
-pub fn line_ports(line: Line) -> impl Iterator<Item = Port> {
+pub fn line_ports(line: LineKind) -> impl Iterator<Item = Port> {
     let pins = line_pins(line).iter().copied();
     core::iter::once(CLOCK).chain(pins).chain(BYTE_PORTS.map(Port::turned))
 }

@@ -13,7 +13,7 @@ use strum::Display;
 /// Access to a register. It is displayed as in the documentation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Display)]
 #[strum(serialize_all = "lowercase")]
-pub enum Access {
+pub enum RegisterAccess {
     /// Read only.
     Read,
     /// Written with one word.
@@ -25,13 +25,13 @@ pub enum Access {
 
 /// One row of the register map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Register {
+pub struct MappedRegister {
     /// Name of the register; the name of its constant in Rust and C.
     pub name: &'static str,
     /// Address. For a register of an axis, the address for axis 0; each further axis adds eight.
     pub address: u8,
     /// Access.
-    pub access: Access,
+    pub access: RegisterAccess,
     /// Whether each axis has one.
     pub per_axis: bool,
     /// Content, with its unit.
@@ -44,10 +44,10 @@ macro_rules! registers {
         $(#[doc = $what] pub const $name: u8 = $address;)*
 
         /// The register map, in the order of addresses.
-        pub const REGISTERS: &[Register] = &[$(Register {
+        pub const REGISTERS: &[MappedRegister] = &[$(MappedRegister {
             name: stringify!($name),
             address: $address,
-            access: Access::$access,
+            access: RegisterAccess::$access,
             per_axis: $address >= AXES_AT,
             what: $what,
         }),*];
@@ -113,7 +113,7 @@ mod tests {
     fn addresses_are_unique_per_access() {
         for (index, one) in REGISTERS.iter().enumerate() {
             for other in &REGISTERS[..index] {
-                let reads = |register: &Register| register.access == Access::Read;
+                let reads = |register: &MappedRegister| register.access == RegisterAccess::Read;
                 assert!(
                     one.address != other.address || reads(one) != reads(other),
                     "{} {}",

@@ -5,7 +5,7 @@ use super::{Axis, stop};
 use crate::decimal;
 use crate::did_you_mean;
 use crate::driver::drivers;
-use crate::error::{InputError, Source, quoted};
+use crate::error::{InputError, SourceText, quoted};
 use crate::number::positive;
 use crate::unit::Unit;
 use bigdecimal::{BigDecimal, Zero};
@@ -31,10 +31,15 @@ pub(super) struct RawAxis {
     jerk_limit: Option<Spanned<f64>>,
     stop_accel: Option<Spanned<f64>>,
     driver: Option<Spanned<String>>,
-    step_ns: Option<Spanned<u64>>,
-    gap_ns: Option<Spanned<u64>>,
-    setup_ns: Option<Spanned<u64>>,
-    hold_ns: Option<Spanned<u64>>,
+    // The aliases are the names of the first edition, which files of users contain.
+    #[serde(alias = "step_ns")]
+    step_high_ns: Option<Spanned<u64>>,
+    #[serde(alias = "gap_ns")]
+    step_low_ns: Option<Spanned<u64>>,
+    #[serde(alias = "setup_ns")]
+    dir_setup_ns: Option<Spanned<u64>>,
+    #[serde(alias = "hold_ns")]
+    dir_hold_ns: Option<Spanned<u64>>,
     travel: Option<Spanned<Vec<Spanned<f64>>>>,
     home: Option<Spanned<RawHome>>,
 }
@@ -48,7 +53,7 @@ impl RawAxis {
     /// Checks the axis. `table` is the place of its table in the file.
     pub(super) fn check(
         self,
-        source: &Source,
+        source: &SourceText,
         table: Range<usize>,
         timebase: &Timebase,
     ) -> Result<Axis, InputError> {
@@ -108,7 +113,7 @@ impl RawAxis {
     /// in ns and in clocks.
     fn pins(
         &self,
-        source: &Source,
+        source: &SourceText,
         timebase: &Timebase,
     ) -> Result<(PinTimes, PinTiming), InputError> {
         let preset = match &self.driver {
@@ -122,7 +127,7 @@ impl RawAxis {
                     format!("no driver is called '{}'{meant}", quoted(name.as_ref())),
                 )
                 .help(format!(
-                    "known: {}; or give step_ns, gap_ns, setup_ns and hold_ns",
+                    "known: {}; or give step_high_ns, step_low_ns, dir_setup_ns and dir_hold_ns",
                     known.join(", ")
                 ))
             })?),
@@ -135,7 +140,7 @@ impl RawAxis {
                     self.name.span(),
                     format!("axis '{}' has no driver and no {key}", self.name.as_ref()),
                 )
-                .help("name a driver, or give step_ns, gap_ns, setup_ns and hold_ns"));
+                .help("name a driver, or give step_high_ns, step_low_ns, dir_setup_ns and dir_hold_ns"));
             };
             let span = given.as_ref().map_or_else(|| self.name.span(), Spanned::span);
             let exact = timebase.clocks_for_ns(ns);
@@ -148,19 +153,28 @@ impl RawAxis {
             })?;
             Ok((ns, clocks))
         };
-        let (width_ns, width) = time("step_ns", &self.step_ns, preset.map(|d| d.step_ns))?;
-        let (gap_ns, gap) = time("gap_ns", &self.gap_ns, preset.map(|d| d.gap_ns))?;
-        let (setup_ns, setup) = time("setup_ns", &self.setup_ns, preset.map(|d| d.setup_ns))?;
-        let (hold_ns, hold) = time("hold_ns", &self.hold_ns, preset.map(|d| d.hold_ns))?;
-        let times = PinTimes { width: width_ns, gap: gap_ns, setup: setup_ns, hold: hold_ns };
-        Ok((times, PinTiming { width, gap, setup, hold }))
+        let (step_high_ns, step_high) =
+            time("step_high_ns", &self.step_high_ns, preset.map(|d| d.step_high_ns))?;
+        let (step_low_ns, step_low) =
+            time("step_low_ns", &self.step_low_ns, preset.map(|d| d.step_low_ns))?;
+        let (dir_setup_ns, dir_setup) =
+            time("dir_setup_ns", &self.dir_setup_ns, preset.map(|d| d.dir_setup_ns))?;
+        let (dir_hold_ns, dir_hold) =
+            time("dir_hold_ns", &self.dir_hold_ns, preset.map(|d| d.dir_hold_ns))?;
+        let times = PinTimes {
+            step_high: step_high_ns,
+            step_low: step_low_ns,
+            dir_setup: dir_setup_ns,
+            dir_hold: dir_hold_ns,
+        };
+        Ok((times, PinTiming { step_high, step_low, dir_setup, dir_hold }))
     }
 }
 
 /// Rejects a limit below a thousandth of a step (per second or its powers). A plan would last
 /// months, and the value would be too coarse in units of 2^-64 step per tick.
 fn not_too_slow(
-    source: &Source,
+    source: &SourceText,
     span: Range<usize>,
     key: &str,
     limit: &BigDecimal,
@@ -181,7 +195,7 @@ impl Axis {
     /// width and gap allow.
     fn check_speed(
         &self,
-        source: &Source,
+        source: &SourceText,
         span: Range<usize>,
         timebase: &Timebase,
     ) -> Result<(), InputError> {
@@ -196,17 +210,20 @@ impl Axis {
             )
             .help(format!("with ticks of {} ns stay under {half}", timebase.tick_ns())));
         }
-        let PinTiming { width, gap, .. } = self.pins;
-        let clocks = u64::from(width) + u64::from(gap) + u64::from(timebase.clocks_per_phase());
+        let PinTiming { step_high, step_low, .. } = self.pins;
+        let clocks =
+            u64::from(step_high) + u64::from(step_low) + u64::from(timebase.clocks_per_phase());
         if &self.speed_limit * BigDecimal::from(clocks) > timebase.clock_hz() {
             let most = self.unit.at_most(timebase.clock_hz() as f64 / clocks as f64, 1);
             return Err(InputError::at(
                 source,
                 span,
-                format!("speed_limit is {limit}: over what the driver's width and gap allow"),
+                format!(
+                    "speed_limit is {limit}: over what the driver's step_high and step_low allow"
+                ),
             )
             .help(format!(
-                "a pulse takes {width} + {gap} clocks and one phase of {}: at most {most}",
+                "a pulse takes {step_high} + {step_low} clocks and one phase of {}: at most {most}",
                 timebase.clocks_per_phase()
             )));
         }
@@ -216,7 +233,7 @@ impl Axis {
     /// Checks the acceleration limit: below half a step per tick^2, so that A fits its register.
     fn check_acceleration(
         &self,
-        source: &Source,
+        source: &SourceText,
         span: Range<usize>,
         timebase: &Timebase,
     ) -> Result<(), InputError> {

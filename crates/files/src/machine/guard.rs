@@ -4,11 +4,11 @@
 //! Every time is rounded up. The round is also the interval at which limits are sampled, so the
 //! shortest round is chosen in which all times can be counted.
 
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::number::not_negative;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive, Zero};
 use carrystep_core::build::Timebase;
-use carrystep_core::engine::{Guard, Limits, MAX_LOOKS, MAX_ROUND, MAX_ROUNDS};
+use carrystep_core::engine::{Guard, LimitWiring, MAX_DEBOUNCE_SAMPLES, MAX_ROUND, MAX_ROUNDS};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -22,7 +22,7 @@ pub(super) struct RawGuard {
     #[serde(default)]
     estop: Active,
     #[serde(default)]
-    limits: Limits,
+    limits: LimitWiring,
     #[serde(default)]
     limit_level: Active,
     #[serde(default)]
@@ -67,14 +67,19 @@ const WATCHDOG: Key = Key {
 };
 const ENABLE: Key =
     Key { name: "enable_ms", unit_ns: 1_000_000, default: 1, most: MAX_ROUNDS, can_be_off: true };
-const DEBOUNCE: Key =
-    Key { name: "debounce_us", unit_ns: 1000, default: 500, most: MAX_LOOKS, can_be_off: false };
+const DEBOUNCE: Key = Key {
+    name: "debounce_us",
+    unit_ns: 1000,
+    default: 500,
+    most: MAX_DEBOUNCE_SAMPLES,
+    can_be_off: false,
+};
 
 impl RawGuard {
     /// Checks the table. `stop` holds the stop acceleration of each axis.
     pub(super) fn check(
         self,
-        source: &Source,
+        source: &SourceText,
         timebase: &Timebase,
         stop: Vec<u64>,
     ) -> Result<Guard, InputError> {
@@ -115,7 +120,7 @@ struct Time {
 
 impl Time {
     fn new(
-        source: &Source,
+        source: &SourceText,
         timebase: &Timebase,
         key: Key,
         given: Option<&Spanned<f64>>,

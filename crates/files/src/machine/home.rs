@@ -6,11 +6,11 @@
 
 use super::{Axis, stop};
 use crate::decimal;
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::number::{exact, positive};
 use bigdecimal::{BigDecimal, ToPrimitive};
 use carrystep_core::build::Timebase;
-use carrystep_core::engine::{Guard, Limits};
+use carrystep_core::engine::{Guard, LimitWiring};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use toml::Spanned;
@@ -88,7 +88,7 @@ pub(super) struct RawPlace {
 
 /// Sets travel and homing of each axis, and returns the homing order as numbers of axes.
 pub(super) fn check(
-    source: &Source,
+    source: &SourceText,
     timebase: &Timebase,
     guard: &Guard,
     axes: &mut [Axis],
@@ -98,7 +98,7 @@ pub(super) fn check(
     for (axis, RawPlace { travel, home }) in axes.iter_mut().zip(places) {
         axis.travel = travel.map(|travel| travel::of(source, axis, &travel)).transpose()?;
         let Some(home) = home else { continue };
-        if guard.limits == Limits::None {
+        if guard.limits == LimitWiring::None {
             let message = format!(
                 "axis '{}' has no limit switch to home with: [machine.guard] limits is \"none\"",
                 axis.name
@@ -118,7 +118,7 @@ pub(super) fn check(
 
 /// A home table while it is checked, with everything that the checks depend on.
 struct Checked<'a> {
-    source: &'a Source,
+    source: &'a SourceText,
     timebase: &'a Timebase,
     guard: &'a Guard,
     axis: &'a Axis,
@@ -134,7 +134,7 @@ impl Checked<'_> {
         let limit =
             positive(self.source, &raw.seek_speed, "seek_speed")? * &self.axis.steps_per_unit;
         let slow = self.speed(&raw.slow_speed, "slow_speed", &limit, "seek_speed")?;
-        self.looks_often_enough(raw, slow)?;
+        self.is_sampled_often_enough(raw, slow)?;
         let move_off = match &raw.move_off {
             Some(value) => self.distance(value, "move_off")?,
             None => self.usual_move_off()?,
@@ -281,17 +281,17 @@ impl Checked<'_> {
     /// Checks the speed of the approach. A limit is sampled once per round, and the axis must move
     /// at most one step between two samples; otherwise two homing runs could differ by more than
     /// one step.
-    fn looks_often_enough(&self, raw: &RawHome, slow: u64) -> Result<(), InputError> {
+    fn is_sampled_often_enough(&self, raw: &RawHome, slow: u64) -> Result<(), InputError> {
         let ticks = u128::from(self.guard.round) + 2;
         if u128::from(slow) * ticks <= 1 << 64 {
             return Ok(());
         }
         let seconds = ticks as f64 * self.timebase.tick_ns() as f64 * 1e-9;
         let most = self.axis.unit.at_most(1.0 / seconds, 1);
-        let message = "slow_speed is over a step between two looks at the switch: two homes could differ by more than a step";
+        let message = "slow_speed is over a step between two samples of the switch: two homes could differ by more than a step";
         Err(self.at(&raw.slow_speed, message).help(format!(
             "at most {most}; or a shorter watchdog_ms, enable_ms or debounce_us: the longest of them says how often \
-             a limit is looked at"
+             a limit is sampled"
         )))
     }
 

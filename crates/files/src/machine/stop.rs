@@ -2,7 +2,7 @@
 //! subtracts from V in each tick.
 
 use crate::decimal;
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::number::positive;
 use crate::unit::Unit;
 use bigdecimal::{BigDecimal, RoundingMode, ToPrimitive};
@@ -15,7 +15,7 @@ const MOST: u64 = 1 << 62;
 
 /// Converts a stop acceleration of the file, in units/s^2.
 pub(super) fn units(
-    source: &Source,
+    source: &SourceText,
     value: &Spanned<f64>,
     steps_per_unit: &BigDecimal,
     unit: &Unit,

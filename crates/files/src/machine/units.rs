@@ -3,7 +3,7 @@
 
 use super::axis::RawAxis;
 use crate::decimal;
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::number::{not_negative, positive};
 use crate::unit::Unit;
 use bigdecimal::{BigDecimal, RoundingMode, Signed};
@@ -35,7 +35,7 @@ impl RawAxis {
     /// exactly half a step therefore stays at or above the half and rounds as the fraction would.
     pub(super) fn steps_per_unit(
         &self,
-        source: &Source,
+        source: &SourceText,
         table: Range<usize>,
     ) -> Result<BigDecimal, InputError> {
         let turns = [
@@ -72,7 +72,7 @@ impl RawAxis {
     /// The unit in which the axis is displayed.
     pub(super) fn unit(
         &self,
-        source: &Source,
+        source: &SourceText,
         steps_per_unit: &BigDecimal,
     ) -> Result<Unit, InputError> {
         let name = self.unit.as_ref().map(|name| name.as_ref().as_str());
@@ -89,7 +89,7 @@ impl RawAxis {
 
     pub(super) fn speed_limit(
         &self,
-        source: &Source,
+        source: &SourceText,
         table: Range<usize>,
         scale: &BigDecimal,
     ) -> Result<Speed, InputError> {
@@ -104,7 +104,7 @@ impl RawAxis {
 
     pub(super) fn start_speed(
         &self,
-        source: &Source,
+        source: &SourceText,
         scale: &BigDecimal,
     ) -> Result<Option<Speed>, InputError> {
         let keys = ("start_speed", "start_speed_per_min");
@@ -112,12 +112,12 @@ impl RawAxis {
     }
 }
 
-type Reader = fn(&Source, &Spanned<f64>, &str) -> Result<BigDecimal, InputError>;
+type Reader = fn(&SourceText, &Spanned<f64>, &str) -> Result<BigDecimal, InputError>;
 type Number = Option<Spanned<f64>>;
 
 /// A speed per second or per minute, converted to steps/s.
 fn speed(
-    source: &Source,
+    source: &SourceText,
     keys: (&'static str, &'static str),
     (per_s, per_min): (&Number, &Number),
     read: Reader,
@@ -145,7 +145,7 @@ fn speed(
 }
 
 /// A whole number greater than zero.
-fn whole(source: &Source, value: &Spanned<u32>, key: &str) -> Result<BigDecimal, InputError> {
+fn whole(source: &SourceText, value: &Spanned<u32>, key: &str) -> Result<BigDecimal, InputError> {
     let exact = BigDecimal::from(*value.as_ref());
     if exact.is_positive() {
         return Ok(exact);

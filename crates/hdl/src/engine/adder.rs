@@ -43,7 +43,7 @@ use rust_hdl::prelude::*;
 pub struct Adder {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The beats of [`super::turn`]: bit i is asserted in beat i of a time slot.
+    /// The beats of [`super::time_slot`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
     /// The word that the memory returns.
     pub word: Input<Word<32>>,

@@ -122,7 +122,7 @@ module promises (
     always_comb begin
         cover_each_forward_and_back: cover (forward == {`AXES{1'b1}} && backward == forward);
         cover_last_phase: cover (in_order && at / PHASE_CLOCKS == `PHASES - 1);
-        cover_turn_inside: cover (same && dir != was_dir && of_tick == TICKS_1 + 2);
+        cover_dir_change_inside: cover (same && dir != was_dir && of_tick == TICKS_1 + 2);
         cover_step_behind_the_boundary: cover (rises != 0 && of_tick == TICKS_1 + 1);
         cover_step_of_last_tick: cover (in_order && of_tick == TICKS_1 + TICKS_2);
         cover_all_over: cover (same && tick > TICKS_1 + TICKS_2 + 2 && axes_idle && forward != 0);

@@ -17,7 +17,7 @@
 //! passes such a name on as text. [`index`] gives its value, so that the Verilog contains the
 //! number.
 
-use carrystep_core::engine::{COMMIT, PUT_BEAT, TURN};
+use carrystep_core::engine::{COMMIT, PUT_BEAT, TIME_SLOT_CLOCKS};
 
 /// Defines the constants and the table of their names.
 macro_rules! indices {
@@ -32,7 +32,7 @@ indices! {
     /// First beat of a time slot.
     BEAT_FIRST = 0;
     /// Last beat of a time slot. The four beats after it overlap the next time slot.
-    BEAT_LAST = TURN as usize - 1;
+    BEAT_LAST = TIME_SLOT_CLOCKS as usize - 1;
 
     /// A or the stop acceleration is read, low half.
     BEAT_READ_A_LOW = 0;

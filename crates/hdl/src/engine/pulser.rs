@@ -3,15 +3,16 @@
 //!
 //! ```text
 //! DIR  ____/^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\_______
-//!          :<-- D -->:<--- H --->:             :
+//!          :DIR_SETUP:<-DIR_HOLD>:             :
 //! STEP ______________/^^^^^^\________/^^^^^^\__________
-//!                    :<-W ->:<- S -->:
+//!           STEP_HIGH:<---->:<------>:STEP_LOW
 //! ```
 //!
-//! W is the pulse width, S the gap between pulses, D the set-up of DIR before STEP and H the hold
-//! of DIR after STEP rises, each in clocks. A step that this timing delays is held back (`due` in
-//! the code, `owed` at the output), at most one. A second one calls the stop `overrun`. In the
-//! code, `turn` means that DIR changes.
+//! `STEP_HIGH` is the least time for which STEP is high, `STEP_LOW` that for which it is low.
+//! `DIR_SETUP` is the set-up of DIR before STEP rises, `DIR_HOLD` its hold after STEP has risen.
+//! All are in clocks. A step that this timing delays is held back (`due` in
+//! the code, `held_back` at the output), at most one. A second one calls the stop `overrun`. In the
+//! code, `dir_changes` means that DIR changes.
 //!
 //! Two free-running counters measure the time: `since` counts clocks since STEP rose, `after`
 //! clocks since DIR changed. A counter that reaches a limit only ends a condition (the pulse, the
@@ -26,7 +27,7 @@
 
 use crate::HdlError;
 use crate::parameters::{DIR_HOLD, DIR_SETUP, STEP_HIGH, STEP_LOW};
-use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
@@ -55,7 +56,7 @@ pub struct Pulser {
     /// The DIR pin; 1 is backward.
     pub dir: Signal<Out, Bit>,
     /// A step is held back.
-    pub owed: Signal<Out, Bit>,
+    pub held_back: Signal<Out, Bit>,
     /// Bits 2 to 0: steps forward less steps backward, modulo 8. Bits 5 to 3: discarded steps,
     /// modulo 8.
     pub counts: Signal<Out, Word<6>>,
@@ -64,7 +65,7 @@ pub struct Pulser {
     step_pin: Register<Bit>,
     dir_pin: Register<Bit>,
     want: Register<Bit>,
-    due: Register<Bit>,        // `owed`
+    due: Register<Bit>,        // `held_back`
     due_back: Register<Bit>,   // the direction of the step that is held back
     since: Register<Word<17>>, // clocks since STEP rose
     after: Register<Word<16>>, // clocks since DIR changed
@@ -77,12 +78,12 @@ pub struct Pulser {
     first_back: Signal<Local, Bit>,
     rise: Signal<Local, Bit>,
     aim: Signal<Local, Bit>,
-    turn: Signal<Local, Bit>,
+    dir_changes: Signal<Local, Bit>,
     second: Signal<Local, Bit>,
     late_now: Signal<Local, Bit>,
     change: Signal<Local, Word<3>>,
-    pulse_over: Parameter<17>,
-    gap_over: Parameter<17>,
+    step_high_over: Parameter<17>,
+    step_low_over: Parameter<17>,
     hold_over: Parameter<17>,
     since_bits: Parameter<17>,
     setup_over: Parameter<16>,
@@ -91,15 +92,15 @@ pub struct Pulser {
     instant: Parameter<1>, // the set-up is one clock, so that no wait is needed
     since_rise: Literal<17, 0>,
     since_one: Literal<17, 1>,
-    after_turn: Literal<16, 0>,
+    after_dir_change: Literal<16, 0>,
     after_one: Literal<16, 1>,
     at_3: Literal<4, 3>,
     one: Literal<3, 1>,
     minus_one: Literal<3, 7>,
-    step_high_out_of_range: Refusal,
-    step_low_out_of_range: Refusal,
-    dir_setup_out_of_range: Refusal,
-    dir_hold_out_of_range: Refusal,
+    step_high_out_of_range: ParameterRefusal,
+    step_low_out_of_range: ParameterRefusal,
+    dir_setup_out_of_range: ParameterRefusal,
+    dir_hold_out_of_range: ParameterRefusal,
 }
 
 impl Pulser {
@@ -108,36 +109,41 @@ impl Pulser {
     /// # Errors
     /// Returns [`HdlError::PinTiming`] if a time is not from 1 to [`MAX_CLOCKS`] clocks.
     pub fn new(pins: &PinTiming) -> Result<Self, HdlError> {
-        let &PinTiming { width, gap, setup, hold } = pins;
-        for (name, clocks) in [("width", width), ("gap", gap), ("setup", setup), ("hold", hold)] {
+        let &PinTiming { step_high, step_low, dir_setup, dir_hold } = pins;
+        for (name, clocks) in [
+            ("step_high", step_high),
+            ("step_low", step_low),
+            ("dir_setup", dir_setup),
+            ("dir_hold", dir_hold),
+        ] {
             if !(1..=MAX_CLOCKS).contains(&clocks) {
                 return Err(HdlError::PinTiming { name, clocks });
             }
         }
-        let (width, gap) = (STEP_HIGH.of::<32>(width), STEP_LOW.of::<32>(gap));
-        let (setup, hold) = (DIR_SETUP.of::<32>(setup), DIR_HOLD.of::<32>(hold));
+        let (step_high, step_low) = (STEP_HIGH.of::<32>(step_high), STEP_LOW.of::<32>(step_low));
+        let (dir_setup, dir_hold) = (DIR_SETUP.of::<32>(dir_setup), DIR_HOLD.of::<32>(dir_hold));
         let most = u64::from(MAX_CLOCKS);
-        let pulse_over = width.bits::<17>(0) - Formula::number(1);
-        let gap_over = (width.bits::<17>(0) + gap.bits::<17>(0)) - Formula::number(2);
-        let hold_over = hold.bits::<17>(0).without(Formula::number(2));
+        let step_high_over = step_high.bits::<17>(0) - Formula::number(1);
+        let step_low_over = (step_high.bits::<17>(0) + step_low.bits::<17>(0)) - Formula::number(2);
+        let hold_over = dir_hold.bits::<17>(0).without(Formula::number(2));
         // A set-up of 65536 clocks is 0 in 16 bits, and 0 - 2 wraps to 65534, the right limit.
-        let at_once = setup.whole().is(&Formula::number(1));
+        let at_once = dir_setup.whole().is(&Formula::number(1));
         let setup_over =
-            Formula::number(0).where_or(&at_once, setup.bits::<16>(0) - Formula::number(2));
-        let greatest = gap_over.clone().or_more(hold_over.clone());
+            Formula::number(0).where_or(&at_once, dir_setup.bits::<16>(0) - Formula::number(2));
+        let greatest = step_low_over.clone().or_more(hold_over.clone());
         Ok(Self {
-            pulse_over: Parameter::of(&pulse_over),
-            gap_over: Parameter::of(&gap_over),
+            step_high_over: Parameter::of(&step_high_over),
+            step_low_over: Parameter::of(&step_low_over),
             hold_over: Parameter::of(&hold_over),
-            since_bits: Parameter::of(&greatest.or_more(pulse_over).used_bits()),
+            since_bits: Parameter::of(&greatest.or_more(step_high_over).used_bits()),
             setup_over: Parameter::of(&setup_over),
             after_bits: Parameter::of(&setup_over.used_bits()),
-            holds: Parameter::of(&hold.whole().is_more(&Formula::number(1))),
+            holds: Parameter::of(&dir_hold.whole().is_more(&Formula::number(1))),
             instant: Parameter::of(&at_once),
-            step_high_out_of_range: Refusal::of(&width.is_outside(1, most)),
-            step_low_out_of_range: Refusal::of(&gap.is_outside(1, most)),
-            dir_setup_out_of_range: Refusal::of(&setup.is_outside(1, most)),
-            dir_hold_out_of_range: Refusal::of(&hold.is_outside(1, most)),
+            step_high_out_of_range: ParameterRefusal::of(&step_high.is_outside(1, most)),
+            step_low_out_of_range: ParameterRefusal::of(&step_low.is_outside(1, most)),
+            dir_setup_out_of_range: ParameterRefusal::of(&dir_setup.is_outside(1, most)),
+            dir_hold_out_of_range: ParameterRefusal::of(&dir_hold.is_outside(1, most)),
             ..Self::default()
         })
     }
@@ -171,17 +177,17 @@ impl Logic for Pulser {
         if self.pending.val() {
             self.aim.next = self.first_back.val();
         }
-        self.turn.next =
+        self.dir_changes.next =
             !self.frozen.val() & !self.held.q.val() & (self.dir_pin.q.val() != self.aim.val());
 
         // The pins.
         self.step_pin.d.next = self.rise.val()
-            | (self.step_pin.q.val() & (self.since.q.val() != self.pulse_over.val()));
-        self.dir_pin.d.next = self.dir_pin.q.val() ^ self.turn.val();
+            | (self.step_pin.q.val() & (self.since.q.val() != self.step_high_over.val()));
+        self.dir_pin.d.next = self.dir_pin.q.val() ^ self.dir_changes.val();
 
         // The time since STEP rose limits the pulse, the gap and the hold.
         self.since.d.next = (self.since.q.val() + self.since_one.val()) & self.since_bits.val();
-        self.busy.d.next = self.busy.q.val() & (self.since.q.val() != self.gap_over.val());
+        self.busy.d.next = self.busy.q.val() & (self.since.q.val() != self.step_low_over.val());
         self.held.d.next = self.held.q.val() & (self.since.q.val() != self.hold_over.val());
         if self.rise.val() {
             self.since.d.next = self.since_rise.val();
@@ -192,8 +198,8 @@ impl Logic for Pulser {
         // The time since DIR changed limits the set-up.
         self.after.d.next = (self.after.q.val() + self.after_one.val()) & self.after_bits.val();
         self.settled.d.next = self.settled.q.val() | (self.after.q.val() == self.setup_over.val());
-        if self.turn.val() {
-            self.after.d.next = self.after_turn.val();
+        if self.dir_changes.val() {
+            self.after.d.next = self.after_dir_change.val();
             self.settled.d.next = false;
         }
 
@@ -221,7 +227,7 @@ impl Logic for Pulser {
 
         self.step.next = self.step_pin.q.val();
         self.dir.next = self.dir_pin.q.val();
-        self.owed.next = self.due.q.val();
+        self.held_back.next = self.due.q.val();
         self.counts.next = bit_cast::<6, 3>(self.count.q.val())
             | (bit_cast::<6, 3>(self.lost.q.val()) << self.at_3.val());
         self.overruns.next = self.late_now.val();
@@ -235,7 +241,7 @@ mod tests {
 
     #[test]
     fn pulser_synthesizes() {
-        let pins = PinTiming { width: 12, gap: 5, setup: 3, hold: 2 };
+        let pins = PinTiming { step_high: 12, step_low: 5, dir_setup: 3, dir_hold: 2 };
         assert_synthesizes(Pulser::new(&pins).unwrap(), "carrystep_pulser");
     }
 }

@@ -41,7 +41,7 @@ use rust_hdl::prelude::*;
 pub struct Queue {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The beats of [`super::turn`]: bit i is asserted in beat i of a time slot.
+    /// The beats of [`super::time_slot`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
     /// The axis of the time slot.
     pub axis: Input<Word<3>>,

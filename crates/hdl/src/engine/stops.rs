@@ -14,13 +14,13 @@
 //! `docs/clock-by-clock.md` lists the causes. A freezing cause during a ramp freezes the axes too.
 //!
 //! Interface: causes arrive from the time slots (`too_fast`, `limit`, `dry`), from the pulsers
-//! (`late`), from [`super::watch`] and from the host. Causes of a time slot take effect at the
+//! (`late`), from [`super::supervisor`] and from the host. Causes of a time slot take effect at the
 //! strobe.
 //!
 //! Cost: about a dozen flip-flops, two registers of 3 bits for causes, and one flip-flop per axis.
 
 use crate::parameters::LIMIT_FREEZES;
-use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
 use carrystep_core::engine::Guard;
@@ -35,9 +35,9 @@ pub struct Stops<const N: usize> {
     pub strobe: Input<Bit>,
     /// Asserted in the last beat of a time slot. The inputs about the slot's axis are valid in this
     /// clock.
-    pub turn_ends: Input<Bit>,
+    pub time_slot_ends: Input<Bit>,
     /// The axis of the slot, one-hot.
-    pub lane: Input<Word<N>>,
+    pub axis_one_hot: Input<Word<N>>,
     /// The axis of the slot runs in this tick.
     pub runs: Input<Bit>,
     /// The V of the axis is out of range.
@@ -110,7 +110,7 @@ pub struct Stops<const N: usize> {
     limited: Literal<3, 5>,
     underrun: Literal<3, 6>,
     host: Literal<3, 7>,
-    limit_freezes_out_of_range: Refusal,
+    limit_freezes_out_of_range: ParameterRefusal,
 }
 
 impl<const N: usize> Stops<N> {
@@ -119,7 +119,7 @@ impl<const N: usize> Stops<N> {
         let freezes = LIMIT_FREEZES.of::<32>(guard.limit_freezes);
         Self {
             limits_freeze: Parameter::of(&freezes.bits(0)),
-            limit_freezes_out_of_range: Refusal::of(&freezes.is_outside(0, 1)),
+            limit_freezes_out_of_range: ParameterRefusal::of(&freezes.is_outside(0, 1)),
             ..Self::default()
         }
     }
@@ -133,7 +133,7 @@ impl<const N: usize> Logic for Stops<N> {
 
         // Collects the causes that the time slots find.
         self.finds_now.next =
-            self.turn_ends.val() & (self.too_fast.val() | self.limit.val() | self.dry.val());
+            self.time_slot_ends.val() & (self.too_fast.val() | self.limit.val() | self.dry.val());
         if self.finds_now.val() {
             self.found.d.next = true;
         }
@@ -146,12 +146,12 @@ impl<const N: usize> Logic for Stops<N> {
                 self.kind.d.next = self.overspeed.val();
             }
         }
-        if self.turn_ends.val()
+        if self.time_slot_ends.val()
             & (self.too_fast.val() | (self.limit.val() & self.limits_freeze.val().any()))
         {
             self.found_freezing.d.next = true;
         }
-        if self.turn_ends.val() & self.runs.val() {
+        if self.time_slot_ends.val() & self.runs.val() {
             self.ran.d.next = true;
         }
 
@@ -167,7 +167,7 @@ impl<const N: usize> Logic for Stops<N> {
             if self.urgent.val() | (self.by_host.val() & !self.ripe.val()) {
                 self.axes.d.next = self.late.val();
             } else if self.finds_now.val() & !self.found.q.val() {
-                self.axes.d.next = self.lane.val();
+                self.axes.d.next = self.axis_one_hot.val();
             }
         }
         if self.calls.val() & !self.called.q.val() {

@@ -29,10 +29,10 @@ use super::layout::{
     WORD_TICKS, WORD_V_HIGH, WORD_V_LOW, state_address,
 };
 use crate::parameters::{START_HALF, STOP_ACCEL};
-use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
-use crate::primitives::lanes::Lanes;
 use crate::primitives::memory::Memory;
+use crate::primitives::per_axis::PerAxis;
 use crate::primitives::register::Input;
 use crate::primitives::word::{Word, bit_cast};
 use carrystep_core::StartPhase;
@@ -44,7 +44,7 @@ use rust_hdl::prelude::*;
 pub struct Store {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The beats of [`super::turn`]: bit i is asserted in beat i of a time slot.
+    /// The beats of [`super::time_slot`]: bit i is asserted in beat i of a time slot.
     pub beat: Input<Word<17>>,
     /// The axis of the time slot.
     pub axis: Input<Word<3>>,
@@ -107,8 +107,8 @@ pub struct Store {
     start_high: Parameter<32>,
     no: Literal<32, 0>,
     all: Literal<32, 0xffff_ffff>,
-    start_half_out_of_range: Refusal,
-    stop_accel_out_of_range: Lanes<Refusal, MAX_AXES>,
+    start_half_out_of_range: ParameterRefusal,
+    stop_accel_out_of_range: PerAxis<ParameterRefusal, MAX_AXES>,
 }
 
 impl Store {
@@ -136,12 +136,13 @@ impl Store {
                 (SLOT_UP_HIGH, high),
             ];
             kept.extend(words.map(|(slot, word)| (state_address(axis, slot), word)));
-            store.stop_accel_out_of_range[axis] = Refusal::of(&stop.is_outside(1, 1 << 62));
+            store.stop_accel_out_of_range[axis] =
+                ParameterRefusal::of(&stop.is_outside(1, 1 << 62));
         }
         Self {
             segments: Memory::of_formulas(&kept),
             start_high: Parameter::of(&start_high),
-            start_half_out_of_range: Refusal::of(&half.is_outside(0, 1)),
+            start_half_out_of_range: ParameterRefusal::of(&half.is_outside(0, 1)),
             ..store
         }
     }

@@ -14,7 +14,7 @@
 //! Cost: a shift register of 9 bits and a timer that is as wide as B requires.
 
 use crate::parameters::BIT_CLOCKS;
-use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
@@ -47,7 +47,7 @@ pub struct UartIn {
     mark: Literal<9, 0x100>,
     top: Literal<9, 0x100>,
     by_one: Literal<1, 1>,
-    bit_clocks_out_of_range: Refusal,
+    bit_clocks_out_of_range: ParameterRefusal,
 }
 
 impl UartIn {
@@ -63,7 +63,7 @@ impl UartIn {
             to_first: Parameter::of(&to_first),
             to_next: Parameter::of(&(bit.bits(0) - Formula::number(1))),
             timer_bits: Parameter::of(&to_first.used_bits()),
-            bit_clocks_out_of_range: Refusal::of(
+            bit_clocks_out_of_range: ParameterRefusal::of(
                 &bit.is_outside(MIN_BIT_CLOCKS.into(), MAX_BIT_CLOCKS.into()),
             ),
             ..Self::default()

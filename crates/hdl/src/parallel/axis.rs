@@ -13,8 +13,8 @@
 //! except the one that passes a whole step; there the missing carry is the step.
 //!
 //! Interface: the axis accepts one segment while another runs, and requests steps from the shaper.
-//! The [`Sequencer`] decides when a segment is loaded; [`Edge`] finds the phase of a step within
-//! its tick.
+//! The [`Sequencer`] decides when a segment is loaded; [`StepEdge`] finds the phase of a step
+//! within its tick.
 //!
 //! Cost: three adders of 64 bits, registers for P, V, A and J, and the waiting segment of the
 //! sequencer. The engine ([`mod@crate::engine`]) performs the same additions on one adder of 32
@@ -22,8 +22,8 @@
 
 use crate::parallel::sequencer::Sequencer;
 use crate::parameters::START_HALF;
-use crate::parts::edge::Edge;
-use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::parts::edge::StepEdge;
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::{Word, bit_cast};
@@ -32,7 +32,7 @@ use rust_hdl::prelude::*;
 
 /// One axis of the parallel core, from the offered segment to the requested step.
 #[derive(LogicBlock, Default)]
-pub struct Axis {
+pub struct ParallelAxis {
     /// The clock.
     pub clock: Input<Clock>,
     /// Asserted in the last clock of a tick.
@@ -96,7 +96,7 @@ pub struct Axis {
     jerk: Register<Word<64>>,     // J
     too_fast: Register<Bit>,      // `overspeed` of docs/clock-by-clock.md
     sequencer: Sequencer,
-    step_edge: Edge,
+    step_edge: StepEdge,
     tick: Signal<Local, Bit>,
     sum: Signal<Local, Word<65>>,
     backward: Signal<Local, Bit>,
@@ -107,10 +107,10 @@ pub struct Axis {
     start_value: Parameter<64>,
     zero: Literal<64, 0>,
     least: Literal<64, 0x8000_0000_0000_0000>,
-    start_half_out_of_range: Refusal,
+    start_half_out_of_range: ParameterRefusal,
 }
 
-impl Axis {
+impl ParallelAxis {
     /// Makes an axis for ticks of Q phases. [`carrystep_core::Timebase`] has checked that Q is 1, 4
     /// or 16.
     pub(crate) fn new(phases: u32, start: StartPhase) -> Self {
@@ -120,14 +120,14 @@ impl Axis {
         Self {
             position: Register::of(&start),
             start_value: Parameter::of(&start),
-            start_half_out_of_range: Refusal::of(&half.is_outside(0, 1)),
-            step_edge: Edge::new(phases),
+            start_half_out_of_range: ParameterRefusal::of(&half.is_outside(0, 1)),
+            step_edge: StepEdge::new(phases),
             ..Self::default()
         }
     }
 }
 
-impl Logic for Axis {
+impl Logic for ParallelAxis {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, position, speed, accel, jerk, too_fast);
@@ -284,6 +284,6 @@ mod tests {
 
     #[test]
     fn axis_synthesizes() {
-        assert_synthesizes(Axis::new(16, StartPhase::Half), "carrystep_axis");
+        assert_synthesizes(ParallelAxis::new(16, StartPhase::Half), "carrystep_axis");
     }
 }

@@ -20,7 +20,7 @@
 //! Cost: six axes and six shapers, which share one tick counter.
 
 use crate::HdlError;
-use crate::parallel::axis::Axis;
+use crate::parallel::axis::ParallelAxis;
 use crate::parts::shaper::Shaper;
 use crate::parts::tick::Tick;
 use crate::primitives::constant::Literal;
@@ -82,7 +82,7 @@ pub struct SixAxis {
     /// Axes start at the end of this clock.
     pub started: Signal<Out, Bit>,
     tick: Tick,
-    pub(crate) axis: [Axis; AXES],
+    pub(crate) axis: [ParallelAxis; AXES],
     shaper: [Shaper; AXES],
     armed: Register<Bit>,
     mask: Register<Word<6>>,
@@ -118,7 +118,7 @@ impl SixAxis {
         let phases = build.timebase.phases();
         Ok(Self {
             tick: Tick::new(&build.timebase),
-            axis: std::array::from_fn(|_| Axis::new(phases, build.phase)),
+            axis: std::array::from_fn(|_| ParallelAxis::new(phases, build.phase)),
             shaper,
             ..Self::default()
         })
@@ -144,7 +144,7 @@ impl Logic for SixAxis {
                 self.in_flight.val() | self.axis[i].in_flight.val() | self.shaper[i].step.val();
             self.at_rest.next = self.at_rest.val()
                 & self.axis[i].drained.val()
-                & !(self.shaper[i].owed.val() | self.shaper[i].step.val());
+                & !(self.shaper[i].held_back.val() | self.shaper[i].step.val());
         }
         self.clear_now.next = self.clear.val() & self.frozen.val() & !self.in_flight.val();
 

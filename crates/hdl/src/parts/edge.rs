@@ -27,7 +27,7 @@ use rust_hdl::prelude::*;
 
 /// The bisection and the emission of one axis.
 #[derive(LogicBlock, Default)]
-pub struct Edge {
+pub struct StepEdge {
     /// The clock.
     pub clock: Input<Clock>,
     /// Asserted in the last clock of a tick, even while the core is frozen.
@@ -92,14 +92,14 @@ pub struct Edge {
     phase_zero: Literal<4, 0>,
 }
 
-impl Edge {
+impl StepEdge {
     /// Makes the module for ticks of Q phases. Q is 1, 4 or 16.
     pub(crate) fn new(phases: u32) -> Self {
         Self { first_weight: Parameter::new(u64::from(phases / 2)), ..Self::default() }
     }
 }
 
-impl Logic for Edge {
+impl Logic for StepEdge {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(
@@ -173,7 +173,7 @@ mod tests {
     use super::*;
     use crate::sim::{assert_synthesizes, rising_edge, settle};
 
-    fn clock(edge: &mut Edge) {
+    fn clock(edge: &mut StepEdge) {
         edge.clock.next = false.into();
         settle(edge);
         edge.clock.next = true.into();
@@ -183,8 +183,8 @@ mod tests {
 
     /// Makes an edge of Q phases, accumulates one tick that contains a step, and finishes its
     /// bisection.
-    fn bisected(phases: u32, p: u64, v: u64) -> Edge {
-        let mut edge = Edge::new(phases);
+    fn bisected(phases: u32, p: u64, v: u64) -> StepEdge {
+        let mut edge = StepEdge::new(phases);
         edge.connect_all();
         edge.strobe.next = true;
         edge.crosses.next = true;
@@ -240,6 +240,6 @@ mod tests {
 
     #[test]
     fn edge_synthesizes() {
-        assert_synthesizes(Edge::new(16), "carrystep_step_edge");
+        assert_synthesizes(StepEdge::new(16), "carrystep_step_edge");
     }
 }

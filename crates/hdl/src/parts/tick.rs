@@ -14,7 +14,7 @@
 //! 4 bits.
 
 use crate::parameters::CLOCKS_PER_TICK;
-use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
@@ -44,7 +44,7 @@ pub struct Tick {
     first_phase: Literal<4, 0>,
     one_phase: Literal<4, 1>,
     last_phase: Parameter<4>,
-    clocks_per_tick_out_of_range: Refusal,
+    clocks_per_tick_out_of_range: ParameterRefusal,
 }
 
 impl Tick {
@@ -58,7 +58,7 @@ impl Tick {
         Self {
             last_sub: Parameter::of(&last_sub),
             sub_bits: Parameter::of(&last_sub.used_bits()),
-            clocks_per_tick_out_of_range: Refusal::of(
+            clocks_per_tick_out_of_range: ParameterRefusal::of(
                 &(outside | remainder.is_not(&Formula::number(0))),
             ),
             last_phase: Parameter::new(u64::from(timebase.phases() - 1)),

@@ -4,7 +4,8 @@
 //! every field in its constructor. The types here have a default. The value of a [`Literal`] is
 //! part of its type; the value of a [`Parameter`] is set when the module is built, and a parameter
 //! that is made of a [`Formula`] follows in the Verilog from parameters of the module. A
-//! [`Refusal`] exists in the Verilog only: it says which values of the parameters are refused.
+//! [`ParameterRefusal`] exists in the Verilog only: it says which values of the parameters are
+//! refused.
 
 use crate::primitives::formula::{Formula, Note, ParameterValue};
 use crate::primitives::word::Word;
@@ -71,19 +72,19 @@ impl<const N: usize> Parameter<N> {
 /// instantiates a module that does not exist and that is named after this field. In a build of
 /// Rust-HDL the formula is 0, because the constructor of the module has checked its arguments.
 #[derive(Debug)]
-pub struct Refusal {
+pub struct ParameterRefusal {
     value: Word<1>,
     note: Option<Note>,
     id: usize,
 }
 
-impl Default for Refusal {
+impl Default for ParameterRefusal {
     fn default() -> Self {
         Self::of(&Formula::number(0))
     }
 }
 
-impl Refusal {
+impl ParameterRefusal {
     /// Makes the refusal of all parameters for which `formula` is 1.
     pub fn of(formula: &Formula<1>) -> Self {
         Self { value: formula.value(), note: Some(Note::of(formula, true)), id: get_signal_id() }
@@ -94,19 +95,20 @@ impl Refusal {
     }
 }
 
-/// The Verilog writes this before the name of a [`Refusal`] to name the module that does not exist.
+/// The Verilog writes this before the name of a [`ParameterRefusal`] to name the module that does
+/// not exist.
 pub const ERROR: &str = "carrystep_error_";
 
 /// A parameter of a module whose Verilog is written as text; both have the same name.
 #[derive(Debug)]
-pub struct Given {
+pub struct TextParameter {
     name: String,
     value: Word<64>,
     note: Note,
     id: usize,
 }
 
-impl Given {
+impl TextParameter {
     /// Makes the constant of this parameter.
     pub fn new(given: ParameterValue) -> Self {
         let (name, text, value) =
@@ -186,5 +188,5 @@ macro_rules! constant_atom {
 
 constant_atom!([const N: usize, const VALUE: u64] Literal<N, VALUE>, N, |_| None);
 constant_atom!([const N: usize] Parameter<N>, N, |this| this.note.as_ref());
-constant_atom!([] Refusal, 1, |this| this.note.as_ref());
-constant_atom!([] Given, 64, |this| Some(&this.note));
+constant_atom!([] ParameterRefusal, 1, |this| this.note.as_ref());
+constant_atom!([] TextParameter, 64, |this| Some(&this.note));

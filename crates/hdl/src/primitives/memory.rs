@@ -11,7 +11,7 @@
 //! needs neither value costs no bypass logic. The simulation returns zero and the old word.
 
 use crate::parameters::EVENT_MEMORY;
-use crate::primitives::constant::{ERROR, Given};
+use crate::primitives::constant::{ERROR, TextParameter};
 use crate::primitives::formula::{Formula, ParameterValue};
 use crate::primitives::register::Input;
 use crate::primitives::word::Word;
@@ -48,7 +48,7 @@ pub struct Memory<const A: usize, const W: usize> {
     rose: bool,
     whole_words: bool,
     initial: Vec<(usize, Formula<W>)>,
-    given: Vec<Given>,
+    given: Vec<TextParameter>,
 }
 
 impl<const A: usize, const W: usize> Memory<A, W> {
@@ -74,7 +74,7 @@ impl<const A: usize, const W: usize> Memory<A, W> {
                 word.given().iter().filter(|one| !given.contains(one)).cloned().collect::<Vec<_>>(),
             );
         }
-        memory.given = given.into_iter().map(Given::new).collect();
+        memory.given = given.into_iter().map(TextParameter::new).collect();
         memory.initial = initial.to_vec();
         memory
     }
@@ -96,7 +96,7 @@ impl<const A: usize, const W: usize> Memory<A, W> {
             write_bits: Input::default(),
             write_data: Input::default(),
             initial: Vec::new(),
-            given: vec![Given::new(style)],
+            given: vec![TextParameter::new(style)],
             words,
             rose: false,
             whole_words: false,

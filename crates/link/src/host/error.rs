@@ -1,7 +1,7 @@
 //! Errors between a host and a gateware, one variant for each cause.
 
 use crate::command::ProgramError;
-use crate::facts::Refusal;
+use crate::facts::GatewareMismatch;
 use crate::registers::CAUSES;
 use crate::travel::TooLong;
 use crate::window::{Foreign, OutOfStep};
@@ -43,7 +43,7 @@ pub enum HostError<E> {
     },
     /// The gateware is not the one that this driver was made for.
     #[error(transparent)]
-    Refused(#[from] Refusal),
+    Refused(#[from] GatewareMismatch),
     /// The gateware's sequence number is not one that this host can have caused.
     #[error(transparent)]
     OutOfStep(#[from] OutOfStep),

@@ -13,7 +13,7 @@
 use super::motion::{Ended, Progress, Wish};
 use super::{Clock, HomingFault, Host, HostError};
 use crate::command::{ProgramError, Segment};
-use crate::feeder::Source;
+use crate::feeder::SegmentSource;
 use crate::frame::of_axis;
 use crate::line::Line;
 use crate::registers::{HOME, LATCHED};
@@ -22,7 +22,7 @@ use crate::travel::Travel;
 mod request;
 
 use request::{AXES, each};
-pub use request::{AxisHoming, Homed, Homing, Stage, Wiring};
+pub use request::{AxisHoming, Homed, Homing, HomingStage, Wiring};
 
 /// Result of one move of homing.
 struct Leg {
@@ -42,7 +42,7 @@ struct Moves {
     start: Option<u8>,
 }
 
-impl Source for Moves {
+impl SegmentSource for Moves {
     fn segment(&mut self, axis: u8) -> Option<Segment> {
         let axis = usize::from(axis);
         let sent = self.sent.get_mut(axis)?;
@@ -81,7 +81,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     pub fn home(
         &mut self,
         homing: &Homing<'_>,
-        mut watch: impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        mut watch: impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Homed, HostError<L::Error>> {
         homing.check().map_err(|(axis, why)| HostError::Homing { axes: 1 << axis, why })?;
         let beyond =
@@ -102,7 +102,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         &mut self,
         homing: &Homing<'_>,
         edges: &mut [i32; AXES],
-        watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let one = homing.wiring == Wiring::One;
         // With one input for all switches, a closed switch of any axis would hide the others.
@@ -148,10 +148,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         &mut self,
         homing: &Homing<'_>,
         axes: u8,
-        watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let far = |_, axis: &AxisHoming| (axis.move_off, false, axis.seek);
-        let Some(leg) = self.leg(homing, axes, Stage::MoveOff, far, watch)? else {
+        let Some(leg) = self.leg(homing, axes, HomingStage::MoveOff, far, watch)? else {
             return Ok(None);
         };
         if leg.met != 0 && homing.wiring != Wiring::Pair {
@@ -167,10 +167,10 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         homing: &Homing<'_>,
         axes: u8,
         edges: &mut [i32; AXES],
-        watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let seek = |_, axis: &AxisHoming| (axis.max_travel, true, axis.seek);
-        let Some(found) = self.leg(homing, axes, Stage::Seek, seek, watch)? else {
+        let Some(found) = self.leg(homing, axes, HomingStage::Seek, seek, watch)? else {
             return Ok(None);
         };
         found.all(homing, axes, HomingFault::NotFound, |axis| axis.seek)?;
@@ -186,7 +186,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let back = |number, axis: &AxisHoming| {
             (axis.move_off.saturating_add(ran_on(number)), false, axis.seek)
         };
-        let Some(leg) = self.leg(homing, axes, Stage::BackOff, back, watch)? else {
+        let Some(leg) = self.leg(homing, axes, HomingStage::BackOff, back, watch)? else {
             return Ok(None);
         };
         if leg.met != 0 {
@@ -200,7 +200,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let steps = axis.move_off.saturating_add(ran_on(number)).saturating_add(accepted + 2);
             (steps, true, axis.slow)
         };
-        let Some(found) = self.leg(homing, axes, Stage::Approach, near, watch)? else {
+        let Some(found) = self.leg(homing, axes, HomingStage::Approach, near, watch)? else {
             return Ok(None);
         };
         found.all(homing, axes, HomingFault::NotAgain, |axis| axis.slow)?;
@@ -220,7 +220,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         axes: u8,
         edges: &[i32; AXES],
         place: impl Fn(&AxisHoming) -> u32,
-        watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<()>, HostError<L::Error>> {
         let positions = self.status.positions;
         let pull = |number, axis: &AxisHoming| {
@@ -232,7 +232,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
             let steps = i64::from(wanted) - i64::from(away);
             (u32::try_from(steps.unsigned_abs()).unwrap_or(u32::MAX), steps < 0, axis.seek)
         };
-        let Some(leg) = self.leg(homing, axes, Stage::PullOff, pull, watch)? else {
+        let Some(leg) = self.leg(homing, axes, HomingStage::PullOff, pull, watch)? else {
             return Ok(None);
         };
         match leg.met {
@@ -248,9 +248,9 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         &mut self,
         homing: &Homing<'_>,
         axes: u8,
-        stage: Stage,
+        stage: HomingStage,
         wish: impl Fn(u8, &AxisHoming) -> (u32, bool, u64),
-        watch: &mut impl FnMut(u8, Stage, &Progress<'_>) -> Wish,
+        watch: &mut impl FnMut(u8, HomingStage, &Progress<'_>) -> Wish,
     ) -> Result<Option<Leg>, HostError<L::Error>> {
         let mut moves = Moves { start: Some(axes), ..Moves::default() };
         for (number, axis) in each(axes).filter_map(|number| Some((number, homing.axis(number)?))) {
@@ -265,7 +265,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 .into_iter()
                 .for_each(|place| *place = travel);
         }
-        let begun = self.look()?.positions;
+        let begun = self.read_status()?.positions;
         self.write(HOME, axes.into())?;
         let ended = self.stream(moves, |progress| watch(axes, stage, progress));
         let waits = self.status.answer.homing & axes;
@@ -312,8 +312,8 @@ impl Leg {
         // closes during the move is accepted only after `debounce` samples.
         let at_once = |axis: &u8| {
             let Some(homes) = homing.axis(*axis) else { return false };
-            let looks = u128::from(homing.round) * 2;
-            let reach = 1 + ((u128::from(speed(homes)) * looks) >> 64) as u32;
+            let samples = u128::from(homing.round) * 2;
+            let reach = 1 + ((u128::from(speed(homes)) * samples) >> 64) as u32;
             apart(at(&self.begun, *axis), at(&self.latched, *axis)) <= reach
         };
         match each(axes).filter(at_once).fold(0, |mask, axis| mask | 1 << axis) {

@@ -82,7 +82,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
                 Wish::GoOn
             },
         )?;
-        self.look()
+        self.read_status()
     }
 
     /// Ends a stop of any cause; the queues are empty then. Does nothing if no stop is in force.
@@ -92,7 +92,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// [`HostError::TooLong`] if the fault remains for another reason.
     pub fn clear(&mut self) -> Result<(), HostError<L::Error>> {
         let begin = self.clock.milliseconds();
-        self.look()?;
+        self.read_status()?;
         if self.status.answer.fault {
             self.write(map::CONTROL, self.power())?;
             self.wait("the stop", |answer| answer.halted)?;
@@ -100,7 +100,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
         let first = self.clock.milliseconds();
         while self.status.answer.fault {
             self.write(map::CLEAR, 0)?;
-            self.look()?;
+            self.read_status()?;
             let Answer { fault, cause, .. } = self.status.answer;
             // A CLEAR removes every cause that is over. If the e-stop comes back at once, it is
             // still pressed; after its release it may bounce for some milliseconds.
@@ -126,7 +126,7 @@ impl<L: Line, C: Clock, const N: usize> Host<L, C, N> {
     /// # Errors
     /// As [`Self::stop`] and [`Self::clear`].
     pub fn settle(&mut self) -> Result<(), HostError<L::Error>> {
-        let Answer { idle, fault, .. } = self.look()?.answer;
+        let Answer { idle, fault, .. } = self.read_status()?.answer;
         if !idle && !fault {
             self.stop()?;
         }

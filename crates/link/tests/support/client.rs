@@ -20,7 +20,8 @@
 
 use super::{hex, unhex};
 use carrystep_link::{
-    Answer, Body, Command, Facts, Feeder, ProgramError, Refusal, Segment, Session, Timing, slip,
+    Answer, Body, BuildFacts, Command, Feeder, GatewareMismatch, ProgramError, Segment, Session,
+    Timing, slip,
 };
 
 pub trait Client {
@@ -43,7 +44,7 @@ struct Owned {
     starts: std::collections::VecDeque<u8>,
 }
 
-impl carrystep_link::Source for Owned {
+impl carrystep_link::SegmentSource for Owned {
     fn segment(&mut self, axis: u8) -> Option<Segment> {
         self.segments.get_mut(usize::from(axis))?.pop_front()
     }
@@ -209,13 +210,17 @@ impl Client for RustClient {
             ("check", [identity, protocol, build, wanted]) => {
                 let word = |word| hexadecimal(word) as u32;
                 let (identity, protocol) = (word(identity), word(protocol));
-                let facts =
-                    Facts { identity, protocol, build: hexadecimal(build), ..Facts::default() };
+                let facts = BuildFacts {
+                    identity,
+                    protocol,
+                    build: hexadecimal(build),
+                    ..BuildFacts::default()
+                };
                 match facts.check(Some(hexadecimal(wanted))) {
                     Ok(()) => "fine",
-                    Err(Refusal::Identity(_)) => "device",
-                    Err(Refusal::Protocol { .. }) => "protocol",
-                    Err(Refusal::Build { .. }) => "build",
+                    Err(GatewareMismatch::Identity(_)) => "device",
+                    Err(GatewareMismatch::Protocol { .. }) => "protocol",
+                    Err(GatewareMismatch::Build { .. }) => "build",
                 }
                 .to_owned()
             }

@@ -5,7 +5,7 @@ use carrystep_core::engine::{Cause, EngineInputs, Guard};
 
 /// State of e-stop input, watchdog and ENABLE.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Watch {
+pub(super) struct Supervisor {
     /// Synchronizer of the e-stop input: two flip-flops, `first` and `now`.
     first: bool,
     now: bool,
@@ -21,7 +21,7 @@ pub(super) struct Watch {
     warm: u32,
 }
 
-impl Watch {
+impl Supervisor {
     pub(super) const fn new() -> Self {
         Self {
             first: false,
@@ -76,7 +76,7 @@ impl Watch {
 }
 
 /// Access for the fast model, which passes many clocks at once.
-impl Watch {
+impl Supervisor {
     /// True if these inputs and this `idle` change nothing but the counters of rounds.
     pub(super) fn is_steady(
         &self,
@@ -115,7 +115,7 @@ impl Watch {
     }
 
     /// Strobes before the first strobe in this tick of a round.
-    pub(super) const fn strobes_to_look(&self, guard: &Guard, tick_of_round: u32) -> u64 {
+    pub(super) const fn strobes_to_sample(&self, guard: &Guard, tick_of_round: u32) -> u64 {
         ((tick_of_round + guard.round - self.tick_of_round) % guard.round) as u64
     }
 

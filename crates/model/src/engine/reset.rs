@@ -6,7 +6,7 @@
 //! ```
 
 use super::Engine;
-use super::lane::Limit;
+use super::axis_model::Limit;
 
 /// How far a reset is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,15 +27,15 @@ impl Engine {
     /// Executes the rules of a reset that apply in every cycle. `was` is the state before it.
     pub(super) fn clock_reset(&mut self, was: Reset, requested: bool) {
         if was.ending {
-            self.watch.forget();
+            self.supervisor.forget();
         }
         if was.ending && was.stage == 0 {
-            self.watch.tick_of_round = 0;
+            self.supervisor.tick_of_round = 0;
         }
         if was.is_resetting() {
-            self.watch.enabled = false;
-            for lane in &mut self.lanes {
-                lane.homing.waits = false;
+            self.supervisor.enabled = false;
+            for axis_model in &mut self.axis_models {
+                axis_model.homing.waits = false;
             }
         }
         self.reset.ending |= requested;
@@ -49,14 +49,14 @@ impl Engine {
             0 => self.reset.stage = u8::from(free),
             1 => self.reset.stage = 2,
             _ => {
-                self.watch.tick_of_round = 0;
+                self.supervisor.tick_of_round = 0;
                 if !requested {
                     self.reset = Reset::default();
                     self.clear();
                     self.rest = 2;
-                    for lane in &mut self.lanes {
-                        lane.limits = [Limit::default(); 2];
-                        lane.shaper.discarded = 0;
+                    for axis_model in &mut self.axis_models {
+                        axis_model.limits = [Limit::default(); 2];
+                        axis_model.shaper.discarded = 0;
                     }
                 }
             }

@@ -3,14 +3,14 @@
 use crate::parts::shaper;
 use carrystep_core::engine::MAX_AXES;
 
-/// A change on an axis' pins. STEP always falls W clocks after it rises, so its falling edge is not
-/// reported.
+/// A change on an axis' pins. STEP always falls `step_high` clocks after it rises, so its falling
+/// edge is not reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Change {
     /// STEP rises.
     Rise,
     /// DIR changes its level.
-    Turn,
+    DirChange,
 }
 
 /// A change on the pins of one axis.
@@ -50,13 +50,13 @@ pub(super) type Record = u64;
 impl Edge {
     #[inline]
     pub(super) const fn record(self) -> Record {
-        let turn = matches!(self.change, Change::Turn) as u64;
-        self.clock << 5 | (self.axis as u64) << 2 | turn << 1 | self.backward as u64
+        let dir_change = matches!(self.change, Change::DirChange) as u64;
+        self.clock << 5 | (self.axis as u64) << 2 | dir_change << 1 | self.backward as u64
     }
 
     #[inline]
     const fn from_record(record: Record) -> Self {
-        let change = if record >> 1 & 1 == 1 { Change::Turn } else { Change::Rise };
+        let change = if record >> 1 & 1 == 1 { Change::DirChange } else { Change::Rise };
         Self {
             clock: record >> 5,
             axis: (record >> 2 & 7) as u8,
@@ -70,8 +70,8 @@ impl Edge {
 pub(super) fn changes(
     clock: u64,
     axis: u8,
-    before: &shaper::State,
-    now: &shaper::State,
+    before: &shaper::ShaperState,
+    now: &shaper::ShaperState,
     to: &mut impl Edges,
 ) {
     let backward = now.dir;
@@ -79,7 +79,7 @@ pub(super) fn changes(
         to.edge(Edge { clock, axis, change: Change::Rise, backward });
     }
     if now.dir != before.dir {
-        to.edge(Edge { clock, axis, change: Change::Turn, backward });
+        to.edge(Edge { clock, axis, change: Change::DirChange, backward });
     }
 }
 

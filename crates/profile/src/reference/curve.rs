@@ -2,7 +2,7 @@
 
 use crate::reference::error::ReferenceError;
 use crate::reference::row::{Listing, MOST_ROWS, Row};
-use crate::{Curve, Figures};
+use crate::{Curve, CurveFigures};
 use carrystep_core::ProfileKind;
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ pub struct Reference {
     kind: ProfileKind,
     ramp: bool,
     curve: Arc<dyn Curve<f64>>,
-    figures: Figures<f64>,
+    figures: CurveFigures<f64>,
 }
 
 impl Reference {
@@ -37,7 +37,7 @@ impl Reference {
     }
 
     /// The figures that a user needs to judge the profile.
-    pub fn figures(&self) -> &Figures<f64> {
+    pub fn figures(&self) -> &CurveFigures<f64> {
         &self.figures
     }
 

@@ -7,7 +7,7 @@ use crate::reference::drive::Drive;
 use crate::reference::error::{ReferenceError, in_words, rounded, up};
 use crate::reference::length::Length;
 use crate::reference::quantity::Quantity;
-use crate::{Curve, Limit, Limits, Refusal, kinds, rule};
+use crate::{Curve, Limit, LimitRefusal, Limits, kinds, rule};
 use carrystep_core::ProfileKind;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -22,11 +22,11 @@ const VALUES: RangeInclusive<f64> = 1e-9..=1e15;
 
 /// The request for a profile, without its kind.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Request {
+pub struct ReferenceRequest {
     /// The motor.
     pub drive: Drive,
     /// Whether a ramp or a whole move is requested.
-    pub travel: Travel,
+    pub travel: ReferenceDistance,
     /// Duration of the profile, seconds; `None`: as fast as the limits allow.
     pub time: Option<f64>,
     /// For a ramp the speed that it reaches, for a move the speed limit.
@@ -43,7 +43,7 @@ pub struct Request {
 
 /// The distance of a profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Travel {
+pub enum ReferenceDistance {
     /// A ramp, which ends at its top speed.
     Ramp,
     /// A move over this distance, which ends at rest.
@@ -58,9 +58,9 @@ struct Steps {
     limits: Limits<f64>,
 }
 
-impl Request {
+impl ReferenceRequest {
     /// A request without any limits.
-    pub const fn new(drive: Drive, travel: Travel) -> Self {
+    pub const fn new(drive: Drive, travel: ReferenceDistance) -> Self {
         let (time, centre) = (None, None);
         Self {
             drive,
@@ -95,7 +95,7 @@ impl Request {
             Some(distance) => self.whole(kind, distance, &steps)?,
             None => self.ramp(kind, &steps)?,
         };
-        Ok(Reference::new(kind, curve, self.travel == Travel::Ramp))
+        Ok(Reference::new(kind, curve, self.travel == ReferenceDistance::Ramp))
     }
 
     fn in_steps(&self) -> Result<Steps, ReferenceError> {
@@ -134,8 +134,8 @@ impl Request {
             return Err(ReferenceError::TopUnderStart { start: start_speed, top: speed });
         }
         let distance = match self.travel {
-            Travel::Ramp => None,
-            Travel::Move(distance) => Some(self.whole_steps(&distance)?),
+            ReferenceDistance::Ramp => None,
+            ReferenceDistance::Move(distance) => Some(self.whole_steps(&distance)?),
         };
         Ok(Steps { distance, top, limits: Limits { start_speed, speed, acceleration, jerk } })
     }
@@ -213,8 +213,8 @@ impl Request {
     }
 
     /// Converts a refusal to the unit in which the user gave the limit.
-    fn refused(&self, kind: ProfileKind, refusal: Refusal) -> ReferenceError {
-        let Refusal { limit, wanted, available, least_time } = refusal;
+    fn refused(&self, kind: ProfileKind, refusal: LimitRefusal) -> ReferenceError {
+        let LimitRefusal { limit, wanted, available, least_time } = refusal;
         let stated = match limit {
             Limit::StartSpeed => self.start_speed,
             Limit::Speed => self.speed,

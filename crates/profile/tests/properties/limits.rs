@@ -4,7 +4,7 @@ use crate::decades;
 use carrystep_profile::rule::{
     logistic, logistic_least_time, scurve, scurve_least_time, sine, sine_least_time,
 };
-use carrystep_profile::{Curve, Limit, Limits, Profile, RampedMove, Refusal};
+use carrystep_profile::{Curve, Limit, LimitRefusal, Limits, Profile, RampedMove};
 use proptest::prelude::*;
 
 /// A kind of profile, with the function that plans a move in a given time and the one that returns
@@ -17,7 +17,7 @@ trait Kind {
         distance: f64,
         time: f64,
         limits: &Limits<f64>,
-    ) -> Result<RampedMove<f64, Self::Ramp>, Refusal>;
+    ) -> Result<RampedMove<f64, Self::Ramp>, LimitRefusal>;
 }
 
 macro_rules! kind {
@@ -36,7 +36,7 @@ macro_rules! kind {
                 distance: f64,
                 time: f64,
                 limits: &Limits<f64>,
-            ) -> Result<RampedMove<f64, Self::Ramp>, Refusal> {
+            ) -> Result<RampedMove<f64, Self::Ramp>, LimitRefusal> {
                 $plan(distance, time, limits)
             }
         }
@@ -122,7 +122,7 @@ proptest! {
     fn invalid_limits_never_panic(numbers in prop::array::uniform6(any::<f64>()), at in any::<f64>()) {
         let [start_speed, speed, acceleration, jerk, distance, time] = numbers;
         let limits = Limits { start_speed, speed, acceleration, jerk };
-        fn ask<R: Curve<f64>>(answer: Result<RampedMove<f64, R>, Refusal>, at: f64) {
+        fn ask<R: Curve<f64>>(answer: Result<RampedMove<f64, R>, LimitRefusal>, at: f64) {
             match answer {
                 Ok(curve) => {
                     let _ = (curve.position(at), curve.speed(at), curve.acceleration(at), curve.jerk(at));

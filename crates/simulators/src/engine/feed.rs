@@ -24,7 +24,7 @@ struct Due {
 
 /// The segments of an axis so far.
 #[derive(Clone, Default)]
-struct Lane {
+struct AxisFeed {
     begins: Vec<u64>,
     end: u64,
     /// Time at which there was room for the last of them.
@@ -68,28 +68,34 @@ fn alone(command: Command) -> Option<Act> {
 /// The time at which there is room for each command. In a planned move the segments of all axes
 /// have the same total of ticks.
 fn due(program: &Program) -> Vec<Due> {
-    let mut lanes = vec![Lane::default(); 8];
+    let mut axis_feeds = vec![AxisFeed::default(); 8];
     let (mut started, mut started_before) = (0, false);
     let place = |command: &Command| {
         let command = *command;
         match command {
             Command::Segment { axis, segment } => {
-                let lane = &mut lanes[usize::from(axis) % 8];
-                let place = lane.begins.len();
-                lane.room = place.checked_sub(QUEUE).map_or(0, |earlier| lane.begins[earlier] + 1);
-                lane.begins.push(lane.end);
-                lane.end += u64::from(segment.ticks);
-                Due { room: lane.room, place, command }
+                let axis_feed = &mut axis_feeds[usize::from(axis) % 8];
+                let place = axis_feed.begins.len();
+                axis_feed.room =
+                    place.checked_sub(QUEUE).map_or(0, |earlier| axis_feed.begins[earlier] + 1);
+                axis_feed.begins.push(axis_feed.end);
+                axis_feed.end += u64::from(segment.ticks);
+                Due { room: axis_feed.room, place, command }
             }
             // A start can be armed as soon as the move before has begun and each axis has its first
             // segment.
             _ => {
-                let room = lanes.iter().map(|lane| lane.room).fold(started, u64::max);
-                let begins = lanes.iter().filter_map(|lane| lane.begins.last());
+                let room =
+                    axis_feeds.iter().map(|axis_feed| axis_feed.room).fold(started, u64::max);
+                let begins = axis_feeds.iter().filter_map(|axis_feed| axis_feed.begins.last());
                 started = begins.map(|begin| begin + 1).fold(started, u64::max);
                 // The first waits for full queues. A later one for its own segments only: the move before may be short.
-                let own =
-                    lanes.iter().map(|lane| lane.begins.len()).max().unwrap_or(0).saturating_sub(1);
+                let own = axis_feeds
+                    .iter()
+                    .map(|axis_feed| axis_feed.begins.len())
+                    .max()
+                    .unwrap_or(0)
+                    .saturating_sub(1);
                 let place = if started_before { own } else { usize::MAX };
                 started_before = true;
                 Due { room, place, command }

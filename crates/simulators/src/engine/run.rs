@@ -2,7 +2,7 @@
 
 use super::replay::{self, Recording};
 use super::{EngineCore, EngineHost};
-use crate::{Halt, HowFar, Level, LevelError, Stage, halted, how_far};
+use crate::{Halt, HowFar, Level, LevelError, RunStage, halted, how_far};
 use carrystep_core::engine::{Cause, EngineOutputs};
 use carrystep_core::{Command, EngineBuild, Program};
 use carrystep_hdl::EngineSim;
@@ -49,8 +49,12 @@ impl<'a> EngineJob<'a> {
             program.iter().filter(|command| matches!(command, Command::Segment { .. })).count()
                 as u64;
         let warm = u64::from(build.guard.enable + 1) * u64::from(build.guard.round);
-        let pins =
-            build.pins.iter().map(|pins| u64::from(pins.width + pins.gap)).max().unwrap_or(0);
+        let pins = build
+            .pins
+            .iter()
+            .map(|pins| u64::from(pins.step_high + pins.step_low))
+            .max()
+            .unwrap_or(0);
         let clocks = u64::from(build.timebase.clocks_per_tick());
         let max_clocks = (ticks + warm + 10 * segments + 100) * clocks + 4 * pins;
         Self { build, program, max_clocks, halt: &[], how_far: None }
@@ -94,7 +98,7 @@ impl<'a> EngineJob<'a> {
                     .map_err(|error| gateware(&error))?;
                 let begin =
                     |stage| self.how_far.into_iter().for_each(|how_far| how_far.begin(stage));
-                begin(Stage::ModelRuns);
+                begin(RunStage::ModelRuns);
                 let recording = Recording::of(
                     self.build,
                     self.host(),
@@ -102,7 +106,7 @@ impl<'a> EngineJob<'a> {
                     self.halt,
                     self.how_far,
                 );
-                begin(Stage::VerilogRuns);
+                begin(RunStage::VerilogRuns);
                 if halted(self.halt) {
                     return Err(LevelError::Halted);
                 }

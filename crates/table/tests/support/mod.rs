@@ -3,7 +3,7 @@
 #![allow(dead_code)]
 
 use carrystep_table::{
-    Kind, Mode, Motor, Options, PLAYER, Pulses, Speed, Table, TableRequest, Timer,
+    Kind, Motor, Options, PLAYER, Pulses, Speed, Table, TableRequest, Timer, TimerMode,
 };
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -160,7 +160,7 @@ pub fn lengths(table: &Table) -> Vec<u32> {
 }
 
 /// The table of the source: 500 to 13 333 Hz, 1000 entries, 16 MHz / 64.
-pub fn source(mode: Mode, entries: u32, pulses: Pulses) -> TableRequest {
+pub fn source(mode: TimerMode, entries: u32, pulses: Pulses) -> TableRequest {
     TableRequest {
         timer: Timer::avr16(16_000_000, 64, mode),
         motor: Motor { step_angle_deg: 1.8, microsteps: 8 },

@@ -1,7 +1,7 @@
 //! Writes `hdl-out/boards.md`: the resources that the gateware of each board uses, and the clock
 //! that it reaches.
 
-use super::{Built, Job, build};
+use super::{BuildJob, Built, build};
 use crate::resources::failed;
 use crate::{SynthesisError, ice40, xilinx};
 use carrystep_boards::{AllMeasured, Board, Mapped, Measured, Placed, boards};
@@ -26,11 +26,11 @@ pub fn built(board: &Board) -> Result<Built, SynthesisError> {
             .collect()
     };
     let part = gateware.part();
-    let job = Job {
+    let job = BuildJob {
         verilog: &texts(".v"),
         top: &gateware.top(),
         pcf: &texts(".pcf"),
-        part: ice40::Part { device: &part.name, package: &part.package },
+        part: ice40::NextpnrPart { device: &part.name, package: &part.package },
         clock_hz: gateware.build().timebase.clock_hz(),
     };
     build(&job, &mut |_| {})

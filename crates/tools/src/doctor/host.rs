@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// A machine.
 #[derive(Debug, Clone)]
-pub struct Host {
+pub struct Computer {
     /// Directory that contains `dev`, `sys`, `proc` and `etc`.
     pub root: PathBuf,
     /// Search path of programs, as in PATH.
@@ -27,7 +27,7 @@ pub struct User {
     pub groups: Vec<u32>,
 }
 
-impl Host {
+impl Computer {
     /// The machine on which this process runs.
     pub fn this() -> Self {
         let path = std::env::var_os("PATH").unwrap_or_default();

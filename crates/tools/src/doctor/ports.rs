@@ -1,7 +1,7 @@
 //! Finds serial ports of USB devices, and USB devices that may be a board; programmers open these.
 
-use crate::doctor::Host;
-use crate::doctor::access::{Access, access};
+use crate::doctor::Computer;
+use crate::doctor::access::{PortAccess, access};
 use carrystep_boards::boards;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -18,7 +18,7 @@ pub struct SerialPort {
     /// Boards that have this USB chip. Many other devices have the same chip.
     pub maybe: Vec<String>,
     /// Whether it may be opened.
-    pub access: Access,
+    pub access: PortAccess,
 }
 
 /// A USB device with the vendor and product of a board.
@@ -31,11 +31,11 @@ pub struct UsbDevice {
     /// Boards that have this USB chip.
     pub maybe: Vec<String>,
     /// Whether a programmer may open it.
-    pub access: Access,
+    pub access: PortAccess,
 }
 
 /// All serial ports that belong to USB devices.
-pub fn serial_ports(host: &Host) -> Vec<SerialPort> {
+pub fn serial_ports(host: &Computer) -> Vec<SerialPort> {
     let is_one = |path: &PathBuf| {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         name.starts_with("ttyUSB") || name.starts_with("ttyACM")
@@ -53,7 +53,7 @@ pub fn serial_ports(host: &Host) -> Vec<SerialPort> {
 }
 
 /// All USB devices that may be a board.
-pub fn usb_devices(host: &Host) -> Vec<UsbDevice> {
+pub fn usb_devices(host: &Computer) -> Vec<UsbDevice> {
     let device = |folder: PathBuf| {
         let usb = usb_id(&folder)?;
         let maybe = with(Some(&usb));

@@ -4,7 +4,7 @@ use super::measure::{failed, machine};
 use super::rows::ROWS;
 use crate::SynthesisError;
 use crate::ice40::{self, Size};
-use carrystep_core::link::{Line, Uart};
+use carrystep_core::link::{LineKind, Uart};
 use carrystep_verilog::{LINK_NAME, line_name, line_verilog, link_verilog};
 
 /// Budget of the link: logic cells and block RAMs.
@@ -34,5 +34,5 @@ pub fn links() -> Result<[Size; LINES.len()], SynthesisError> {
         }
         Ok(all)
     };
-    Ok([size(Line::Uart(uart))?, size(Line::Spi)?])
+    Ok([size(LineKind::Uart(uart))?, size(LineKind::Spi)?])
 }

@@ -10,11 +10,11 @@ use crate::core::{
 use crate::parameters::overrides;
 use crate::write::TextFile;
 use carrystep_boards::{Board, Clocking, Part};
-use carrystep_core::engine::Limits;
-use carrystep_core::link::{BuildId, Line, Uart, line_pins};
+use carrystep_core::engine::LimitWiring;
+use carrystep_core::link::{BuildId, LineKind, Uart, line_pins};
 use carrystep_core::ports::{Direction, Port};
 use carrystep_core::{ChosenTick, EngineBuild};
-use carrystep_files::{Machine, Source};
+use carrystep_files::{Machine, SourceText};
 use carrystep_hdl::parameters::EVENT_MEMORY;
 use minijinja::{Value, context};
 
@@ -31,10 +31,10 @@ pub struct Gateware<'a> {
     board: &'a Board,
     part: &'a Part,
     build: EngineBuild,
-    line: Line,
+    line: LineKind,
     chosen_tick: Option<ChosenTick>,
     /// The machine file. It is exported with the gateware, because moves are planned from it.
-    machine: Source,
+    machine: SourceText,
 }
 
 impl<'a> Gateware<'a> {
@@ -43,12 +43,12 @@ impl<'a> Gateware<'a> {
     /// # Errors
     /// [`ExportError`] if the board lacks pins or cannot make the clock or the baud rate, if the
     /// engine's parameters are out of range, or if the file is no valid machine file.
-    pub fn new(board: &'a Board, part: &'a Part, machine: Source) -> Result<Self, ExportError> {
+    pub fn new(board: &'a Board, part: &'a Part, machine: SourceText) -> Result<Self, ExportError> {
         let read = Machine::from_source(&machine)?;
         let (build, line) = (read.engine(), read.line()?);
         board.clock(build.timebase.clock_hz())?;
         board.carries(build.axes(), build.guard.limits)?;
-        if let Line::Uart(uart) = line {
+        if let LineKind::Uart(uart) = line {
             board.takes(uart.baud())?;
         }
         build.check().map_err(carrystep_hdl::HdlError::from)?;
@@ -64,7 +64,7 @@ impl<'a> Gateware<'a> {
     /// As [`Gateware::new`].
     pub fn shipped(board: &'a Board, part: &'a Part) -> Result<Self, ExportError> {
         let text = shipped_machine(board, &board.clocks[0])?;
-        Self::new(board, part, Source { path: "machine.toml".into(), text: text.into() })
+        Self::new(board, part, SourceText { path: "machine.toml".into(), text: text.into() })
     }
 
     /// Name of the top module, `carrystep_BOARD_top`.
@@ -90,8 +90,8 @@ impl<'a> Gateware<'a> {
     /// The link's UART; `None` if the link is an SPI.
     pub fn uart(&self) -> Option<Uart> {
         match self.line {
-            Line::Uart(uart) => Some(uart),
-            Line::Spi => None,
+            LineKind::Uart(uart) => Some(uart),
+            LineKind::Spi => None,
         }
     }
 
@@ -186,8 +186,8 @@ impl<'a> Gateware<'a> {
     /// The pins of the line module, and the ports of the board to which they are connected.
     fn line_pins(&self) -> impl Iterator<Item = (&'static Port, &'static str)> {
         let board: &[_] = match self.line {
-            Line::Uart(_) => &["uart_rx", "uart_tx"],
-            Line::Spi => &["spi_sck", "spi_cs_n", "spi_mosi", "spi_miso"],
+            LineKind::Uart(_) => &["uart_rx", "uart_tx"],
+            LineKind::Spi => &["spi_sck", "spi_cs_n", "spi_mosi", "spi_miso"],
         };
         line_pins(self.line).iter().zip(board.iter().copied())
     }
@@ -273,10 +273,10 @@ pub fn shipped_machine(board: &Board, clock: &Clocking) -> Result<String, Export
 /// Number of limit inputs at the low ends, and at the high ends.
 fn limit_bits(build: &EngineBuild) -> (usize, usize) {
     match build.guard.limits {
-        Limits::None => (0, 0),
-        Limits::One => (1, 0),
-        Limits::Each => (build.axes(), 0),
-        Limits::Pair => (build.axes(), build.axes()),
+        LimitWiring::None => (0, 0),
+        LimitWiring::One => (1, 0),
+        LimitWiring::Each => (build.axes(), 0),
+        LimitWiring::Pair => (build.axes(), build.axes()),
     }
 }
 

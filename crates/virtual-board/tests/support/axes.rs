@@ -3,19 +3,19 @@
 
 use super::random::Random;
 use carrystep_core::EngineBuild;
-use carrystep_core::engine::Limits;
+use carrystep_core::engine::LimitWiring;
 use carrystep_core::link::Uart;
 use carrystep_files::machine::End;
-use carrystep_files::{InputError, Machine, Source};
+use carrystep_files::{InputError, Machine, SourceText};
 use carrystep_link::{Clock, Exchanged, Host, Line, Patience, Timing};
 use carrystep_model::fast::Edge;
-use carrystep_virtual_board::{Board, Edges, Gateware, Switches, VerilatedBoard};
+use carrystep_virtual_board::{Edges, ModelBoard, SimulatedBoard, Switches, VerilatedBoard};
 use std::cell::{Ref, RefCell};
 use std::rc::Rc;
 
 /// Reads a machine file.
 pub fn read(text: &str) -> Result<Machine, InputError> {
-    Machine::from_source(&Source { path: "machine.toml".into(), text: text.into() })
+    Machine::from_source(&SourceText { path: "machine.toml".into(), text: text.into() })
 }
 
 /// Reads a valid machine file.
@@ -24,13 +24,13 @@ pub fn machine(text: &str) -> Machine {
 }
 
 /// A kind of board.
-pub trait Make: Gateware + Sized {
+pub trait Make: SimulatedBoard + Sized {
     fn make(build: &EngineBuild, uart: Uart) -> Self;
     /// Ticks between two updates of the switches.
     fn slice(round: u32) -> u32;
 }
 
-impl Make for Board {
+impl Make for ModelBoard {
     fn make(build: &EngineBuild, uart: Uart) -> Self {
         Self::new(build, uart)
     }
@@ -85,7 +85,7 @@ impl Switched {
 pub struct World<B> {
     board: B,
     axes: Vec<Switched>,
-    limits: Limits,
+    limits: LimitWiring,
     estop: bool,
     /// Cycles between two updates of the switches.
     slice: u64,
@@ -126,9 +126,9 @@ impl<B: Make> World<B> {
             max |= u8::from(high) << number;
         }
         let (limit_min, limit_max) = match self.limits {
-            Limits::Pair | Limits::None => (min, max),
-            Limits::Each => (min | max, 0),
-            Limits::One => (u8::from(min | max != 0), 0),
+            LimitWiring::Pair | LimitWiring::None => (min, max),
+            LimitWiring::Each => (min | max, 0),
+            LimitWiring::One => (u8::from(min | max != 0), 0),
         };
         self.board.press(Switches { estop: self.estop, limit_min, limit_max });
     }
@@ -227,7 +227,7 @@ impl<B: Make> Bench<B> {
             silence: 500,
             lost: 500,
             change: 500,
-            look: 5,
+            status_period: 5,
         };
         let id = uart(machine).build_id(&machine.engine());
         Host::connect(self.clone(), self.clone(), Some(id.0), patience).unwrap()

@@ -7,14 +7,14 @@ use std::fmt;
 
 /// All measurements, with one row per move.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct BenchReport {
     pub passed: bool,
     pub machine: String,
     /// Clock cycles per second of the fast model divided by those of Verilator, in the same run.
     pub ratio_busy: f64,
     pub ratio_typical: f64,
     pub ratio_rest: f64,
-    pub rows: Vec<Row>,
+    pub rows: Vec<BenchRow>,
     /// Time per edge on the steady move, which has the density of the typical move but few loads,
     /// ns.
     pub steady_ns_per_edge: f64,
@@ -39,7 +39,7 @@ pub struct Report {
 
 /// One move on every level.
 #[derive(Debug, Serialize)]
-pub struct Row {
+pub struct BenchRow {
     pub name: &'static str,
     pub what: &'static str,
     pub clocks: u64,
@@ -57,7 +57,7 @@ pub struct Row {
     pub ratio_wanted: f64,
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for BenchReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.machine)?;
         writeln!(f, "clock cycles a second, six axes at 48 MHz, 1 us ticks, the same pulses:\n")?;

@@ -1,6 +1,6 @@
 //! How many seconds each test took when it ran last.
 
-use crate::shell::{self, Done};
+use crate::shell::{self, TaskResult};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::fs;
@@ -28,9 +28,9 @@ const UNKNOWN: f64 = 2.0;
 
 /// Seconds of each test, by binary.
 #[derive(Debug, Default)]
-pub struct Memory(BTreeMap<String, BTreeMap<String, f64>>);
+pub struct TestTimes(BTreeMap<String, BTreeMap<String, f64>>);
 
-impl Memory {
+impl TestTimes {
     /// What the last runs left behind. A file that is not there or not understood is no memory.
     pub fn read(path: &Path) -> Self {
         let text = fs::read_to_string(path).unwrap_or_default();
@@ -59,7 +59,7 @@ impl Memory {
     ///
     /// # Errors
     /// The system's.
-    pub fn write(&self, path: &Path) -> Done {
+    pub fn write(&self, path: &Path) -> TaskResult {
         let next = path.with_extension("new");
         fs::write(&next, format!("{:#}\n", json!(self.0)))
             .and_then(|()| fs::rename(&next, path))
@@ -83,7 +83,7 @@ impl Memory {
 
 #[cfg(test)]
 mod tests {
-    use super::{Memory, UNKNOWN};
+    use super::{TestTimes, UNKNOWN};
 
     fn tests(names: &[&str]) -> Vec<String> {
         names.iter().map(|&name| name.to_owned()).collect()
@@ -91,17 +91,17 @@ mod tests {
 
     #[test]
     fn what_is_learned_is_expected() {
-        let mut memory = Memory::default();
+        let mut memory = TestTimes::default();
         memory.learn("a", &[("x".to_owned(), 7.5)]);
         let text = serde_json::json!(memory.0).to_string();
-        let memory = Memory::parse(&text).unwrap();
+        let memory = TestTimes::parse(&text).unwrap();
         assert_eq!(memory.expect("a", &tests(&["x"])), [7.5]);
         assert_eq!(memory.expect("a", &tests(&["x", "y"])), [7.5, UNKNOWN / 2.0]);
     }
 
     #[test]
     fn known_binaries_are_long_without_memory() {
-        let memory = Memory::default();
+        let memory = TestTimes::default();
         assert_eq!(
             memory.expect("carrystep-virtual-board::bad_line", &tests(&["x", "y"])),
             [100.0; 2]
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn a_damaged_memory_is_none() {
         for text in ["", "{", "[]", r#"{"a": 1}"#, r#"{"a": {"x": "long"}}"#] {
-            assert!(Memory::parse(text).is_none(), "{text}");
+            assert!(TestTimes::parse(text).is_none(), "{text}");
         }
     }
 }

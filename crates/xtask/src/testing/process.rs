@@ -22,7 +22,7 @@ pub struct Running {
 }
 
 /// A binary that has ended.
-pub struct Ended {
+pub struct EndedProcess {
     /// Its tests.
     pub counts: Counts,
     /// From its start to its end.
@@ -93,7 +93,7 @@ impl Running {
     ///
     /// # Errors
     /// The system's.
-    pub fn poll(&mut self) -> Result<Option<Ended>, String> {
+    pub fn poll(&mut self) -> Result<Option<EndedProcess>, String> {
         let status =
             self.child.try_wait().map_err(|error| format!("cannot wait for a test: {error}"))?;
         let now = self.begun.elapsed();
@@ -109,7 +109,7 @@ impl Running {
         if self.count.is_none() {
             seconds = vec![(String::new(), now.as_secs_f64())];
         }
-        Ok(Some(Ended { counts, took: now, seconds, output }))
+        Ok(Some(EndedProcess { counts, took: now, seconds, output }))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Splits the tests of long binaries, so that none of them keeps one core busy at the end.
 
 use super::binaries::Binary;
-use super::memory::Memory;
+use super::memory::TestTimes;
 
 /// A slice is split where it is expected to take more seconds than this.
 const LONGEST: f64 = 40.0;
@@ -29,7 +29,7 @@ pub struct Slice {
 }
 
 /// The slices of a binary; none where it has no tests.
-pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &Memory) -> Vec<Slice> {
+pub fn of(place: usize, binary: &Binary, tests: &[String], memory: &TestTimes) -> Vec<Slice> {
     let id = binary.id.as_str();
     let is_wide = WIDE.contains(&id);
     if !binary.lists {
@@ -75,7 +75,7 @@ fn split(seconds: &[f64], parts: usize) -> Vec<Vec<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Binary, LONGEST, Memory, TOGETHER, of, split};
+    use super::{Binary, LONGEST, TOGETHER, TestTimes, of, split};
 
     fn binary(id: &str) -> Binary {
         let (program, folder) = (id.into(), ".".into());
@@ -89,8 +89,8 @@ mod tests {
         }
     }
 
-    fn memory(id: &str, tests: &[(&str, f64)]) -> (Memory, Vec<String>) {
-        let mut memory = Memory::default();
+    fn memory(id: &str, tests: &[(&str, f64)]) -> (TestTimes, Vec<String>) {
+        let mut memory = TestTimes::default();
         let tests: Vec<(String, f64)> =
             tests.iter().map(|(name, seconds)| ((*name).to_owned(), *seconds)).collect();
         memory.learn(id, &tests);
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_binary_without_tests_has_no_slice() {
-        assert!(of(0, &binary("a"), &[], &Memory::default()).is_empty());
+        assert!(of(0, &binary("a"), &[], &TestTimes::default()).is_empty());
     }
 
     #[test]

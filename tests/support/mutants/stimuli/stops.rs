@@ -14,7 +14,7 @@ const ROUND: u64 = 64 * TICK;
 const THEN: u64 = 64_000;
 
 /// The modules on the path from a limit switch to the stop.
-const GUARDS: [&str; 6] = ["limits", "switches", "stops", "watch", "turn", "engine"];
+const GUARDS: [&str; 6] = ["limits", "switches", "stops", "supervisor", "time_slot", "engine"];
 
 pub(super) fn all(build: &EngineBuild) -> Vec<Stimulus> {
     let mut all = vec![
@@ -136,12 +136,12 @@ fn limit(build: &EngineBuild, axis: usize, max: bool, others: bool) -> Stimulus 
 /// active and later inactive, with bounces.
 fn bounces(build: &EngineBuild) -> Stimulus {
     let mut events = Events::new();
-    for (at, looks) in [(1, 7), (10, 7), (20, 4), (26, 7), (34, 12), (48, 7)] {
+    for (at, samples) in [(1, 7), (10, 7), (20, 4), (26, 7), (34, 12), (48, 7)] {
         let at = at * ROUND;
         events.extend([(at, Event::LimitMin(0x2d)), (at, Event::LimitMax(0x1b))]);
         events.extend([
-            (at + looks * ROUND, Event::LimitMin(0)),
-            (at + looks * ROUND, Event::LimitMax(0)),
+            (at + samples * ROUND, Event::LimitMin(0)),
+            (at + samples * ROUND, Event::LimitMax(0)),
         ]);
     }
     let program = [cruise(4_000, both_ways(1 << 55)), again(20_000)].concat();
@@ -397,5 +397,5 @@ fn silence(build: &EngineBuild) -> Stimulus {
         &program,
         &vec![(heard, Event::Kick), (missed + 8_000, Event::Kick)],
     )
-    .only_for(&["watch"])
+    .only_for(&["supervisor"])
 }

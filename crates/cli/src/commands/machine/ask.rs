@@ -1,8 +1,8 @@
 //! The questions of `carrystep machine new`: each is one line on standard error, and the answer is
 //! read from standard input.
 
-use super::axis::Axis;
-use super::{Clock, Wishes};
+use super::axis::AxisKeys;
+use super::{ClockSource, Wishes};
 use crate::commands::boards;
 use crate::failure::Failure;
 use carrystep_files::BigDecimal;
@@ -42,28 +42,28 @@ pub fn complete(wishes: &mut Wishes) -> Result<(), Failure> {
                 Err("a name is expected".to_owned())
             }
         })?;
-        wishes.axes = names.split_whitespace().map(Axis::named).collect();
+        wishes.axes = names.split_whitespace().map(AxisKeys::named).collect();
     }
     wishes.axes.iter_mut().try_for_each(|axis| of_axis(axis, new))
 }
 
 /// Parses a board's name or a clock in MHz.
-fn clock(text: &str) -> Result<Clock, String> {
+fn clock(text: &str) -> Result<ClockSource, String> {
     let hz = |mhz: BigDecimal| {
         let hz = mhz * BigDecimal::from(1_000_000);
         hz.is_integer().then(|| hz.normalized().to_plain_string().parse().ok()).flatten()
     };
     match carrystep_files::decimal::parse(text) {
-        Some(mhz) => {
-            hz(mhz).map(Clock::Hz).ok_or_else(|| format!("{text} MHz is no whole number of Hz"))
-        }
+        Some(mhz) => hz(mhz)
+            .map(ClockSource::Hz)
+            .ok_or_else(|| format!("{text} MHz is no whole number of Hz")),
         None => boards::find(text)
-            .map(|board| Clock::Board(Box::new(board)))
+            .map(|board| ClockSource::Board(Box::new(board)))
             .map_err(|failure| failure.message()),
     }
 }
 
-fn of_axis(axis: &mut Axis, new: bool) -> Result<(), Failure> {
+fn of_axis(axis: &mut AxisKeys, new: bool) -> Result<(), Failure> {
     let name = axis.name.clone();
     if new {
         put(axis, "unit", &format!("Axis {name}: unit of length"), Some("mm"))?;
@@ -94,7 +94,12 @@ fn of_axis(axis: &mut Axis, new: bool) -> Result<(), Failure> {
 }
 
 /// Asks until the answer is valid for this key.
-fn put(axis: &mut Axis, key: &str, question: &str, default: Option<&str>) -> Result<(), Failure> {
+fn put(
+    axis: &mut AxisKeys,
+    key: &str,
+    question: &str,
+    default: Option<&str>,
+) -> Result<(), Failure> {
     let mut done = axis.clone();
     ask(question, default, |text| {
         let mut trial = axis.clone();

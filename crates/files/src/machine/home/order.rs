@@ -1,7 +1,7 @@
 //! `home_order`: the groups of axes that home one after the other; the axes of a group home
 //! together.
 
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::machine::Axis;
 use toml::Spanned;
 
@@ -10,7 +10,7 @@ pub(in crate::machine) type RawOrder = Spanned<Vec<Vec<Spanned<String>>>>;
 
 /// The order of a file. It must name every axis that homes exactly once.
 pub(super) fn of(
-    source: &Source,
+    source: &SourceText,
     axes: &[Axis],
     order: RawOrder,
 ) -> Result<Vec<Vec<usize>>, InputError> {

@@ -2,14 +2,14 @@
 
 use super::MOST_STEPS;
 use crate::decimal;
-use crate::error::{InputError, Source};
+use crate::error::{InputError, SourceText};
 use crate::machine::Axis;
 use crate::number::exact;
 use toml::Spanned;
 
 /// Lowest and highest machine coordinate of an axis, steps.
 pub(super) fn of(
-    source: &Source,
+    source: &SourceText,
     axis: &Axis,
     travel: &Spanned<Vec<Spanned<f64>>>,
 ) -> Result<[i64; 2], InputError> {

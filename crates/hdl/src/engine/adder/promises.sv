@@ -2,7 +2,7 @@
 // slot are those of the words that the memory delivers in this time slot.
 //
 //   parameters   `DUT: the name of the exported adder
-//   assumptions  The beats of a time slot follow one another (proved in turn/promises.sv). From
+//   assumptions  The beats of a time slot follow one another (proved in time_slot/promises.sv). From
 //                beat 6 on, counts, lost, up, down, wipe and forgets do not change within a time slot.
 //
 // The memory delivers the low halves of A, J, V and P first and their high halves later. This file

@@ -3,7 +3,7 @@
 //
 //   parameters   `DUT: the name of the exported queue
 //   assumptions  The beats of a time slot follow one another and belong to one axis (proved in
-//                turn/promises.sv). The inputs for starts and stops do not change within a time
+//                time_slot/promises.sv). The inputs for starts and stops do not change within a time
 //                slot; a word is taken only in beat 7 and if there is room; an axis starts only if
 //                a segment waits (proved in engine/promises.sv). In any time there are at most
 //                three pulses more than time slots, and at most seven discarded steps are not
@@ -45,8 +45,8 @@ module promises (
     // ---- The beats of a time slot, and the inputs that do not change within it.
 
     wire mine = axis == who;
-    wire in_turn = beat[12:0] != 0;
-    wire looks = mine & beat[4];     // the queue compares the pulses with the counter in memory
+    wire in_time_slot = beat[12:0] != 0;
+    wire samples = mine & beat[4];     // the queue compares the pulses with the counter in memory
     wire asked = mine & beat[12:5] != 0;   // `up`, `down` and `lost` give the result
     wire ends = mine & beat[12];
     reg first_clock = 1, was_running = 0;
@@ -60,9 +60,9 @@ module promises (
     end
     always_comb begin
         assume ((beat[12:0] & (beat[12:0] - 1)) == 0 && beat[12:1] == was_beat[11:0]);
-        assume (first_clock ? axis == 0 && !in_turn : axis == was_next);
+        assume (first_clock ? axis == 0 && !in_time_slot : axis == was_next);
         assume (beat[11:0] == 0 || axis_next == axis);
-        assume (!was_beat[12] || axis != was_axis || !in_turn);
+        assume (!was_beat[12] || axis != was_axis || !in_time_slot);
         assume (was_beat[11:0] == 0 || {starts, halted, ramp, clear} == {was_starts, was_halted, was_ramp, was_clear});
         assume (!clear || halted);
     end
@@ -76,7 +76,7 @@ module promises (
     reg takes = 0;                   // a word has been taken in this time slot
     reg [2:0] due = 0;               // the number of the word that must come next
     wire commit = put_word == due && due == 7;
-    wire begins = mine & in_turn & starts;
+    wire begins = mine & in_time_slot & starts;
     wire [31:0] begun_now = begun + begins;
     wire [31:0] waiting = committed - begun_now;
     wire [7:0] place = 8'd1 << (committed[2:0] + 3'd1);
@@ -122,14 +122,14 @@ module promises (
     wire [31:0] told_then = up ? told + 1 : down ? told - 1 : told;
     wire [31:0] written_off_then = written_off + lost;
     always_comb begin
-        assume (!mine || !in_turn || {losses, pulses} == {given_up[2:0], at[2:0]});
+        assume (!mine || !in_time_slot || {losses, pulses} == {given_up[2:0], at[2:0]});
         assume (!rises || spare != 0);
         assume (!discards || given_up - written_off != 7);
     end
     always @(posedge clock) begin
         at <= !rises ? at : rises_back ? at - 1 : at + 1;
         given_up <= given_up + discards;
-        spare <= spare - rises + (looks & spare != 3);
+        spare <= spare - rises + (samples & spare != 3);
         if (ends) {told, written_off} <= {told_then, written_off_then};
     end
     wire signed [31:0] behind = at - told;
@@ -143,24 +143,24 @@ module promises (
         promise_6_words_in_order: assert (!mine || misplaced == (take && put_word != due));
         promise_6_misplaced_is_taken: assert (!misplaced || take);
         promise_6_never_overtaken: assert (waiting <= 7 && committed - begun <= 7);
-        promise_6_in_order: assert (!mine || !in_turn || live == begun_now[2:0] && fresh == committed[2:0] + 3'd1);
-        promise_6_full: assert (!mine || !in_turn || full == (waiting == 7));
-        promise_6_room: assert (!mine || !in_turn || room == 7 - waiting);
-        promise_6_empty: assert (!mine || !in_turn || empty == (waiting == 0));
-        promise_6_runs_as_told: assert (!mine || !in_turn || {running, moves, too_fast} == {on, fine, on & !fine});
+        promise_6_in_order: assert (!mine || !in_time_slot || live == begun_now[2:0] && fresh == committed[2:0] + 3'd1);
+        promise_6_full: assert (!mine || !in_time_slot || full == (waiting == 7));
+        promise_6_room: assert (!mine || !in_time_slot || room == 7 - waiting);
+        promise_6_empty: assert (!mine || !in_time_slot || empty == (waiting == 0));
+        promise_6_runs_as_told: assert (!mine || !in_time_slot || {running, moves, too_fast} == {on, fine, on & !fine});
         promise_6_goes_on: assert (!ends || goes_on == (fine & !rests));
         promise_6_discarded_are_written_off: assert (!asked || lost == (was_unseen && !on));
         promise_6_none_written_off_twice: assert (given_up - written_off <= 7);
 
-        promise_7_never_far_behind: assert (!looks || behind >= -3 && behind <= 3);
+        promise_7_never_far_behind: assert (!samples || behind >= -3 && behind <= 3);
         promise_7_told_as_pulsed: assert (!asked || {up, down} == {was_behind > 0, was_behind < 0});
 
         promise_10_dry_is_told: assert (!ends || dry == (fine & !ramp & ended & !mark & waiting == 0));
-        promise_10_ramp_as_defined: assert (!mine || !in_turn || slows == (ramp & known) && steady == (ramp & !known)
+        promise_10_ramp_as_defined: assert (!mine || !in_time_slot || slows == (ramp & known) && steady == (ramp & !known)
             && (!slows || upward == known_back));
 
-        promise_12_only_its_own_turn: assert (control == was_control || was_ends);
-        promise_12_no_word_used_that_was_written: assert (!was_clash || !in_turn);
+        promise_12_only_its_own_time_slot: assert (control == was_control || was_ends);
+        promise_12_no_word_used_that_was_written: assert (!was_clash || !in_time_slot);
         promise_12_no_mark_read_as_it_is_written: assert (!mark_writes || mark_write_at != mark_read_at);
 
         promise_13_inactive: assert (!first_clock || {up, down, lost} == 0);
@@ -172,21 +172,21 @@ module promises (
     always @(posedge clock) begin
         was_ends <= ends;
         was_control <= control;
-        if (looks) begin
+        if (samples) begin
             was_unseen <= given_up != written_off;
             was_behind <= behind;
         end
     end
 
-    // ---- The invariants that make the promises inductive. `look` is an additional read port for
+    // ---- The invariants that make the promises inductive. `sample` is an additional read port for
     // the words of `who` in memory.
 
     wire [18:0] control;
     wire [7:0] lasts;
-    look #("\\dut.control.words", 3, 19) at_control (1'b0, 1'b1, who, control);
+    memory_probe #("\\dut.control.words", 3, 19) at_control (1'b0, 1'b1, who, control);
     genvar slot;
     generate for (slot = 0; slot < 8; slot = slot + 1) begin : each
-        look #("\\dut.lasts.words", 6, 1) at_lasts (1'b0, 1'b1, {who, slot[2:0]}, lasts[slot]);
+        memory_probe #("\\dut.lasts.words", 6, 1) at_lasts (1'b0, 1'b1, {who, slot[2:0]}, lasts[slot]);
     end endgenerate
 
     (* inside = "dut.word" *) wire [18:0] word;
@@ -226,11 +226,11 @@ module promises (
     // time slots follow one another as fast as the assumptions permit.
 
 `ifndef INVARIANTS
-    reg [3:0] clock_of_turn = 14;
-    always @(posedge clock) clock_of_turn <= clock_of_turn >= 13 ? 0 : clock_of_turn + 1;
+    reg [3:0] clock_of_time_slot = 14;
+    always @(posedge clock) clock_of_time_slot <= clock_of_time_slot >= 13 ? 0 : clock_of_time_slot + 1;
     always_comb begin
-        assume (who == 0 && beat == (clock_of_turn < 13 ? 17'd1 << clock_of_turn : 0));
-        assume (axis == (clock_of_turn == 13));
+        assume (who == 0 && beat == (clock_of_time_slot < 13 ? 17'd1 << clock_of_time_slot : 0));
+        assume (axis == (clock_of_time_slot == 13));
     end
 `endif
 

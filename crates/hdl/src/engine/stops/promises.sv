@@ -12,8 +12,8 @@
 module promises (
     input wire clock,
     input wire strobe,
-    input wire turn_ends,
-    input wire [`AXES-1:0] lane,
+    input wire time_slot_ends,
+    input wire [`AXES-1:0] axis_one_hot,
     input wire runs,
     input wire too_fast,
     input wire limit,
@@ -38,7 +38,7 @@ module promises (
     `DUT dut (.*);
 
     always_comb begin
-        assume (!strobe || !turn_ends);
+        assume (!strobe || !time_slot_ends);
         assume (!halted || !runs);
         assume (!completes || strobe);
     end
@@ -49,15 +49,15 @@ module promises (
     reg tick_found = 0, tick_freezes = 0, tick_ran = 0;
     reg [2:0] tick_cause = 0;
     reg [`AXES-1:0] tick_axis = 0;
-    wire finds_now = turn_ends & (too_fast | limit | dry);
+    wire finds_now = time_slot_ends & (too_fast | limit | dry);
     always @(posedge clock) begin
         if (strobe) {tick_found, tick_freezes, tick_ran} <= 0;
-        if (turn_ends && runs) tick_ran <= 1;
-        if (turn_ends && (too_fast || limit && `LIMIT_FREEZES)) tick_freezes <= 1;
+        if (time_slot_ends && runs) tick_ran <= 1;
+        if (time_slot_ends && (too_fast || limit && `LIMIT_FREEZES)) tick_freezes <= 1;
         if (finds_now && !tick_found) begin
             tick_found <= 1;
             tick_cause <= too_fast ? OVERSPEED : limit ? LIMITED : UNDERRUN;
-            tick_axis <= lane;
+            tick_axis <= axis_one_hot;
         end
     end
 

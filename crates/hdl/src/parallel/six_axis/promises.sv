@@ -33,7 +33,7 @@ module promises (
     (* inside = "dut.axis_*.in_flight" *) wire [5:0] in_flight;
     (* inside = "dut.axis_*.startable" *) wire [5:0] startable;
     (* inside = "dut.axis_*.sequencer_load" *) wire [5:0] load;
-    (* inside = "dut.shaper_*.owed" *) wire [5:0] owed;
+    (* inside = "dut.shaper_*.held_back" *) wire [5:0] held_back;
 
     (* inside = "dut.axis_*.strobe" *) wire [5:0] strobes;
     (* inside = "dut.axis_*.phase_start" *) wire [5:0] phase_starts;
@@ -97,7 +97,7 @@ module promises (
         promise_6_start_on_one_tick: assert (!started || strobe && (mask & ~load) == 0);
         promise_6_no_start_is_missed: assert (started == (expected && !fault && strobe && (mask & ~startable) == 0));
 
-        promise_8_idle: assert (idle == (!armed && drained == 6'h3f && owed == 0 && step == 0));
+        promise_8_idle: assert (idle == (!armed && drained == 6'h3f && held_back == 0 && step == 0));
 
         promise_12_any_fault_stops_all: assert (fault == (protocol || {overrun, overspeed, underrun} != 0));
         promise_12_all_at_once: assert (axis_frozen == {6{fault}} && shaper_frozen == {6{fault}});

@@ -64,7 +64,7 @@ pub struct Homing<'a> {
 
 /// The stage of homing that an axis is in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
+pub enum HomingStage {
     /// It moves away from its switch first.
     MoveOff,
     /// It searches the switch at the seek speed.
@@ -77,7 +77,7 @@ pub enum Stage {
     PullOff,
 }
 
-impl fmt::Display for Stage {
+impl fmt::Display for HomingStage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::MoveOff => "moves off",

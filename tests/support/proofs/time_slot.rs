@@ -1,8 +1,8 @@
-//! The proof of the schedule of turns.
+//! The proof of the schedule of time slots.
 
 use super::builds::{BuiltEngine, axes, small_engine};
 use super::{Bug, Case, Promises, Proof};
-use carrystep_core::engine::{EngineBuild, Limits};
+use carrystep_core::engine::{EngineBuild, LimitWiring};
 
 const BUGS: &[Bug] = &[
     Bug {
@@ -16,14 +16,14 @@ const BUGS: &[Bug] = &[
         becomes: "beats <= shifted & 17'h1ffff >> 1;",
     },
     Bug {
-        breaks: "promise_12_whose_turn",
+        breaks: "promise_12_whose_time_slot",
         text: "number + ONE_AXIS",
         becomes: "number + ONE_AXIS + ONE_AXIS",
     },
     Bug {
-        breaks: "promise_12_lane_is_the_axis",
-        text: "(lanes << BY_ONE) | (lanes >> TO_TOP)",
-        becomes: "lanes",
+        breaks: "promise_12_one_hot_is_the_axis",
+        text: "(one_hot << BY_ONE) | (one_hot >> TO_TOP)",
+        becomes: "one_hot",
     },
     Bug {
         breaks: "promise_12_one_after_the_other",
@@ -36,17 +36,17 @@ const BUGS: &[Bug] = &[
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} clocks", build.timebase.clocks_per_tick()),
-        dut: "carrystep_turn".into(),
+        dut: "carrystep_time_slot".into(),
         parameters: Vec::new(),
         verilog,
         numbers: vec![axes(&build), ("CLOCKS", build.timebase.clocks_per_tick().to_string())],
     };
     Proof {
-        module: "turn",
+        module: "time_slot",
         promises: Promises {
-            text: include_str!("../../../crates/hdl/src/engine/turn/promises.sv"),
+            text: include_str!("../../../crates/hdl/src/engine/time_slot/promises.sv"),
         },
-        cases: [small_engine(6, 96, 16, Limits::Pair), built.clone()]
+        cases: [small_engine(6, 96, 16, LimitWiring::Pair), built.clone()]
             .into_iter()
             .map(case)
             .collect(),

@@ -42,7 +42,7 @@ struct Passage<'a> {
 /// Passes an axis through a window and appends its edges to `edges`. The error is the cycle of a
 /// fault.
 pub(super) fn pass(
-    lane: &mut Moving,
+    moving: &mut Moving,
     axis: u8,
     window: Window,
     timebase: &Timebase,
@@ -50,27 +50,27 @@ pub(super) fn pass(
     edges: &mut Vec<Record>,
 ) -> Result<(), FaultIn> {
     let mut passage = Passage {
-        pins: Pins::new(axis, pins, lane.shaper, lane.emitted.sign, window.from, edges),
+        pins: Pins::new(axis, pins, moving.shaper, moving.emitted.sign, window.from, edges),
         window,
         clocks_per_tick: timebase.clocks_per_tick(),
         clocks_per_phase: timebase.clocks_per_phase(),
         phase_bits: timebase.phase_bits(),
     };
     let strobes = ((window.to - window.tick) / u64::from(passage.clocks_per_tick)) as u32;
-    passage.request(lane.emitted, 0)?;
+    passage.request(moving.emitted, 0)?;
     if strobes > 0 {
-        passage.emit(lane.computed, 1)?;
+        passage.emit(moving.computed, 1)?;
     }
     // The results of the last two ticks stay in the pipeline.
     let ahead = strobes.saturating_sub(2);
-    passage.add(lane, ahead)?;
+    passage.add(moving, ahead)?;
     for strobe in ahead..strobes {
-        passage.tick(lane, strobe)?;
+        passage.tick(moving, strobe)?;
     }
     if strobes > 1 {
-        passage.emit(lane.emitted, strobes)?;
+        passage.emit(moving.emitted, strobes)?;
     }
-    lane.shaper = passage.pins.finish(window.to)?;
+    moving.shaper = passage.pins.finish(window.to)?;
     Ok(())
 }
 
@@ -99,37 +99,37 @@ impl Passage<'_> {
     }
 
     /// Executes the strobe at the end of tick `n`.
-    fn tick(&mut self, lane: &mut Moving, n: u32) -> Result<(), FaultIn> {
-        let Cubic { v, a, j } = lane.cubic;
+    fn tick(&mut self, moving: &mut Moving, n: u32) -> Result<(), FaultIn> {
+        let Cubic { v, a, j } = moving.cubic;
         let Some(faster) = v.checked_add(a).filter(|&faster| faster != i64::MIN) else {
             return Err(FaultIn(self.cycle(n + 1) - 1));
         };
-        let step = crosses(lane.p, v)
-            .then(|| Step { backward: v < 0, phase: bisect(lane.p, v, self.phase_bits) });
-        lane.emitted = lane.computed;
-        lane.computed = Stage { step, sign: v.signum() as i8 };
-        lane.p = lane.p.wrapping_add(v.cast_unsigned());
-        lane.cubic = Cubic { v: faster, a: a.wrapping_add(j), j };
+        let step = crosses(moving.p, v)
+            .then(|| Step { backward: v < 0, phase: bisect(moving.p, v, self.phase_bits) });
+        moving.emitted = moving.computed;
+        moving.computed = Stage { step, sign: v.signum() as i8 };
+        moving.p = moving.p.wrapping_add(v.cast_unsigned());
+        moving.cubic = Cubic { v: faster, a: a.wrapping_add(j), j };
         Ok(())
     }
 
     /// Executes the first `ticks` strobes. All of their steps reach the pins within the window.
-    fn add(&mut self, lane: &mut Moving, ticks: u32) -> Result<(), FaultIn> {
-        if !lane.cubic.stays_in_range(ticks) {
+    fn add(&mut self, moving: &mut Moving, ticks: u32) -> Result<(), FaultIn> {
+        if !moving.cubic.stays_in_range(ticks) {
             for n in 0..ticks {
-                self.tick(lane, n)?;
-                self.emit(lane.computed, n + 2)?;
+                self.tick(moving, n)?;
+                self.emit(moving.computed, n + 2)?;
             }
             return Ok(());
         }
         let mut done = 0;
         while done < ticks {
-            let cubic = lane.cubic;
+            let cubic = moving.cubic;
             let length = cubic.same_sign(ticks - done);
             self.pins.sign(self.cycle(done + 2), cubic.v.signum() as i8)?;
-            self.requests(Stretch::new(lane.p, cubic, length), done, cubic.v < 0)?;
-            lane.p = lane.p.wrapping_add(cubic.distance_wrapping(length));
-            lane.cubic = cubic.after(length);
+            self.requests(Stretch::new(moving.p, cubic, length), done, cubic.v < 0)?;
+            moving.p = moving.p.wrapping_add(cubic.distance_wrapping(length));
+            moving.cubic = cubic.after(length);
             done += length;
         }
         Ok(())

@@ -3,8 +3,8 @@
 //
 //   parameters   AXES: number of axes
 //                `DUT: the name of the exported module `homes`
-//   assumptions  A time slot belongs to one axis, whose bit is set in `lane`, and two time slots do
-//                not end in adjacent clocks (proved in turn/promises.sv). Hits occur in the last
+//   assumptions  A time slot belongs to one axis, whose bit is set in `axis_one_hot`, and two time slots do
+//                not end in adjacent clocks (proved in time_slot/promises.sv). Hits occur in the last
 //                beat of a time slot (proved in limits/promises.sv).
 //
 // All statements are about one axis, `who`; the solver may choose any.
@@ -13,7 +13,7 @@ module promises (
     input wire clock,
     input wire set,
     input wire [`AXES-1:0] mask,
-    input wire turn_ends,
+    input wire time_slot_ends,
     input wire [2:0] axis,   // the axis of the time slot
     input wire hit,
     input wire goes_on,
@@ -21,28 +21,28 @@ module promises (
 );
     (* anyconst *) reg [2:0] who;
 
-    wire [`AXES-1:0] lane = 32'd1 << axis;
+    wire [`AXES-1:0] axis_one_hot = 32'd1 << axis;
     wire [`AXES-1:0] axes;
     wire waits, slows;
     `DUT dut (.*);
 
-    reg first_clock = 1, was_turn_ends = 0;
+    reg first_clock = 1, was_time_slot_ends = 0;
     reg [2:0] was_axis = 0;
     always @(posedge clock) begin
         first_clock <= 0;
-        {was_turn_ends, was_axis} <= {turn_ends, axis};
+        {was_time_slot_ends, was_axis} <= {time_slot_ends, axis};
     end
     wire [2:0] follower = was_axis == `AXES - 1 ? 3'd0 : was_axis + 3'd1;
     always_comb begin
-        assume (who < `AXES && (!hit || turn_ends));
-        assume (axis == (first_clock ? 3'd0 : was_turn_ends ? follower : was_axis));
-        assume (!turn_ends || !was_turn_ends && !first_clock);
+        assume (who < `AXES && (!hit || time_slot_ends));
+        assume (axis == (first_clock ? 3'd0 : was_time_slot_ends ? follower : was_axis));
+        assume (!time_slot_ends || !was_time_slot_ends && !first_clock);
     end
 
     // ---- Homing as docs/clock-by-clock.md specifies it.
 
     reg waiting = 0, slowing = 0;
-    wire ends = turn_ends & axis == who;
+    wire ends = time_slot_ends & axis == who;
     wire caught = ends & hit & waiting;
     always @(posedge clock) begin
         waiting <= resetting ? 0 : set ? (mask >> who) & 1 : waiting & !caught;
@@ -52,10 +52,10 @@ module promises (
     // ---- The promises. `slows` is a register, which follows one clock after the end of a time
     // slot. With one axis, that clock belongs to this axis again and is left out (`known`).
 
-    wire known = `AXES > 1 || !was_turn_ends;
+    wire known = `AXES > 1 || !was_time_slot_ends;
     always_comb begin
         promise_12_waits_as_asked: assert (((axes >> who) & 1) == waiting);
-        promise_12_waits_in_its_turn: assert (axis != who || waits == waiting);
+        promise_12_waits_in_its_time_slot: assert (axis != who || waits == waiting);
         promise_12_slows_after_its_own_hit: assert (axis != who || !known || slows == slowing);
         promise_13_inactive: assert (!first_clock || !slows && axes == 0);
     end

@@ -16,7 +16,7 @@ use rust_hdl::prelude::*;
 
 /// The shift register for CRCs and words.
 #[derive(LogicBlock, Default)]
-pub struct Check {
+pub struct CrcUnit {
     /// The clock.
     pub clock: Input<Clock>,
     /// Loads the register: with all ones, or with `word` if `feed` is set.
@@ -47,7 +47,7 @@ pub struct Check {
     polynomial: Literal<32, { carrystep_core::link::CRC_POLYNOMIAL as u64 }>,
 }
 
-impl Logic for Check {
+impl Logic for CrcUnit {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, sum, count);
@@ -82,6 +82,6 @@ mod tests {
 
     #[test]
     fn check_synthesizes() {
-        assert_synthesizes(Check::default(), "carrystep_check");
+        assert_synthesizes(CrcUnit::default(), "carrystep_crc");
     }
 }

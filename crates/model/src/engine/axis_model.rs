@@ -4,7 +4,7 @@
 use crate::parts::phase::{bisect, crosses};
 use crate::parts::shaper;
 use crate::parts::stage::{Stage, Step};
-use carrystep_core::engine::{Cause, Guard, Limits, QUEUE, SEGMENT_WORDS};
+use carrystep_core::engine::{Cause, Guard, LimitWiring, QUEUE, SEGMENT_WORDS};
 use std::collections::VecDeque;
 
 /// A segment in the format of the queue: `v`, `a`, `j` in 2^-64 step per tick, tick^2, tick^3.
@@ -36,7 +36,7 @@ pub(super) struct Limit {
 
 /// One sample of a limit input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Look {
+pub(super) struct LimitSample {
     /// True for `limit_max`, false for `limit_min`.
     pub(super) max: bool,
     /// The sampled level; true is active.
@@ -57,7 +57,7 @@ pub(super) struct Homing {
 /// One axis: its accumulator, its queue, its limits, the stages behind the accumulator and the step
 /// shaper.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Lane {
+pub(super) struct AxisModel {
     pub(super) p: u64,
     pub(super) running: Option<Queued>,
     /// The sum V + A of the running segment did not fit 64 bits.
@@ -76,7 +76,7 @@ pub(super) struct Lane {
     pub(super) limits: [Limit; 2],
     pub(super) computed: Stage,
     pub(super) emitted: Stage,
-    pub(super) shaper: shaper::State,
+    pub(super) shaper: shaper::ShaperState,
 }
 
 /// The conditions of a tick that are the same for all axes.
@@ -88,8 +88,8 @@ pub(super) struct Tick<'a> {
     pub(super) ramp: bool,
 }
 
-impl Lane {
-    pub(super) fn new(p: u64, stop: u64, shaper: shaper::State) -> Self {
+impl AxisModel {
+    pub(super) fn new(p: u64, stop: u64, shaper: shaper::ShaperState) -> Self {
         Self {
             p,
             running: None,
@@ -114,7 +114,11 @@ impl Lane {
     }
 
     /// Returns the axis after one tick, and the cause of a stop if the tick finds one.
-    pub(super) fn tick(&self, tick: Tick<'_>, look: Option<Look>) -> (Self, Option<Cause>) {
+    pub(super) fn tick(
+        &self,
+        tick: Tick<'_>,
+        sample: Option<LimitSample>,
+    ) -> (Self, Option<Cause>) {
         let mut next = self.clone();
         next.emitted = self.computed;
         next.computed = Stage::default();
@@ -127,9 +131,9 @@ impl Lane {
             Some(segment) => found = self.add(&mut next, segment, tick),
             None => {}
         }
-        if let Some(look) = look {
+        if let Some(sample) = sample {
             let sign = next.computed.sign;
-            let hit = next.limits[usize::from(look.max)].hit(look, tick, sign);
+            let hit = next.limits[usize::from(sample.max)].hit(sample, tick, sign);
             if hit && !self.homing.meets && !self.homing.slows {
                 found = Some(Cause::Limit);
             }
@@ -143,11 +147,11 @@ impl Lane {
     }
 
     /// True if the limit of the axis stops it in this tick.
-    pub(super) fn hits(&self, tick: Tick<'_>, look: Look) -> bool {
+    pub(super) fn hits(&self, tick: Tick<'_>, sample: LimitSample) -> bool {
         let fits = |segment: &Queued| !tick.halted && !self.unfit && segment.v != i64::MIN;
         let sign = self.running.filter(fits).map_or(0, |segment| segment.v.signum() as i8);
-        let mut limit = self.limits[usize::from(look.max)];
-        limit.hit(look, tick, sign)
+        let mut limit = self.limits[usize::from(sample.max)];
+        limit.hit(sample, tick, sign)
     }
 
     /// Executes the additions of one tick. `next` must be at rest when the function is called.
@@ -192,17 +196,17 @@ impl Lane {
 
 impl Limit {
     /// Takes one sample in a tick whose V has this sign; returns true if the limit stops the axis.
-    fn hit(&mut self, look: Look, tick: Tick<'_>, sign: i8) -> bool {
-        let became = self.look(look.pin, tick.guard.debounce);
+    fn hit(&mut self, sample: LimitSample, tick: Tick<'_>, sign: i8) -> bool {
+        let became = self.sample(sample.pin, tick.guard.debounce);
         match tick.guard.limits {
-            Limits::None => false,
-            Limits::Pair => self.active && sign == if look.max { 1 } else { -1 },
-            Limits::Each | Limits::One => became && sign != 0,
+            LimitWiring::None => false,
+            LimitWiring::Pair => self.active && sign == if sample.max { 1 } else { -1 },
+            LimitWiring::Each | LimitWiring::One => became && sign != 0,
         }
     }
 
     /// Takes one sample; returns true if the debounced state becomes active with it.
-    fn look(&mut self, pin: bool, debounce: u32) -> bool {
+    fn sample(&mut self, pin: bool, debounce: u32) -> bool {
         if pin == self.active {
             self.against = 0;
             return false;

@@ -1,4 +1,4 @@
-//! The link machine, a small processor in the gateware: its instructions, as they are encoded in
+//! The link processor, a small processor in the gateware: its instructions, as they are encoded in
 //! its program memory.
 //!
 //! At usual baud rates a byte arrives about every hundred clocks, which is time enough for a
@@ -41,7 +41,7 @@ pub const UNLESS: Code = 1 << 11;
 
 /// Source of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum ValueSource {
     /// The data memory, at the operand's address.
     Data = 0,
     /// The data memory, at address X.
@@ -56,9 +56,9 @@ pub enum Source {
     Engine = 5,
 }
 
-/// Item of [`Source::Engine`]: byte 3 of an answer.
+/// Item of [`ValueSource::Engine`]: byte 3 of an answer.
 pub const STATE: u8 = 0;
-/// Item: the free queue space that the axis of A reported in its last turn.
+/// Item: the free queue space that the axis of A reported in its last time slot.
 pub const ROOM: u8 = 1;
 /// Item: the mask of the axes that caused a stop; 0 without a fault.
 pub const CULPRITS: u8 = 2;
@@ -99,7 +99,7 @@ pub const CRC_FEED: Code = 1 << 3;
 /// X.
 pub const CRC_BEGIN: Code = 1 << 4;
 /// The instruction lasts until the engine accepts what it offers, or has a fault. If it offers
-/// nothing, it lasts until the scan of all axes' items ends ([`SCAN`] turns).
+/// nothing, it lasts until the scan of all axes' items ends ([`SCAN`] time slots).
 pub const WAIT: Code = 1 << 5;
 /// With [`WAIT`]: the instruction ends as soon as the axis of A has reported its free queue space,
 /// or the scan ends.
@@ -121,7 +121,7 @@ pub const STARTS: Code = 1 << 10;
 /// number of the word.
 pub const PUTS: Code = 1 << 11;
 
-/// Number of turns in which every item of every axis is read once.
+/// Number of time slots in which every item of every axis is read once.
 pub const SCAN: u32 = 32;
 
 /// Address of a request in the data memory: its sequence number, followed by its address byte.

@@ -4,13 +4,13 @@
 //! Its memories are synchronous: the word of an address is output one clock later. A word that is
 //! written in the same clock is output with its old value.
 
-use super::check::{Check, Told};
+use super::crc::{CrcUnit, Told};
 use carrystep_core::engine::EngineOutputs;
 use carrystep_core::link::Image;
-use carrystep_core::link::machine::{
+use carrystep_core::link::processor::{
     ACTS, BROKEN, CLEARING, CONTROL, CRC_BEGIN, CRC_FEED, CRC_STEP, CULPRITS, Code, Condition,
-    FOR_ROOM, GOES, HOMING, INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, Source,
-    TAX, UNLESS, WAIT, XOR,
+    FOR_ROOM, GOES, HOMING, INDEXED, INX, JUMPS, KICK, PUTS, ROOM, SETS, STARTS, STORES, TAX,
+    UNLESS, ValueSource, WAIT, XOR,
 };
 use carrystep_core::link::registers::{CONTROL_ENABLE, CONTROL_STOP};
 use std::sync::Arc;
@@ -22,7 +22,7 @@ const SIZE: usize = 256;
 const EXECUTE: u8 = 2;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Machine {
+pub(super) struct LinkProcessor {
     program: Arc<[Code]>,
     data: [u8; SIZE],
     ring: [u8; SIZE],
@@ -30,7 +30,7 @@ pub(super) struct Machine {
     code: Code,
     read: u8,
     received: u8,
-    check: Check,
+    crc: CrcUnit,
     stage: u8,
     pc: u8,
     a: u8,
@@ -87,7 +87,7 @@ pub(super) enum Waits {
     ToSend,
 }
 
-impl Machine {
+impl LinkProcessor {
     pub(super) fn new(image: &Image) -> Self {
         let mut program = vec![0; SIZE];
         program[..image.program.len()].copy_from_slice(&image.program);
@@ -100,7 +100,7 @@ impl Machine {
             code: 0,
             read: 0,
             received: 0,
-            check: Check::default(),
+            crc: CrcUnit::default(),
             stage: 0,
             pc: 0,
             a: 0,
@@ -130,7 +130,7 @@ impl Machine {
         Outputs {
             a,
             x,
-            word: self.check.word(),
+            word: self.crc.word(),
             puts: self.does(PUTS),
             starts: self.does(STARTS),
             goes: self.does(WAIT | GOES),
@@ -162,7 +162,7 @@ impl Machine {
         self.read = self.data[place];
         self.received = self.ring[usize::from(self.read_from)];
 
-        self.check.clock(told);
+        self.crc.clock(told);
         if self.stage != EXECUTE {
             self.stage += 1;
         } else if over {
@@ -171,7 +171,7 @@ impl Machine {
         if sets {
             self.a = if code & XOR != 0 { a ^ value } else { value };
         }
-        if sets && code >> 8 & 7 == Source::Received as Code {
+        if sets && code >> 8 & 7 == ValueSource::Received as Code {
             self.read_from = self.read_from.wrapping_add(1);
         }
         if stores {
@@ -207,7 +207,7 @@ impl Machine {
         } else {
             inputs.scanned || (self.code & FOR_ROOM != 0 && inputs.engine.room.is_some())
         };
-        (!self.does(WAIT) || waited) && (!self.does(CRC_STEP) || self.check.over())
+        (!self.does(WAIT) || waited) && (!self.does(CRC_STEP) || self.crc.over())
     }
 
     fn tells_check(&self, fact: u32) -> Told {
@@ -237,10 +237,10 @@ impl Machine {
     /// The value that A would take.
     fn value(&self, engine: &EngineOutputs) -> u8 {
         match self.code >> 8 & 7 {
-            s if s == Source::Data as Code || s == Source::DataAtX as Code => self.read,
-            s if s == Source::Received as Code => self.received,
-            s if s == Source::X as Code => self.x,
-            s if s == Source::Crc as Code => self.check.word() as u8,
+            s if s == ValueSource::Data as Code || s == ValueSource::DataAtX as Code => self.read,
+            s if s == ValueSource::Received as Code => self.received,
+            s if s == ValueSource::X as Code => self.x,
+            s if s == ValueSource::Crc as Code => self.crc.word() as u8,
             _ => match self.code as u8 & 3 {
                 ROOM => self.room,
                 CULPRITS => engine.fault.map_or(0, |(_, culprits)| culprits),
@@ -265,7 +265,7 @@ impl Machine {
         const TELLS: Code = PUTS | STARTS | BROKEN | KICK | CONTROL;
         let acts = self.does(0) && self.code & TELLS != 0;
         let waits = self.does(WAIT) && !self.does(GOES);
-        let reads = self.executes(SETS) && self.code >> 8 & 7 == Source::Engine as Code;
+        let reads = self.executes(SETS) && self.code >> 8 & 7 == ValueSource::Engine as Code;
         let asks = self.executes(JUMPS)
             && [Condition::Fault, Condition::Startable]
                 .iter()

@@ -1,8 +1,9 @@
 //! The memory of all words that the host can read: the constants of the build, and the engine's
-//! last answers for each axis. The link requests all items cyclically, one per turn of the engine.
+//! last answers for each axis. The link requests all items cyclically, one per time slot of the
+//! engine.
 
 use carrystep_core::EngineBuild;
-use carrystep_core::link::machine::SCAN;
+use carrystep_core::link::processor::SCAN;
 use carrystep_core::link::registers as map;
 use carrystep_core::link::{self, BuildId, LinkInputs};
 
@@ -10,7 +11,7 @@ use carrystep_core::link::{self, BuildId, LinkInputs};
 const WORDS: usize = 128;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Facts {
+pub(super) struct RegisterMirror {
     words: [u32; WORDS],
     /// The word that the memory outputs.
     read: u32,
@@ -18,7 +19,7 @@ pub(super) struct Facts {
     asked: u8,
 }
 
-impl Facts {
+impl RegisterMirror {
     pub(super) fn new(build: &EngineBuild, id: BuildId) -> Self {
         let mut words = [0; WORDS];
         for (address, word) in link::facts(build, id) {
@@ -64,10 +65,11 @@ impl Facts {
         self.words[usize::from(map::of_axis(map::LATCHED, axis & 7)) % WORDS] = position;
     }
 
-    /// Accounts for `turns` skipped turns. Every item requested in them gets its current value.
-    pub(super) fn pass(&mut self, turns: u64, said: impl Fn(u8, u8) -> u32) {
-        let last = turns.min(u64::from(SCAN));
-        self.asked = ((u64::from(self.asked) + turns - last) % u64::from(SCAN)) as u8;
+    /// Accounts for `time_slots` skipped time slots. Every item requested in them gets its current
+    /// value.
+    pub(super) fn pass(&mut self, time_slots: u64, said: impl Fn(u8, u8) -> u32) {
+        let last = time_slots.min(u64::from(SCAN));
+        self.asked = ((u64::from(self.asked) + time_slots - last) % u64::from(SCAN)) as u8;
         for _ in 0..last {
             let (axis, item) = self.asks();
             self.keep(said(axis, item));

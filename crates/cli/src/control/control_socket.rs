@@ -1,7 +1,7 @@
 //! The socket of a command that drives a board: it reads requests and writes answers, one line
 //! each, and never blocks.
 
-use super::Request;
+use super::SocketRequest;
 use std::io::{self, Read as _, Write as _};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ const QUEUE: usize = 128;
 const LONGEST: usize = 64;
 
 /// The socket and its callers.
-pub struct Door {
+pub struct ControlSocket {
     listener: UnixListener,
     path: PathBuf,
     callers: Vec<Caller>,
@@ -26,7 +26,7 @@ struct Caller {
     line: Vec<u8>,
 }
 
-impl Door {
+impl ControlSocket {
     /// Listens at this path. Only the holder of the port's lock may call this, so an existing
     /// socket belongs to a dead process.
     pub fn open(path: PathBuf) -> io::Result<Self> {
@@ -41,7 +41,7 @@ impl Door {
 
     /// Answers the requests since the last poll. Returns true if one of them was a stop. It takes
     /// microseconds.
-    pub fn poll(&mut self, answer: &mut dyn FnMut(Request) -> String) -> bool {
+    pub fn poll(&mut self, answer: &mut dyn FnMut(SocketRequest) -> String) -> bool {
         for _ in 0..QUEUE {
             let Ok((stream, _)) = self.listener.accept() else { break };
             if stream.set_nonblocking(true).is_ok() {
@@ -52,7 +52,7 @@ impl Door {
         self.callers.retain_mut(|caller| {
             let (requests, stays) = caller.take();
             for request in requests {
-                stop |= request == Request::Stop;
+                stop |= request == SocketRequest::Stop;
                 // A caller that does not read its answer loses it.
                 let _ = caller.stream.write_all(format!("{}\n", answer(request)).as_bytes());
             }
@@ -66,7 +66,7 @@ impl Door {
 
 impl Caller {
     /// The complete requests of this caller, and whether its connection stays open.
-    fn take(&mut self) -> (Vec<Request>, bool) {
+    fn take(&mut self) -> (Vec<SocketRequest>, bool) {
         let mut bytes = [0; LONGEST];
         let stays = match self.stream.read(&mut bytes) {
             Ok(0) => false,
@@ -82,13 +82,13 @@ impl Caller {
         while let Some(end) = self.line.iter().position(|&byte| byte == b'\n') {
             let line: Vec<u8> = self.line.drain(..=end).collect();
             let word = std::str::from_utf8(&line).ok().and_then(|line| line.strip_suffix('\n'));
-            requests.extend(word.and_then(|word| word.parse::<Request>().ok()));
+            requests.extend(word.and_then(|word| word.parse::<SocketRequest>().ok()));
         }
         (requests, stays && self.line.len() < LONGEST)
     }
 }
 
-impl Drop for Door {
+impl Drop for ControlSocket {
     fn drop(&mut self) {
         let _ = std::fs::remove_file(&self.path);
     }
@@ -103,19 +103,19 @@ mod tests {
     fn idle_callers_do_not_block_a_stop() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("door");
-        let mut door = Door::open(path.clone()).unwrap();
-        let mut answer = |_: Request| "yes".to_owned();
+        let mut control_socket = ControlSocket::open(path.clone()).unwrap();
+        let mut answer = |_: SocketRequest| "yes".to_owned();
         let idle: Vec<UnixStream> =
             (0..3 * CALLERS).map(|_| UnixStream::connect(&path).unwrap()).collect();
-        assert!(!door.poll(&mut answer));
+        assert!(!control_socket.poll(&mut answer));
         let mut caller = UnixStream::connect(&path).unwrap();
         caller.write_all(b"stop\n").unwrap();
-        assert!(door.poll(&mut answer));
+        assert!(control_socket.poll(&mut answer));
         let mut said = [0; 4];
         caller.read_exact(&mut said).unwrap();
-        assert_eq!((&said, door.callers.len()), (b"yes\n", CALLERS));
+        assert_eq!((&said, control_socket.callers.len()), (b"yes\n", CALLERS));
         drop(idle);
-        assert!(!door.poll(&mut answer));
-        assert_eq!(door.callers.len(), 1);
+        assert!(!control_socket.poll(&mut answer));
+        assert_eq!(control_socket.callers.len(), 1);
     }
 }

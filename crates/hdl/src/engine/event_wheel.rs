@@ -34,21 +34,21 @@ use rust_hdl::prelude::*;
 
 /// The tick counter and the event memory.
 #[derive(LogicBlock, Default)]
-pub struct Wheel<const N: usize> {
+pub struct EventWheel<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// Asserted in the last beat of a time slot. The inputs of the following beats belong to its
     /// axis.
-    pub turn_ends: Input<Bit>,
+    pub time_slot_ends: Input<Bit>,
     /// The axis of the present time slot, one-hot.
-    pub lane: Input<Word<N>>,
+    pub axis_one_hot: Input<Word<N>>,
     /// The tick of the axis contains a step.
     pub crosses: Input<Bit>,
     /// The V of the axis is not zero.
     pub has_sign: Input<Bit>,
     /// From the following beat on: V < 0.
     pub back: Input<Bit>,
-    /// Asserted four beats after `turn_ends`: `q` is valid from the next clock on.
+    /// Asserted four beats after `time_slot_ends`: `q` is valid from the next clock on.
     pub phase_known: Input<Bit>,
     /// The phase of the step, in 1/16 tick.
     pub q: Input<Word<4>>,
@@ -61,7 +61,7 @@ pub struct Wheel<const N: usize> {
     /// Bit i: the event of axis i is backward.
     pub backward: Signal<Out, Word<N>>,
     tick: Tick, // runs one clock ahead of the pins
-    rim: Memory<7, 16>,
+    event_memory: Memory<7, 16>,
     turned: Register<Bit>,    // `strobe`
     started: Register<Bit>,   // `phase_start`
     ahead: Register<Word<2>>, // the number of the tick, one clock ahead
@@ -92,7 +92,7 @@ pub struct Wheel<const N: usize> {
     q_shift: Parameter<4>,
 }
 
-impl<const N: usize> Wheel<N> {
+impl<const N: usize> EventWheel<N> {
     /// Makes the wheel of this timebase.
     pub fn new(timebase: &Timebase) -> Self {
         Self {
@@ -100,17 +100,17 @@ impl<const N: usize> Wheel<N> {
             last_phase: Parameter::new(u64::from(timebase.phases() - 1)),
             q_shift: Parameter::new(u64::from(4 - timebase.phase_bits())),
             to_top: Parameter::new(N as u64 - 1),
-            rim: Memory::of_bits(),
+            event_memory: Memory::of_bits(),
             ..Self::default()
         }
     }
 }
 
-impl<const N: usize> Logic for Wheel<N> {
+impl<const N: usize> Logic for EventWheel<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, turned, started, ahead, read, sign_due, step_due, step_known, when);
-        clock!(self, clock, tick, rim);
+        clock!(self, clock, tick, event_memory);
 
         // The strobe and the phase start of the pins, and the number of the tick.
         self.turned.d.next = self.tick.strobe.val();
@@ -128,7 +128,7 @@ impl<const N: usize> Logic for Wheel<N> {
                 | self.sign_kind.val();
         }
         self.read.d.next = self.place.val();
-        self.rim.read_address.next = self.place.val();
+        self.event_memory.read_address.next = self.place.val();
         self.wipes.next = self.turned.q.val() | self.started.q.val();
 
         // Writes the results of a time slot, the sign first and then the step, in clocks without a
@@ -147,7 +147,7 @@ impl<const N: usize> Logic for Wheel<N> {
         if self.phase_known.val() {
             self.step_known.d.next = true;
         }
-        if self.turn_ends.val() {
+        if self.time_slot_ends.val() {
             self.sign_due.d.next = self.has_sign.val();
             self.step_due.d.next = self.crosses.val();
             self.step_known.d.next = false;
@@ -161,9 +161,9 @@ impl<const N: usize> Logic for Wheel<N> {
                 | self.sign_kind.val()
                 | self.last_phase.val();
         }
-        self.rim.write_address.next = self.later.val();
+        self.event_memory.write_address.next = self.later.val();
         if self.wipes.val() {
-            self.rim.write_address.next = self.read.q.val();
+            self.event_memory.write_address.next = self.read.q.val();
         }
         self.data.next = self.no.val();
         if !self.wipes.val() {
@@ -172,9 +172,9 @@ impl<const N: usize> Logic for Wheel<N> {
                 self.data.next = self.all.val();
             }
         }
-        self.rim.write_data.next = self.data.val();
-        self.whose.next =
-            (self.lane.val() >> self.by_one.val()) | (self.lane.val() << self.to_top.val());
+        self.event_memory.write_data.next = self.data.val();
+        self.whose.next = (self.axis_one_hot.val() >> self.by_one.val())
+            | (self.axis_one_hot.val() << self.to_top.val());
         self.bits.next = self.no.val();
         if self.writes_sign.val() | self.writes_step.val() {
             self.bits.next = bit_cast::<16, N>(self.whose.val())
@@ -183,12 +183,12 @@ impl<const N: usize> Logic for Wheel<N> {
         if self.wipes.val() {
             self.bits.next = self.all.val();
         }
-        self.rim.write_bits.next = self.bits.val();
+        self.event_memory.write_bits.next = self.bits.val();
 
         self.strobe.next = self.turned.q.val();
         self.phase_start.next = self.started.q.val();
-        self.events.next = self.rim.read_data.val().get_bits::<N>(EVENT_AXES);
-        self.backward.next = self.rim.read_data.val().get_bits::<N>(EVENT_BACKWARD);
+        self.events.next = self.event_memory.read_data.val().get_bits::<N>(EVENT_AXES);
+        self.backward.next = self.event_memory.read_data.val().get_bits::<N>(EVENT_BACKWARD);
     }
 }
 
@@ -198,8 +198,8 @@ mod tests {
     use crate::sim::assert_synthesizes;
 
     #[test]
-    fn wheel_synthesizes() {
+    fn event_wheel_synthesizes() {
         let timebase = Timebase::new(80_000_000, 1000, 16).unwrap();
-        assert_synthesizes(Wheel::<6>::new(&timebase), "carrystep_wheel");
+        assert_synthesizes(EventWheel::<6>::new(&timebase), "carrystep_event_wheel");
     }
 }

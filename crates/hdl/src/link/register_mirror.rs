@@ -21,7 +21,7 @@ use rust_hdl::prelude::*;
 
 /// The memory of constants and of the state of the axes.
 #[derive(LogicBlock, Default)]
-pub struct Facts {
+pub struct RegisterMirror {
     /// The clock.
     pub clock: Input<Clock>,
     /// The address to read.
@@ -56,7 +56,7 @@ pub struct Facts {
     all: Literal<32, 0xffff_ffff>,
 }
 
-impl Facts {
+impl RegisterMirror {
     /// Makes the memory with these constants, each given as its address and its value.
     pub fn new(facts: &[(u8, Formula<32>)]) -> Self {
         let words: Vec<_> =
@@ -65,7 +65,7 @@ impl Facts {
     }
 }
 
-impl Logic for Facts {
+impl Logic for RegisterMirror {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, asked);
@@ -103,6 +103,9 @@ mod tests {
 
     #[test]
     fn facts_synthesizes() {
-        assert_synthesizes(Facts::new(&[(0, Formula::number(7))]), "carrystep_facts");
+        assert_synthesizes(
+            RegisterMirror::new(&[(0, Formula::number(7))]),
+            "carrystep_register_mirror",
+        );
     }
 }

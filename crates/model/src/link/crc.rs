@@ -4,7 +4,7 @@
 use carrystep_core::link::CRC_POLYNOMIAL;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Check {
+pub(super) struct CrcUnit {
     sum: u32,
     count: u8,
 }
@@ -21,7 +21,7 @@ pub(super) enum Told {
     Shift(u8),
 }
 
-impl Check {
+impl CrcUnit {
     /// True in the eighth clock of a byte.
     pub(super) const fn over(self) -> bool {
         self.count == 7

@@ -1,6 +1,6 @@
 //! Connects a board to a pseudo-terminal that a host opens, and runs it at a pace.
 
-use crate::gateware::Gateware;
+use crate::gateware::SimulatedBoard;
 use crate::pace::Pace;
 use crate::terminal::Terminal;
 use carrystep_model::fast::Edges;
@@ -10,7 +10,7 @@ use std::time::Duration;
 use thiserror::Error;
 
 /// Number of exchanges with the host per second of the board's time.
-const LOOKS_PER_SECOND: u64 = 10_000;
+const EXCHANGES_PER_SECOND: u64 = 10_000;
 
 /// Number of waiting bytes from which on no more are read from the host.
 const FULL: usize = 256;
@@ -20,7 +20,7 @@ const NAP: Duration = Duration::from_micros(300);
 
 /// Why a board cannot continue.
 #[derive(Debug, Error)]
-pub enum DeskError {
+pub enum RealTimeError {
     /// The simulation has failed.
     #[error(transparent)]
     Level(#[from] LevelError),
@@ -31,7 +31,7 @@ pub enum DeskError {
 
 /// A board with its terminal and its pace.
 #[derive(Debug)]
-pub struct Desk<B> {
+pub struct RealTimeBoard<B> {
     /// The board.
     pub board: B,
     terminal: Terminal,
@@ -39,7 +39,7 @@ pub struct Desk<B> {
     clock_hz: u64,
 }
 
-impl<B: Gateware> Desk<B> {
+impl<B: SimulatedBoard> RealTimeBoard<B> {
     /// Connects a board with this clock, Hz, to a terminal.
     pub fn new(board: B, terminal: Terminal, pace: Pace, clock_hz: u64) -> Self {
         Self { board, terminal, pace, clock_hz }
@@ -49,8 +49,8 @@ impl<B: Gateware> Desk<B> {
     /// sleeps for a short time.
     ///
     /// # Errors
-    /// [`DeskError`] if the simulation or the terminal has failed.
-    pub fn step(&mut self, to: &mut impl Edges) -> Result<(), DeskError> {
+    /// [`RealTimeError`] if the simulation or the terminal has failed.
+    pub fn step(&mut self, to: &mut impl Edges) -> Result<(), RealTimeError> {
         if self.board.unsaid() < FULL {
             let bytes = self.terminal.take();
             if !bytes.is_empty() {
@@ -59,7 +59,8 @@ impl<B: Gateware> Desk<B> {
             bytes.into_iter().for_each(|byte| self.board.say(byte));
         }
         let target = self.pace.target(self.board.cycle(), self.board.alone());
-        self.board.run(target.min(self.board.cycle() + self.clock_hz / LOOKS_PER_SECOND), to)?;
+        self.board
+            .run(target.min(self.board.cycle() + self.clock_hz / EXCHANGES_PER_SECOND), to)?;
         let heard: Vec<u8> = std::iter::from_fn(|| self.board.next_byte()).collect();
         if !heard.is_empty() {
             self.terminal.give(&heard)?;

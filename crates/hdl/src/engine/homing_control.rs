@@ -23,7 +23,7 @@ use rust_hdl::prelude::*;
 
 /// The axes that wait for their limit, and those that have reached it and ramp down.
 #[derive(LogicBlock, Default)]
-pub struct Homes<const N: usize> {
+pub struct HomingControl<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// The host replaces the mask of the axes that wait for their limit.
@@ -31,9 +31,9 @@ pub struct Homes<const N: usize> {
     /// The new mask, valid with `set`; bit i is axis i.
     pub mask: Input<Word<N>>,
     /// Asserted in the last beat of a time slot.
-    pub turn_ends: Input<Bit>,
+    pub time_slot_ends: Input<Bit>,
     /// The axis of the time slot, one-hot.
-    pub lane: Input<Word<N>>,
+    pub axis_one_hot: Input<Word<N>>,
     /// The axis of the slot has reached a limit.
     pub hit: Input<Bit>,
     /// The axis of the slot runs in the next tick too.
@@ -49,7 +49,7 @@ pub struct Homes<const N: usize> {
     waiting: Register<Word<N>>,
     slowing: Register<Word<N>>,
     mine: Signal<Local, Bit>,
-    lane_next: Signal<Local, Word<N>>,
+    axis_one_hot_next: Signal<Local, Word<N>>,
     // Registered, because the whole ramp depends on it from the first beat of the slot.
     mine_slows: Register<Bit>,
     caught: Signal<Local, Bit>,
@@ -59,28 +59,28 @@ pub struct Homes<const N: usize> {
     to_top: Parameter<3>,
 }
 
-impl<const N: usize> Homes<N> {
+impl<const N: usize> HomingControl<N> {
     /// Makes the homing of N axes.
     pub fn new() -> Self {
         Self { to_top: Parameter::new(N as u64 - 1), ..Self::default() }
     }
 }
 
-impl<const N: usize> Logic for Homes<N> {
+impl<const N: usize> Logic for HomingControl<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, waiting, slowing, mine_slows);
-        self.mine.next = (self.waiting.q.val() & self.lane.val()).any();
-        self.lane_next.next = self.lane.val();
-        if self.turn_ends.val() {
-            self.lane_next.next =
-                (self.lane.val() << self.by_one.val()) | (self.lane.val() >> self.to_top.val());
+        self.mine.next = (self.waiting.q.val() & self.axis_one_hot.val()).any();
+        self.axis_one_hot_next.next = self.axis_one_hot.val();
+        if self.time_slot_ends.val() {
+            self.axis_one_hot_next.next = (self.axis_one_hot.val() << self.by_one.val())
+                | (self.axis_one_hot.val() >> self.to_top.val());
         }
-        self.mine_slows.d.next = (self.slowing.q.val() & self.lane_next.val()).any();
+        self.mine_slows.d.next = (self.slowing.q.val() & self.axis_one_hot_next.val()).any();
         self.caught.next = self.hit.val() & self.mine.val();
 
         if self.caught.val() {
-            self.waiting.d.next = self.waiting.q.val() & !self.lane.val();
+            self.waiting.d.next = self.waiting.q.val() & !self.axis_one_hot.val();
         }
         if self.set.val() {
             self.waiting.d.next = self.mask.val();
@@ -91,12 +91,13 @@ impl<const N: usize> Logic for Homes<N> {
         // The ramp of an axis is over when the axis does not run in the next tick.
         self.slower.next = self.none.val();
         if self.caught.val() {
-            self.slower.next = self.lane.val();
+            self.slower.next = self.axis_one_hot.val();
         }
-        if self.turn_ends.val() {
+        if self.time_slot_ends.val() {
             self.slowing.d.next = self.slowing.q.val() | self.slower.val();
             if !self.goes_on.val() {
-                self.slowing.d.next = (self.slowing.q.val() & !self.lane.val()) | self.slower.val();
+                self.slowing.d.next =
+                    (self.slowing.q.val() & !self.axis_one_hot.val()) | self.slower.val();
             }
         }
 
@@ -112,7 +113,7 @@ mod tests {
     use crate::sim::assert_synthesizes;
 
     #[test]
-    fn homes_synthesizes() {
-        assert_synthesizes(Homes::<6>::new(), "carrystep_homes");
+    fn homing_control_synthesizes() {
+        assert_synthesizes(HomingControl::<6>::new(), "carrystep_homing_control");
     }
 }

@@ -16,7 +16,7 @@
 //! bits each.
 
 use crate::parameters::{ENABLE_ROUNDS, ESTOP_LOW, ROUND_TICKS, WATCHDOG_ROUNDS};
-use crate::primitives::constant::{Literal, Parameter, Refusal};
+use crate::primitives::constant::{Literal, Parameter, ParameterRefusal};
 use crate::primitives::formula::Formula;
 use crate::primitives::register::{Input, Register};
 use crate::primitives::word::Word;
@@ -25,7 +25,7 @@ use rust_hdl::prelude::*;
 
 /// The e-stop, the watchdog, the power of the drivers, and the round.
 #[derive(LogicBlock, Default)]
-pub struct Watch {
+pub struct Supervisor {
     /// The clock.
     pub clock: Input<Clock>,
     /// Asserted in the last clock of a tick.
@@ -76,13 +76,13 @@ pub struct Watch {
     one_tick: Literal<10, 1>,
     no_round: Literal<12, 0>,
     one_round: Literal<12, 1>,
-    round_ticks_out_of_range: Refusal,
-    watchdog_rounds_out_of_range: Refusal,
-    enable_rounds_out_of_range: Refusal,
-    estop_low_out_of_range: Refusal,
+    round_ticks_out_of_range: ParameterRefusal,
+    watchdog_rounds_out_of_range: ParameterRefusal,
+    enable_rounds_out_of_range: ParameterRefusal,
+    estop_low_out_of_range: ParameterRefusal,
 }
 
-impl Watch {
+impl Supervisor {
     /// Makes the monitor of this guard. The caller has checked the guard.
     pub fn new(guard: &Guard) -> Self {
         let (watchdog, enable) =
@@ -98,18 +98,22 @@ impl Watch {
             silence_bits: Parameter::of(&watchdog.bits::<12>(0).used_bits()),
             warm_at: Parameter::of(&enable.bits(0)),
             warm_bits: Parameter::of(&enable.bits::<12>(0).used_bits()),
-            round_ticks_out_of_range: Refusal::of(
+            round_ticks_out_of_range: ParameterRefusal::of(
                 &(round.is_outside(2, MAX_ROUND.into()) | no_power),
             ),
-            watchdog_rounds_out_of_range: Refusal::of(&watchdog.is_outside(0, MAX_ROUNDS.into())),
-            enable_rounds_out_of_range: Refusal::of(&enable.is_outside(0, MAX_ROUNDS.into())),
-            estop_low_out_of_range: Refusal::of(&estop_low.is_outside(0, 1)),
+            watchdog_rounds_out_of_range: ParameterRefusal::of(
+                &watchdog.is_outside(0, MAX_ROUNDS.into()),
+            ),
+            enable_rounds_out_of_range: ParameterRefusal::of(
+                &enable.is_outside(0, MAX_ROUNDS.into()),
+            ),
+            estop_low_out_of_range: ParameterRefusal::of(&estop_low.is_outside(0, 1)),
             ..Self::default()
         }
     }
 }
 
-impl Logic for Watch {
+impl Logic for Supervisor {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, sync, now, held, round, silence, power, warmth);
@@ -164,8 +168,8 @@ mod tests {
     use crate::sim::assert_synthesizes;
 
     #[test]
-    fn watch_synthesizes() {
+    fn supervisor_synthesizes() {
         let guard = Guard { watchdog: 100, enable: 3, ..Guard::minimal(Vec::new()) };
-        assert_synthesizes(Watch::new(&guard), "carrystep_watch");
+        assert_synthesizes(Supervisor::new(&guard), "carrystep_supervisor");
     }
 }

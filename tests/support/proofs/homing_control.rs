@@ -2,12 +2,12 @@
 
 use super::builds::{BuiltEngine, axes, small_engine};
 use super::{Bug, Case, Promises, Proof};
-use carrystep_core::engine::{EngineBuild, Limits};
+use carrystep_core::engine::{EngineBuild, LimitWiring};
 
 const BUGS: &[Bug] = &[
     Bug {
         breaks: "promise_12_waits_as_asked",
-        text: "waiting <= waiting & ~lane;",
+        text: "waiting <= waiting & ~axis_one_hot;",
         becomes: "waiting <= waiting;",
     },
     Bug {
@@ -16,8 +16,8 @@ const BUGS: &[Bug] = &[
         becomes: "if (resetting & set) begin",
     },
     Bug {
-        breaks: "promise_12_waits_in_its_turn",
-        text: "mine = (waiting & lane)",
+        breaks: "promise_12_waits_in_its_time_slot",
+        text: "mine = (waiting & axis_one_hot)",
         becomes: "mine = (waiting)",
     },
     Bug {
@@ -32,8 +32,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_12_slows_after_its_own_hit",
-        text: "(slowing & lane_next)",
-        becomes: "(slowing & lane)",
+        text: "(slowing & axis_one_hot_next)",
+        becomes: "(slowing & axis_one_hot)",
     },
     Bug {
         breaks: "promise_13_inactive",
@@ -43,19 +43,22 @@ const BUGS: &[Bug] = &[
 ];
 
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
-    let builds =
-        [small_engine(6, 80, 4, Limits::Pair), small_engine(1, 16, 4, Limits::Pair), built.clone()];
+    let builds = [
+        small_engine(6, 80, 4, LimitWiring::Pair),
+        small_engine(1, 16, 4, LimitWiring::Pair),
+        built.clone(),
+    ];
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes at {} Hz", build.axes(), build.timebase.clock_hz()),
-        dut: "carrystep_homes".into(),
+        dut: "carrystep_homing_control".into(),
         parameters: Vec::new(),
         verilog,
         numbers: vec![axes(&build)],
     };
     Proof {
-        module: "homes",
+        module: "homing_control",
         promises: Promises {
-            text: include_str!("../../../crates/hdl/src/engine/homes/promises.sv"),
+            text: include_str!("../../../crates/hdl/src/engine/homing_control/promises.sv"),
         },
         cases: builds.map(case).into(),
         depth: 1,

@@ -4,7 +4,7 @@
 //   parameters   AXES: number of axes
 //                CLOCKS, PHASES: clocks and phases in a tick
 //                `DUT: the name of the exported module `wheel`
-//                The exported module carrystep_turn generates the time slots.
+//                The exported module carrystep_time_slot generates the time slots.
 //   assumptions  The phase `q` does not change from the beat after `phase_known` to the end of the
 //                next time slot, and the direction `back` does not change from the end of one time
 //                slot to the end of the next one (proved in adder/promises.sv).
@@ -21,18 +21,18 @@ module promises (
     input wire back,
     input wire [3:0] q
 );
-    localparam [7:0] CLOCKS = `CLOCKS, PHASES = `PHASES, PHASE_CLOCKS = CLOCKS / PHASES, TURN = 13, TURNS = TURN * `AXES;
+    localparam [7:0] CLOCKS = `CLOCKS, PHASES = `PHASES, PHASE_CLOCKS = CLOCKS / PHASES, TIME_SLOT_CLOCKS = 13, ALL_TIME_SLOTS = TIME_SLOT_CLOCKS * `AXES;
     (* anyconst *) reg [2:0] who;
     (* anyconst *) reg [1:0] at_tick;
     (* anyconst *) reg [3:0] at_phase;
     (* anyconst *) reg sign;
 
     wire strobe, phase_start;
-    wire [`AXES-1:0] events, backward, lane;
+    wire [`AXES-1:0] events, backward, axis_one_hot;
     wire [16:0] beat;
     wire [2:0] axis, axis_next;
-    wire turn_ends = beat[12], phase_known = beat[16];
-    carrystep_turn turns (.*);
+    wire time_slot_ends = beat[12], phase_known = beat[16];
+    carrystep_time_slot time_slots (.*);
     `DUT dut (.*);
 
     // ---- Time: the clock within the tick, and the tick modulo 4. Of the last time slot that has
@@ -44,18 +44,18 @@ module promises (
     reg [3:0] age = 15;
     reg whose = 0, was_back = 0;
     reg [3:0] was_q = 0;
-    wire mine = (lane >> who) & 1;
+    wire mine = (axis_one_hot >> who) & 1;
     always @(posedge clock) begin
         first_clock <= 0;
         {was_back, was_q} <= {back, q};
         at <= at == CLOCKS - 1 ? 0 : at + 1;
         if (at == CLOCKS - 1) {turning, tick} <= {1'b1, tick + 2'd1};
-        age <= turn_ends ? 1 : age == 15 ? 15 : age + 1;
-        if (turn_ends) {whose, found_in} <= {mine, tick};
+        age <= time_slot_ends ? 1 : age == 15 ? 15 : age + 1;
+        if (time_slot_ends) {whose, found_in} <= {mine, tick};
     end
     always_comb begin
         assume (who < `AXES && at_phase < PHASES && (!sign || at_phase == PHASES - 1));
-        assume (turn_ends || back == was_back);
+        assume (time_slot_ends || back == was_back);
         assume (age < 6 || age == 15 || q == was_q);
     end
 
@@ -68,7 +68,7 @@ module promises (
     wire expected_now = known | expected;
     wire back_now = known ? back : expected_back;
     always @(posedge clock) begin
-        if (turn_ends) {finds_step, finds_sign} <= {crosses, has_sign};
+        if (time_slot_ends) {finds_step, finds_sign} <= {crosses, has_sign};
         expected <= expected_now & !now;
         expected_back <= back_now;
     end
@@ -93,21 +93,21 @@ module promises (
 
     wire [6:0] place = {at_tick, sign, at_phase};
     wire [15:0] word;
-    look #("\\dut.rim.words", 7, 16) at_rim (1'b0, 1'b1, place, word);
+    memory_probe #("\\dut.event_memory.words", 7, 16) at_event_memory (1'b0, 1'b1, place, word);
     (* inside = "dut.tick.sub" *) wire [15:0] sub;
     (* inside = "dut.tick.phases" *) wire [3:0] phases;
     (* inside = "dut.ahead" *) wire [1:0] ahead;
     (* inside = "dut.read" *) wire [6:0] read;
     (* inside = "dut.place" *) wire [6:0] to_read;
-    (* inside = "dut.rim_read_data" *) wire [15:0] value;
+    (* inside = "dut.event_memory_read_data" *) wire [15:0] value;
     (* inside = "dut.sign_due" *) wire sign_due;
     (* inside = "dut.step_due" *) wire step_due;
     (* inside = "dut.step_known" *) wire step_known;
     (* inside = "dut.whose" *) wire [`AXES-1:0] dut_whose;
     (* inside = "dut.when" *) wire [1:0] when;
     (* inside = "dut.bits" *) wire [15:0] bits;
-    (* inside = "dut.rim_write_address" *) wire [6:0] write_at;
-    (* inside = "turns.beats" *) wire [16:0] beats;
+    (* inside = "dut.event_memory_write_address" *) wire [6:0] write_at;
+    (* inside = "time_slots.beats" *) wire [16:0] beats;
     wire clash = bits != 0 & write_at == to_read;
     reg was_clash = 0;
     reg [2:0] wiped = 0;             // bit i: a word was cleared i + 1 clocks ago
@@ -120,7 +120,7 @@ module promises (
     wire comes = whose & (sign ? sign_due & when == at_tick
         : step_due & step_known & when + 2'd1 == at_tick & q / (5'd16 / PHASES) == at_phase);
     wire [7:0] next = at == CLOCKS - 1 ? 0 : at + 1;
-    wire in_turn = turning & at < TURNS;
+    wire in_time_slot = turning & at < ALL_TIME_SLOTS;
 
     function wipes(input [7:0] clock_of_tick);
         wipes = clock_of_tick == CLOCKS - 1 || clock_of_tick % PHASE_CLOCKS == 0;
@@ -135,14 +135,14 @@ module promises (
         invariant_2: assert (ahead == (at == CLOCKS - 1 ? tick + 2'd1 : tick));
         invariant_3: assert (read == (at == CLOCKS - 1 ? {tick, 1'b1, 4'd0} | (PHASES - 1)
             : {tick, 1'b0, 4'd0} | at / PHASE_CLOCKS));
-        invariant_4: assert (beats[12:0] == (in_turn ? 13'd1 << (at % TURN) : 0)
-            && lane == 32'd1 << (in_turn ? at / TURN : 0));
+        invariant_4: assert (beats[12:0] == (in_time_slot ? 13'd1 << (at % TIME_SLOT_CLOCKS) : 0)
+            && axis_one_hot == 32'd1 << (in_time_slot ? at / TIME_SLOT_CLOCKS : 0));
         invariant_5: assert (beats[16:13] == {age == 4, age == 3, age == 2, age == 1});
-        invariant_6: assert (age != 0 && (!turning || at < TURN || tick == 0 && !turning
-            || age == (at < TURNS ? at % TURN + 1 : at - (TURNS - 1) > 15 ? 15 : at - (TURNS - 1))));
-        invariant_7: assert (at >= TURN || age == 15 || at + CLOCKS - (TURNS - 1) == age);
+        invariant_6: assert (age != 0 && (!turning || at < TIME_SLOT_CLOCKS || tick == 0 && !turning
+            || age == (at < ALL_TIME_SLOTS ? at % TIME_SLOT_CLOCKS + 1 : at - (ALL_TIME_SLOTS - 1) > 15 ? 15 : at - (ALL_TIME_SLOTS - 1))));
+        invariant_7: assert (at >= TIME_SLOT_CLOCKS || age == 15 || at + CLOCKS - (ALL_TIME_SLOTS - 1) == age);
         invariant_8: assert (turning || age == 15);
-        invariant_9: assert (age == 15 || found_in == (at >= TURN ? tick : tick - 2'd1));
+        invariant_9: assert (age == 15 || found_in == (at >= TIME_SLOT_CLOCKS ? tick : tick - 2'd1));
         invariant_10: assert (age == 15 && !sign_due && !step_due
             || when == found_in + 2'd1 && ((dut_whose >> who) & 1) == whose);
         invariant_11: assert (!sign_due || finds_sign && (age == 1 || age == 2 && wiped[0]

@@ -2,7 +2,7 @@
 
 use super::builds::{BuiltEngine, small_engine};
 use super::{Bug, Case, Promises, Proof};
-use carrystep_core::engine::{EngineBuild, Limits};
+use carrystep_core::engine::{EngineBuild, LimitWiring};
 
 const BUGS: &[Bug] = &[
     Bug {
@@ -61,7 +61,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         let number = |name, figure: u32| (name, figure.to_string());
         Case {
             name: format!("rounds of {} ticks", guard.round),
-            dut: "carrystep_watch".into(),
+            dut: "carrystep_supervisor".into(),
             parameters: Vec::new(),
             verilog,
             numbers: vec![
@@ -73,11 +73,11 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         }
     };
     Proof {
-        module: "watch",
+        module: "supervisor",
         promises: Promises {
-            text: include_str!("../../../crates/hdl/src/engine/watch/promises.sv"),
+            text: include_str!("../../../crates/hdl/src/engine/supervisor/promises.sv"),
         },
-        cases: [small_engine(6, 80, 16, Limits::Pair), built.clone()]
+        cases: [small_engine(6, 80, 16, LimitWiring::Pair), built.clone()]
             .into_iter()
             .map(case)
             .collect(),

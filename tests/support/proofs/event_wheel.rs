@@ -1,8 +1,8 @@
-//! The proof of the event wheel, with the turns that fill it.
+//! The proof of the event wheel, with the time slots that fill it.
 
 use super::builds::{BuiltEngine, axes, beat, beat_name, small_engine};
 use super::{Bug, Case, Promises, Proof};
-use carrystep_core::engine::{EngineBuild, Limits};
+use carrystep_core::engine::{EngineBuild, LimitWiring};
 
 const BUGS: &[Bug] = &[
     Bug {
@@ -33,8 +33,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_12_no_word_used_that_was_written",
-        text: "rim_write_address = read;",
-        becomes: "rim_write_address = place;",
+        text: "event_memory_write_address = read;",
+        becomes: "event_memory_write_address = place;",
     },
     Bug { breaks: "promise_13_inactive", text: "turned = 1'b0;", becomes: "turned = 1'b1;" },
 ];
@@ -42,18 +42,18 @@ const BUGS: &[Bug] = &[
 pub(super) fn proof(built: &BuiltEngine) -> Proof {
     let sizes = [(1, 16, 4), (2, 32, 16), (6, 96, 16)];
     let builds =
-        sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, Limits::Pair));
+        sizes.map(|(axes, clocks, phases)| small_engine(axes, clocks, phases, LimitWiring::Pair));
     let case = |(build, verilog): (EngineBuild, _)| Case {
         name: format!("{} axes, {}", build.axes(), beat_name(&build.timebase)),
-        dut: "carrystep_wheel".into(),
+        dut: "carrystep_event_wheel".into(),
         parameters: Vec::new(),
         verilog,
         numbers: [vec![axes(&build)], beat(&build.timebase)].concat(),
     };
     Proof {
-        module: "wheel",
+        module: "event_wheel",
         promises: Promises {
-            text: include_str!("../../../crates/hdl/src/engine/wheel/promises.sv"),
+            text: include_str!("../../../crates/hdl/src/engine/event_wheel/promises.sv"),
         },
         cases: builds.into_iter().chain([built.clone()]).map(case).collect(),
         depth: 1,

@@ -1,6 +1,6 @@
 //! The schedule of the engine: gives each axis in sequence a time slot of thirteen clocks.
 //!
-//! The code calls a time slot `turn` and its clocks `beats`.
+//! A clock of a time slot is a beat.
 //!
 //! ```text
 //! strobe  /^\________________________________________________
@@ -17,7 +17,8 @@
 //! bits of it. The pulsers and the watch do not: they work with the strobe and with the phases.
 //!
 //! Cost: one flip-flop per beat, in a shift register of 17 bits, so that no module needs to decode
-//! a beat counter; one flip-flop per axis for `lane`; and 3 bits for the number of the axis.
+//! a beat counter; one flip-flop per axis for `axis_one_hot`; and 3 bits for the number of the
+//! axis.
 
 use super::layout::BEAT_LAST;
 use crate::primitives::constant::{Literal, Parameter};
@@ -27,7 +28,7 @@ use rust_hdl::prelude::*;
 
 /// The beats and the axis of the present time slot, for N axes.
 #[derive(LogicBlock, Default)]
-pub struct Turn<const N: usize> {
+pub struct TimeSlot<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// Asserted in the last clock of a tick.
@@ -39,10 +40,10 @@ pub struct Turn<const N: usize> {
     /// The axis of the next clock, as a number.
     pub axis_next: Signal<Out, Word<3>>,
     /// The axis of the slot, one-hot. After the last slot it is the first axis.
-    pub lane: Signal<Out, Word<N>>,
+    pub axis_one_hot: Signal<Out, Word<N>>,
     beats: Register<Word<17>>,
     number: Register<Word<3>>,
-    lanes: Register<Word<N>>,
+    one_hot: Register<Word<N>>,
     ends: Signal<Local, Bit>,
     begins: Signal<Local, Bit>,
     axis_to_come: Signal<Local, Word<3>>,
@@ -51,28 +52,28 @@ pub struct Turn<const N: usize> {
     first_beat: Literal<17, 1>,
     first_axis: Literal<3, 0>,
     one_axis: Literal<3, 1>,
-    last_lane: Parameter<N>,
+    last_one_hot: Parameter<N>,
     to_top: Parameter<3>,
 }
 
-impl<const N: usize> Turn<N> {
+impl<const N: usize> TimeSlot<N> {
     /// Makes the schedule of N axes.
     pub fn new() -> Self {
         Self {
-            lanes: Register::new(Word::new(1)),
-            last_lane: Parameter::new(1 << (N - 1)),
+            one_hot: Register::new(Word::new(1)),
+            last_one_hot: Parameter::new(1 << (N - 1)),
             to_top: Parameter::new(N as u64 - 1),
             ..Self::default()
         }
     }
 }
 
-impl<const N: usize> Logic for Turn<N> {
+impl<const N: usize> Logic for TimeSlot<N> {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, beats, number, lanes);
+        dff_setup!(self, clock, beats, number, one_hot);
 
-        self.ends.next = (self.lanes.q.val() & self.last_lane.val()).any();
+        self.ends.next = (self.one_hot.q.val() & self.last_one_hot.val()).any();
         self.begins.next =
             self.strobe.val() | (self.beats.q.val().get_bit(BEAT_LAST) & !self.ends.val());
         self.shifted.next = self.beats.q.val() << self.by_one.val();
@@ -89,15 +90,15 @@ impl<const N: usize> Logic for Turn<N> {
             }
         }
         if self.beats.q.val().get_bit(BEAT_LAST) {
-            self.lanes.d.next = (self.lanes.q.val() << self.by_one.val())
-                | (self.lanes.q.val() >> self.to_top.val());
+            self.one_hot.d.next = (self.one_hot.q.val() << self.by_one.val())
+                | (self.one_hot.q.val() >> self.to_top.val());
         }
         self.number.d.next = self.axis_to_come.val();
 
         self.beat.next = self.beats.q.val();
         self.axis.next = self.number.q.val();
         self.axis_next.next = self.axis_to_come.val();
-        self.lane.next = self.lanes.q.val();
+        self.axis_one_hot.next = self.one_hot.q.val();
     }
 }
 
@@ -106,33 +107,36 @@ mod tests {
     use super::*;
     use crate::sim::{assert_synthesizes, rising_edge, settle};
     use carrystep_core::AXES;
-    use carrystep_core::engine::TURN;
+    use carrystep_core::engine::TIME_SLOT_CLOCKS;
 
     #[test]
-    fn turn_gives_every_axis_thirteen_beats() {
-        let mut turn = Turn::<AXES>::new();
-        turn.connect_all();
+    fn time_slot_gives_every_axis_thirteen_beats() {
+        let mut time_slot = TimeSlot::<AXES>::new();
+        time_slot.connect_all();
         for cycle in 0..100_u32 {
-            turn.clock.next = false.into();
-            turn.strobe.next = cycle == 0;
-            settle(&mut turn);
-            let turns = (1..=AXES as u32 * TURN).contains(&cycle);
-            let (axis, beat) = ((cycle.wrapping_sub(1)) / TURN, (cycle.wrapping_sub(1)) % TURN);
-            let beats = turn.beat.val().value() as u32;
-            assert_eq!(beats & 0x1fff, if turns { 1 << beat } else { 0 }, "cycle {cycle}");
-            // After the last time slot, `lane` is axis 0 again.
+            time_slot.clock.next = false.into();
+            time_slot.strobe.next = cycle == 0;
+            settle(&mut time_slot);
+            let time_slots = (1..=AXES as u32 * TIME_SLOT_CLOCKS).contains(&cycle);
+            let (axis, beat) = (
+                (cycle.wrapping_sub(1)) / TIME_SLOT_CLOCKS,
+                (cycle.wrapping_sub(1)) % TIME_SLOT_CLOCKS,
+            );
+            let beats = time_slot.beat.val().value() as u32;
+            assert_eq!(beats & 0x1fff, if time_slots { 1 << beat } else { 0 }, "cycle {cycle}");
+            // After the last time slot, `axis_one_hot` is axis 0 again.
             assert_eq!(
-                turn.lane.val().value() as u32,
-                if turns { 1 << axis } else { 1 },
+                time_slot.axis_one_hot.val().value() as u32,
+                if time_slots { 1 << axis } else { 1 },
                 "cycle {cycle}"
             );
-            turn.clock.next = true.into();
-            rising_edge(&mut turn);
+            time_slot.clock.next = true.into();
+            rising_edge(&mut time_slot);
         }
     }
 
     #[test]
-    fn turn_synthesizes() {
-        assert_synthesizes(Turn::<AXES>::new(), "carrystep_turn");
+    fn time_slot_synthesizes() {
+        assert_synthesizes(TimeSlot::<AXES>::new(), "carrystep_time_slot");
     }
 }

@@ -3,21 +3,21 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::switches::Panel;
-use carrystep_virtual_board::{Desk, DeskError, Edges, Gateware};
+use crate::switches::SwitchPanel;
+use carrystep_virtual_board::{Edges, RealTimeBoard, RealTimeError, SimulatedBoard};
 use std::io::Write as _;
 use std::sync::atomic::Ordering;
 
 /// The board at its pseudo-terminal, and its switches.
-pub struct Manned<B> {
-    pub desk: Desk<B>,
-    pub panel: Panel,
+pub struct OperatedBoard<B> {
+    pub real_time: RealTimeBoard<B>,
+    pub panel: SwitchPanel,
 }
 
-impl<B: Gateware> Manned<B> {
+impl<B: SimulatedBoard> OperatedBoard<B> {
     /// Runs until the first start. Returns false if the board is to end before it.
     pub fn until_start(&mut self) -> Result<bool, Failure> {
-        while self.desk.board.loads().is_empty() {
+        while self.real_time.board.loads().is_empty() {
             if !self.step(&mut ())? {
                 return Ok(false);
             }
@@ -27,7 +27,7 @@ impl<B: Gateware> Manned<B> {
 
     /// Runs for a short time. Returns false if the board is to end.
     pub fn step(&mut self, to: &mut impl Edges) -> Result<bool, Failure> {
-        let look = self.panel.look(|axis| self.desk.board.position(axis));
+        let look = self.panel.look(|axis| self.real_time.board.position(axis));
         for line in look.unknown {
             // If this write fails, there is no channel left to report it.
             let _ = writeln!(
@@ -38,10 +38,10 @@ impl<B: Gateware> Manned<B> {
         if look.ends || interrupt::watch().load(Ordering::Relaxed) {
             return Ok(false);
         }
-        self.desk.board.press(look.switches);
-        self.desk.step(to).map_err(|error| match error {
-            DeskError::Level(error) => error.into(),
-            DeskError::Terminal(_) => Failure::Run(error.to_string()),
+        self.real_time.board.press(look.switches);
+        self.real_time.step(to).map_err(|error| match error {
+            RealTimeError::Level(error) => error.into(),
+            RealTimeError::Terminal(_) => Failure::Run(error.to_string()),
         })?;
         Ok(true)
     }

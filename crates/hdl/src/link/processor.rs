@@ -1,8 +1,8 @@
 //! A small processor that reads requests, executes them and writes the answers.
 //!
-//! `carrystep_core::link::machine` defines its instructions, and `carrystep_core::link::program` is
-//! its program. It has an accumulator A and an index X, and takes three clocks per instruction. A
-//! wait or a step of the CRC extends the third.
+//! `carrystep_core::link::processor` defines its instructions, and `carrystep_core::link::program`
+//! is its program. It has an accumulator A and an index X, and takes three clocks per instruction.
+//! A wait or a step of the CRC extends the third.
 //!
 //! ```text
 //! stage     | fetch | address | execute |
@@ -16,7 +16,7 @@
 //! Cost: three memories of 256 words: the program with 16 bits per word, the data and the ring
 //! buffer with 8.
 
-use super::check::Check;
+use super::crc::CrcUnit;
 use crate::primitives::constant::Literal;
 use crate::primitives::memory::Memory;
 use crate::primitives::register::{Input, Register};
@@ -26,7 +26,7 @@ use rust_hdl::prelude::*;
 
 /// The processor of the link for N axes.
 #[derive(LogicBlock, Default)]
-pub struct Machine<const N: usize> {
+pub struct LinkProcessor<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
     /// The line has received a byte; asserted for one clock per byte.
@@ -93,7 +93,7 @@ pub struct Machine<const N: usize> {
     instructions: Memory<8, 16>,
     data: Memory<8, 8>,
     ring: Memory<8, 8>,
-    check: Check,
+    crc: CrcUnit,
     stage: Register<Word<2>>,
     pc: Register<Word<8>>,
     sum: Register<Word<8>>,   // A
@@ -149,7 +149,7 @@ pub struct Machine<const N: usize> {
     if_special: Literal<3, 7>,
 }
 
-impl<const N: usize> Machine<N> {
+impl<const N: usize> LinkProcessor<N> {
     /// Makes the machine with this initial content of its program and data memories.
     pub fn new(image: &Image) -> Self {
         let program: Vec<_> = image
@@ -173,11 +173,11 @@ impl<const N: usize> Machine<N> {
     }
 }
 
-impl<const N: usize> Logic for Machine<N> {
+impl<const N: usize> Logic for LinkProcessor<N> {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, stage, pc, sum, index, written, read, space, control, clears);
-        clock!(self, clock, instructions, data, ring, check);
+        clock!(self, clock, instructions, data, ring, crc);
 
         // The present instruction, decoded.
         self.instructions.read_address.next = self.pc.q.val();
@@ -223,7 +223,7 @@ impl<const N: usize> Logic for Machine<N> {
             self.waited.next = self.start_ready.val() | self.fault.val();
         }
         self.over.next =
-            (!self.waits.val() | self.waited.val()) & (!self.steps.val() | self.check.over.val());
+            (!self.waits.val() | self.waited.val()) & (!self.steps.val() | self.crc.over.val());
         if !self.executes.val() {
             self.stage.d.next = self.stage.q.val() + self.next_stage.val();
         } else if self.over.val() {
@@ -288,7 +288,7 @@ impl<const N: usize> Logic for Machine<N> {
             self.value.next = self.index.q.val();
         }
         if self.code.val().get_bits::<3>(8) == self.from_check.val() {
-            self.value.next = self.check.word_out.val().get_bits::<8>(0);
+            self.value.next = self.crc.word_out.val().get_bits::<8>(0);
         }
         if self.sets.val() {
             self.sum.d.next = self.value.val();
@@ -317,11 +317,11 @@ impl<const N: usize> Logic for Machine<N> {
         }
 
         // The CRC and word register.
-        self.check.begins.next = self.does.val() & self.code.val().get_bit(4);
-        self.check.step.next = self.steps.val();
-        self.check.feed.next = self.code.val().get_bit(3);
-        self.check.data.next = self.sum.q.val();
-        self.check.word.next = self.facts.val();
+        self.crc.begins.next = self.does.val() & self.code.val().get_bit(4);
+        self.crc.step.next = self.steps.val();
+        self.crc.feed.next = self.code.val().get_bit(3);
+        self.crc.data.next = self.sum.q.val();
+        self.crc.word.next = self.facts.val();
 
         // The ring buffer of received bytes.
         self.ring.read_address.next = self.read.q.val();
@@ -354,7 +354,7 @@ impl<const N: usize> Logic for Machine<N> {
         self.answer_valid.next = self.waits.val() & self.code.val().get_bit(9);
         self.start_valid.next = self.does.val() & self.code.val().get_bit(10);
         self.put_valid.next = self.does.val() & self.code.val().get_bit(11);
-        self.put_data.next = self.check.word_out.val();
+        self.put_data.next = self.crc.word_out.val();
         self.enable.next = self.control.q.val().get_bit(0);
         self.stop.next = self.control.q.val().get_bit(1);
         self.x.next = self.index.q.val();
@@ -369,6 +369,9 @@ mod tests {
 
     #[test]
     fn machine_synthesizes() {
-        assert_synthesizes(Machine::<6>::new(&carrystep_core::link::image()), "carrystep_machine");
+        assert_synthesizes(
+            LinkProcessor::<6>::new(&carrystep_core::link::image()),
+            "carrystep_processor",
+        );
     }
 }
