@@ -107,7 +107,7 @@ fn program() -> Program {
 fn in_icarus(verilog: &str, job: &Job<'_>) -> Record {
     let mut changes = Vec::new();
     let outcome = run_verilog(Level::Icarus, verilog, job, &mut |cycle, outputs| {
-        changes.push((cycle, *outputs))
+        changes.push((cycle, *outputs));
     });
     Record { changes, outcome: outcome.ok() }
 }

@@ -109,7 +109,7 @@ pub fn check(
         Checker::new(Setup { lines: lines.to_vec(), ..check_setup(file, plan, &timelines, &job) });
     let mut feed = PinFeed::new(build.timebase, timelines.len(), &mut checker);
     let outcome = carrystep_simulators::run(Level::Fast, &job, &mut |cycle, outputs| {
-        feed.observe(cycle, outputs)
+        feed.observe(cycle, outputs);
     });
     feed.end(outcome.expect("the model").clocks).expect("the checker");
     checker.finish()

@@ -23,7 +23,7 @@ fn compare(input: &str, output: &str, settings: [u8; 4]) {
     }
     match found {
         Ok(ClockManager::Ice40Pll(pll)) => {
-            assert_eq!(pll, Ice40Pll { divr, divf, divq, filter_range }, "{what}")
+            assert_eq!(pll, Ice40Pll { divr, divf, divq, filter_range }, "{what}");
         }
         Ok(other) => panic!("{other:?}: {what}"),
         Err(error) => {

@@ -202,10 +202,10 @@ impl fmt::Display for CheckReport {
         match self.origin {
             OriginKind::Known => {}
             OriginKind::Midpoint => {
-                writeln!(f, "origin: one for all axes, at {} ps of the capture", self.origin_ps)?
+                writeln!(f, "origin: one for all axes, at {} ps of the capture", self.origin_ps)?;
             }
             OriginKind::Fixed => {
-                writeln!(f, "origin: fixed at {} ps of the capture", self.origin_ps)?
+                writeln!(f, "origin: fixed at {} ps of the capture", self.origin_ps)?;
             }
         }
         if self.slack_ns > 0.0 {

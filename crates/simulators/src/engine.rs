@@ -114,7 +114,7 @@ impl EngineHost {
         for command in program {
             match *command {
                 Command::Segment { axis, segment } => {
-                    acts.extend(puts(axis, &segment).into_iter().map(Act::Put))
+                    acts.extend(puts(axis, &segment).into_iter().map(Act::Put));
                 }
                 Command::Start { mask } => acts.push(Act::Start(mask)),
                 Command::Wait { clocks } => acts.push(Act::Wait(clocks)),

@@ -236,7 +236,7 @@ fn advised(mut request: TableRequest) -> Option<Table> {
                 match &mut request.kind {
                     Kind::Logistic { entries, .. } => *entries = length,
                     Kind::Avr446 { ramp_steps, .. } | Kind::Sine { ramp_steps, .. } => {
-                        *ramp_steps = length
+                        *ramp_steps = length;
                     }
                 }
             }

@@ -61,7 +61,7 @@ pub fn build(job: &BuildJob<'_>, stage: &mut dyn FnMut(&str)) -> Result<Built, S
         // If a part is nearly full, only some seeds lead to a placement.
         match netlist.place_on(job.part, job.pcf, job.clock_hz, seed) {
             Ok(placed) if best.as_ref().is_none_or(|(_, best)| placed.mhz > best.mhz) => {
-                best = Some((seed, placed))
+                best = Some((seed, placed));
             }
             Ok(_) => {}
             Err(error @ SynthesisError::Tool { .. }) => failed = Some(error),

@@ -55,7 +55,7 @@ impl Kernel {
             match group.as_slice() {
                 _ if registers => clocked.extend(group),
                 [(_, Step::Assign { target, value })] => {
-                    kernel.wires.push((target.clone(), value.clone()))
+                    kernel.wires.push((target.clone(), value.clone()));
                 }
                 _ if group
                     .iter()
@@ -141,7 +141,7 @@ fn block(translator: Translator<'_>, code: &VerilogBlock) -> Result<Vec<Step>, E
     for statement in code {
         match statement {
             Statement::Assignment(target, value) => {
-                steps.extend(assignment(translator, target, value)?)
+                steps.extend(assignment(translator, target, value)?);
             }
             Statement::If(condition) => steps.push(conditional(translator, condition)?),
             Statement::Macro(inner) => steps.extend(block(translator, inner)?),

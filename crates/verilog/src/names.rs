@@ -85,7 +85,7 @@ impl Names {
                 AtomKind::Constant => match &atom.note {
                     Some(note) if note.is_refusal && note.given.is_empty() => {}
                     Some(note) if note.is_refusal => {
-                        names.refusals.push((plain(&atom.name), note.text.clone()))
+                        names.refusals.push((plain(&atom.name), note.text.clone()));
                     }
                     note => {
                         let name = plain(&atom.name).to_uppercase();

@@ -1,6 +1,7 @@
 //! The stimuli of the mutants: the model's recordings of the shipped machine in normal work and in
 //! all kinds of stops.
 
+mod resets;
 mod stops;
 mod work;
 
@@ -48,7 +49,7 @@ pub fn verilog() -> String {
 
 /// All recordings in the order of use: those that catch many mutants in few clocks come first.
 pub fn all(build: &EngineBuild) -> Vec<Stimulus> {
-    [work::all(build), stops::all(build)].concat()
+    [work::all(build), stops::all(build), resets::all(build)].concat()
 }
 
 impl Stimulus {

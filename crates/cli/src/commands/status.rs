@@ -28,7 +28,7 @@ pub fn status(arguments: &StatusArguments) -> Result<(), Failure> {
             // A command that has just begun will listen; one that has just ended will release the
             // port.
             Err(refused) if refused.busy && begin.elapsed() < ANSWER => {
-                std::thread::sleep(Duration::from_millis(5))
+                std::thread::sleep(Duration::from_millis(5));
             }
             Err(refused) => return Err(refused.failure),
         }

@@ -15,7 +15,7 @@ pub fn folder() -> Result<PathBuf> {
         match private(&path) {
             Ok(()) => return Ok(path),
             Err(error) => {
-                refused = Error::new(error.kind(), format!("{}: {error}", path.display()))
+                refused = Error::new(error.kind(), format!("{}: {error}", path.display()));
             }
         }
     }

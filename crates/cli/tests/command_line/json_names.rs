@@ -93,7 +93,7 @@ fn names(value: &Value, path: &str, found: &mut Vec<String>) {
             }
         }
         Value::Array(entries) => {
-            entries.iter().for_each(|entry| names(entry, &format!("{path}[]"), found))
+            entries.iter().for_each(|entry| names(entry, &format!("{path}[]"), found));
         }
         _ => {}
     }

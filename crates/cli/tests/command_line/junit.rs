@@ -48,7 +48,7 @@ fn sweep_writes_one_test_case_for_all_and_one_per_failure() {
     let folder = Folder::new();
     let text = GOOD.replace("\"a4988\"", "\"{{ driver }}\"");
     let sweep = |drivers: &str| {
-        folder.write("s.toml", format!("move_file = '''\n{text}'''\n[vary]\ndriver = {drivers}\n"))
+        folder.write("s.toml", format!("move_file = '''\n{text}'''\n[vary]\ndriver = {drivers}\n"));
     };
     sweep("[\"a4988\", \"tmc2209\"]");
     assert_eq!(folder.run("sweep s.toml --junit s.xml").status, 0);

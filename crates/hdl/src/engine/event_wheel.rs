@@ -24,6 +24,7 @@
 //! memory holds all pending step events.
 
 use super::layout::{EVENT_AXES, EVENT_BACKWARD, EVENT_TICK};
+use crate::parameters::EVENT_MEMORY;
 use crate::parts::tick::Tick;
 use crate::primitives::constant::{Literal, Parameter};
 use crate::primitives::memory::Memory;
@@ -100,7 +101,7 @@ impl<const N: usize> EventWheel<N> {
             last_phase: Parameter::new(u64::from(timebase.phases() - 1)),
             q_shift: Parameter::new(u64::from(4 - timebase.phase_bits())),
             to_top: Parameter::new(N as u64 - 1),
-            event_memory: Memory::of_bits(),
+            event_memory: Memory::of_bits(EVENT_MEMORY.name),
             ..Self::default()
         }
     }

@@ -10,7 +10,6 @@
 //! that is read in the cycle in which it is written. Real block RAMs differ there. A design that
 //! needs neither value costs no bypass logic. The simulation returns zero and the old word.
 
-use crate::parameters::EVENT_MEMORY;
 use crate::primitives::constant::{ERROR, TextParameter};
 use crate::primitives::formula::{Formula, ParameterValue};
 use crate::primitives::register::Input;
@@ -21,8 +20,7 @@ const BLOCK: &str = "\"block\"";
 
 /// The Verilog that refuses a memory style other than block and distributed RAM: it instantiates a
 /// module that does not exist.
-fn style_check() -> String {
-    let style = EVENT_MEMORY.name;
+fn style_check(style: &str) -> String {
     let error = format!("{ERROR}{}_out_of_range", style.to_lowercase());
     format!(
         "// Words of different lengths are compared.\n// verilator lint_off WIDTH\ngenerate\n    if (({style} != {BLOCK}) && ({style} != \"distributed\")) begin : refused\n        \
@@ -46,7 +44,9 @@ pub struct Memory<const A: usize, const W: usize> {
     pub write_data: Input<Word<W>>,
     words: Vec<Word<W>>,
     rose: bool,
-    whole_words: bool,
+    /// The parameter of the Verilog that places the memory; `None`: it is in block RAM, and its words
+    /// are always written whole.
+    placed_by: Option<&'static str>,
     initial: Vec<(usize, Formula<W>)>,
     given: Vec<TextParameter>,
 }
@@ -65,8 +65,7 @@ impl<const A: usize, const W: usize> Memory<A, W> {
 
     /// The same with words that follow from parameters of the Verilog.
     pub fn of_formulas(initial: &[(usize, Formula<W>)]) -> Self {
-        let mut memory = Self::of_bits();
-        memory.whole_words = true;
+        let mut memory = Self::of_zeros();
         let mut given: Vec<ParameterValue> = Vec::new();
         for (address, word) in initial {
             memory.words[*address] = word.value();
@@ -80,14 +79,15 @@ impl<const A: usize, const W: usize> Memory<A, W> {
     }
 
     /// Makes a memory with a write enable for each bit. All its words are initially zero. Not every
-    /// FPGA has block RAM with such enables: the parameter `EVENT_MEMORY` of the Verilog places it.
-    pub fn of_bits() -> Self {
-        let words = vec![Word::default(); 1 << A];
-        let style = ParameterValue {
-            name: EVENT_MEMORY.name.to_owned(),
-            bits: 0,
-            literal: BLOCK.to_owned(),
-        };
+    /// FPGA has block RAM with such enables: the parameter `placed_by` of the Verilog places it.
+    pub fn of_bits(placed_by: &'static str) -> Self {
+        let style =
+            ParameterValue { name: placed_by.to_owned(), bits: 0, literal: BLOCK.to_owned() };
+        let given = vec![TextParameter::new(style)];
+        Self { placed_by: Some(placed_by), given, ..Self::of_zeros() }
+    }
+
+    fn of_zeros() -> Self {
         Self {
             clock: Input::default(),
             read_address: Input::default(),
@@ -95,11 +95,11 @@ impl<const A: usize, const W: usize> Memory<A, W> {
             write_address: Input::default(),
             write_bits: Input::default(),
             write_data: Input::default(),
-            initial: Vec::new(),
-            given: vec![TextParameter::new(style)],
-            words,
+            words: vec![Word::default(); 1 << A],
             rose: false,
-            whole_words: false,
+            placed_by: None,
+            initial: Vec::new(),
+            given: Vec::new(),
         }
     }
 
@@ -115,9 +115,9 @@ impl<const A: usize, const W: usize> Memory<A, W> {
         let top = W - 1;
         let range = if W == 1 { String::new() } else { format!("[{top}:0] ") };
         let words = self.words.len();
-        let (style, check) = match self.whole_words {
-            true => (BLOCK, String::new()),
-            false => (EVENT_MEMORY.name, style_check()),
+        let (style, check) = match self.placed_by {
+            None => (BLOCK, String::new()),
+            Some(style) => (style, style_check(style)),
         };
         let mut text = format!(
             "{check}// No word that is read in the clock in which it is written is ever used: no bypass is needed.\n\
@@ -135,14 +135,12 @@ impl<const A: usize, const W: usize> Memory<A, W> {
             text.push_str(&format!("    words[{address}] = {text_of_word};\n"));
         }
         text.push_str("end\n\nalways @(posedge clock) begin\n    value <= words[read_address];\n");
-        text.push_str(match (self.whole_words, W) {
-            (true, 1) | (false, 1) => {
-                "    if (write_bits) words[write_address] <= write_data;\nend"
-            }
-            (true, _) => "    if (write_bits[0]) words[write_address] <= write_data;\nend",
-            (false, _) => "",
+        text.push_str(match (self.placed_by, W) {
+            (_, 1) => "    if (write_bits) words[write_address] <= write_data;\nend",
+            (None, _) => "    if (write_bits[0]) words[write_address] <= write_data;\nend",
+            (Some(_), _) => "",
         });
-        if !self.whole_words && W > 1 {
+        if self.placed_by.is_some() && W > 1 {
             text.push_str(&format!(
                 "    for (i = 0; i < {W}; i = i + 1) begin\n        \
                  if (write_bits[i]) words[write_address][i] <= write_data[i];\n    end\nend"
@@ -243,7 +241,7 @@ mod tests {
 
     #[test]
     fn memory_writes_only_the_enabled_bits() {
-        let mut memory = Memory::<4, 8>::of_bits();
+        let mut memory = Memory::<4, 8>::of_bits("PLACE");
         memory.connect_all();
         memory.write_data.next = Word::from(0xff_u64);
         memory.write_bits.next = Word::from(0x5a_u64);

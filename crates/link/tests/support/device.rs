@@ -149,7 +149,7 @@ impl Device {
             match self.fault {
                 Some(_) => {}
                 None if axis >= self.axes.into() || self.queues[axis].len() == 7 => {
-                    self.fault = Some(2)
+                    self.fault = Some(2);
                 }
                 None => self.queues[axis].push_back((words[0].wrapping_add(1), words[7] & 1 == 1)),
             }

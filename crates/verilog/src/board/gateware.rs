@@ -122,8 +122,8 @@ impl<'a> Gateware<'a> {
     /// [`ExportError`] if a module cannot be generated.
     pub fn files(&self) -> Result<Vec<TextFile>, ExportError> {
         let verilog = self.verilog()?;
-        let sources = verilog.iter().map(|file| file.name.clone()).collect();
-        self.files_with(verilog, sources)
+        let sources: Vec<_> = verilog.iter().map(|file| file.name.clone()).collect();
+        self.files_with(verilog, &sources)
     }
 
     /// All files of a directory that takes the modules of link and engine from another one, which the top level's
@@ -139,14 +139,14 @@ impl<'a> Gateware<'a> {
         let source = |file: &TextFile| {
             if is_own(file) { file.name.clone() } else { format!("{core}/{}", file.name) }
         };
-        let sources = all.iter().map(source).collect();
-        self.files_with(all.into_iter().filter(is_own).collect(), sources)
+        let sources: Vec<_> = all.iter().map(source).collect();
+        self.files_with(all.into_iter().filter(is_own).collect(), &sources)
     }
 
     fn files_with(
         &self,
         verilog: Vec<TextFile>,
-        sources: Vec<String>,
+        sources: &[String],
     ) -> Result<Vec<TextFile>, ExportError> {
         let mut files = verilog;
         files.push(TextFile::new(FILE_LIST, sources.join("\n") + "\n"));
