@@ -73,7 +73,7 @@ module carrystep_arty_s7_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h8d6cf69926a892f6),
+        .BUILD_ID(64'h24132307d3114e03),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),
@@ -156,7 +156,7 @@ module carrystep_arty_s7_top (
         .ROUND_TICKS(32'd32),
         .WATCHDOG_ROUNDS(32'd3126),
         .ENABLE_ROUNDS(32'd33),
-        .DEBOUNCE_LOOKS(32'd17),
+        .DEBOUNCE_SAMPLES(32'd17),
         .LIMITS(32'd2),
         .LIMITS_LOW(32'd0),
         .LIMIT_FREEZES(32'd0),

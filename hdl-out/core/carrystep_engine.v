@@ -15,12 +15,12 @@
 // Latency      161 clocks from the load of a move to the edge of its tick 1, phase 0
 // P starts at  half a step
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
-//   axis 0     W 8, S 8, D 2, H 2
-//   axis 1     W 80, S 80, D 16, H 16
-//   axis 2     W 152, S 152, D 52, H 52
-//   axis 3     W 200, S 200, D 400, H 400
-//   axis 4     W 8, S 8, D 2, H 2
-//   axis 5     W 240, S 240, D 120, H 120
+//   axis 0     STEP_HIGH 8, STEP_LOW 8, DIR_SETUP 2, DIR_HOLD 2
+//   axis 1     STEP_HIGH 80, STEP_LOW 80, DIR_SETUP 16, DIR_HOLD 16
+//   axis 2     STEP_HIGH 152, STEP_LOW 152, DIR_SETUP 52, DIR_HOLD 52
+//   axis 3     STEP_HIGH 200, STEP_LOW 200, DIR_SETUP 400, DIR_HOLD 400
+//   axis 4     STEP_HIGH 8, STEP_LOW 8, DIR_SETUP 2, DIR_HOLD 2
+//   axis 5     STEP_HIGH 240, STEP_LOW 240, DIR_SETUP 120, DIR_HOLD 120
 // Guard        counts in rounds of 32 ticks, 32 us
 //   watchdog   100 to 100.033 ms without a valid frame of the host: ramp
 //   enable     1.024 to 1.057 ms from ENABLE to the first start
@@ -36,34 +36,34 @@
 `default_nettype none
 
 // The schedule: in each tick every axis has a time slot of thirteen clocks (beats).
-module carrystep_turn (
+module carrystep_time_slot (
     input  wire         clock,
     input  wire         strobe,
     output wire  [16:0] beat,
     output wire   [2:0] axis,
     output wire   [2:0] axis_next,
-    output wire   [5:0] lane
+    output wire   [5:0] axis_one_hot
 );
     localparam BY_ONE = 1'b1;
     localparam [16:0] FIRST_BEAT = 17'd1;
     localparam [2:0] FIRST_AXIS = 3'd0;
     localparam [2:0] ONE_AXIS = 3'd1;
-    localparam [5:0] LAST_LANE = 6'd32;
+    localparam [5:0] LAST_ONE_HOT = 6'd32;
     localparam [2:0] TO_TOP = 3'd5;
 
     reg [16:0] beats = 17'd0;
     reg [2:0] number = 3'd0;
-    reg [5:0] lanes = 6'd1;
+    reg [5:0] one_hot = 6'd1;
     reg [2:0] axis_to_come;
 
-    wire ends = (lanes & LAST_LANE) != 6'd0;
+    wire ends = (one_hot & LAST_ONE_HOT) != 6'd0;
     wire begins = strobe | (beats[12] & !ends);
     wire [16:0] shifted = beats << BY_ONE;
 
     assign beat = beats;
     assign axis = number;
     assign axis_next = axis_to_come;
-    assign lane = lanes;
+    assign axis_one_hot = one_hot;
 
     always @(*) begin
         axis_to_come = number;
@@ -81,7 +81,7 @@ module carrystep_turn (
             beats <= shifted | FIRST_BEAT;
         end
         if (beats[12]) begin
-            lanes <= (lanes << BY_ONE) | (lanes >> TO_TOP);
+            one_hot <= (one_hot << BY_ONE) | (one_hot >> TO_TOP);
         end
         number <= axis_to_come;
     end
@@ -919,8 +919,8 @@ module carrystep_tick #(
     end
 endmodule
 
-// Memory of the event wheel: the steps of all axes in each phase of four ticks.
-module carrystep_rim #(
+// 
+module carrystep_event_memory #(
     // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
@@ -960,15 +960,15 @@ module carrystep_rim #(
 endmodule
 
 // The event wheel: holds the pending steps of all axes, ordered by tick and phase.
-module carrystep_wheel #(
+module carrystep_event_wheel #(
     // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
     parameter [31:0] CLOCKS_PER_TICK = 32'd80,
     // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
     input  wire         clock,
-    input  wire         turn_ends,
-    input  wire   [5:0] lane,
+    input  wire         time_slot_ends,
+    input  wire   [5:0] axis_one_hot,
     input  wire         crosses,
     input  wire         has_sign,
     input  wire         back,
@@ -1001,25 +1001,25 @@ module carrystep_wheel #(
     reg [1:0] when = 2'd0;
     reg [6:0] place;
     reg [6:0] later;
-    reg [6:0] rim_write_address;
+    reg [6:0] event_memory_write_address;
     reg [15:0] data;
     reg [15:0] bits;
 
     wire tick_strobe;
     wire tick_phase_start;
     wire [3:0] tick_phase;
-    wire [15:0] rim_read_data;
+    wire [15:0] event_memory_read_data;
 
     wire wipes = turned | started;
     wire writes_sign = !wipes & sign_due;
     wire writes_step = !wipes & !sign_due & step_due & step_known;
     wire [1:0] now = when + ONE_TICK;
-    wire [5:0] whose = (lane >> BY_ONE) | (lane << TO_TOP);
+    wire [5:0] whose = (axis_one_hot >> BY_ONE) | (axis_one_hot << TO_TOP);
 
     assign strobe = turned;
     assign phase_start = started;
-    assign events = rim_read_data[5:0];
-    assign backward = rim_read_data[13:8];
+    assign events = event_memory_read_data[5:0];
+    assign backward = event_memory_read_data[13:8];
 
     always @(*) begin
         place = ({5'b0, ahead} << AT_5) | {3'b0, tick_phase};
@@ -1036,9 +1036,9 @@ module carrystep_wheel #(
     end
 
     always @(*) begin
-        rim_write_address = later;
+        event_memory_write_address = later;
         if (wipes) begin
-            rim_write_address = read;
+            event_memory_write_address = read;
         end
     end
 
@@ -1071,13 +1071,13 @@ module carrystep_wheel #(
         .phase(tick_phase)
     );
 
-    carrystep_rim #(
+    carrystep_event_memory #(
         .EVENT_MEMORY(EVENT_MEMORY)
-    ) rim (
+    ) event_memory (
         .clock(clock),
         .read_address(place),
-        .read_data(rim_read_data),
-        .write_address(rim_write_address),
+        .read_data(event_memory_read_data),
+        .write_address(event_memory_write_address),
         .write_bits(bits),
         .write_data(data)
     );
@@ -1098,7 +1098,7 @@ module carrystep_wheel #(
         if (phase_known) begin
             step_known <= 1'b1;
         end
-        if (turn_ends) begin
+        if (time_slot_ends) begin
             sign_due <= has_sign;
             step_due <= crosses;
             step_known <= 1'b0;
@@ -1136,17 +1136,17 @@ endmodule
 // Samples and debounces the limit switches, each in the time slot of its axis.
 module carrystep_limits #(
     // Equal consecutive samples, one per round, that change a limit's debounced state; 1 to 127
-    parameter [31:0] DEBOUNCE_LOOKS = 32'd17,
+    parameter [31:0] DEBOUNCE_SAMPLES = 32'd17,
     // Limit switches: 0 none, 1 two per axis, 2 one per axis, 3 one for all axes; 0 to 3
     parameter [31:0] LIMITS = 32'd1,
     // Active level of the limit switches: 0 high, 1 low; 0 or 1
     parameter [31:0] LIMITS_LOW = 32'd0
 ) (
     input  wire         clock,
-    input  wire         turn_ends,
+    input  wire         time_slot_ends,
     input  wire   [2:0] axis,
     input  wire   [2:0] axis_next,
-    input  wire   [5:0] lane,
+    input  wire   [5:0] axis_one_hot,
     input  wire         tick_0,
     input  wire         tick_1,
     input  wire   [5:0] limit_min,
@@ -1160,8 +1160,8 @@ module carrystep_limits #(
     localparam PAIR = LIMITS == 32'd1;
     localparam ONE_FOR_ALL = LIMITS == 32'd3;
     localparam LOW = LIMITS_LOW[0];
-    localparam [6:0] LAST_LOOK = DEBOUNCE_LOOKS[6:0] - 7'd1;
-    localparam [5:0] FIRST_LANE = 6'd1;
+    localparam [6:0] LAST_SAMPLE = DEBOUNCE_SAMPLES[6:0] - 7'd1;
+    localparam [5:0] FIRST_ONE_HOT = 6'd1;
     localparam [6:0] ONE = 7'd1;
     localparam [6:0] NONE = 7'd0;
     localparam [7:0] ACTIVE = 8'd128;
@@ -1178,8 +1178,8 @@ module carrystep_limits #(
         if (LIMITS_LOW > 32'd1) begin : limits_low_out_of_range
             carrystep_error_limits_low_out_of_range error ();
         end
-        if ((DEBOUNCE_LOOKS < 32'd1) | (DEBOUNCE_LOOKS > 32'd127)) begin : debounce_looks_out_of_range
-            carrystep_error_debounce_looks_out_of_range error ();
+        if ((DEBOUNCE_SAMPLES < 32'd1) | (DEBOUNCE_SAMPLES > 32'd127)) begin : debounce_samples_out_of_range
+            carrystep_error_debounce_samples_out_of_range error ();
         end
     endgenerate
 
@@ -1195,13 +1195,13 @@ module carrystep_limits #(
     wire [7:0] switches_read_data;
 
     wire max = tick_1 & (PAIR != 1'b0);
-    wire looks = turn_ends & (tick_0 | max);
+    wire samples = time_slot_ends & (tick_0 | max);
     wire [7:0] word = switches_read_data;
     wire differs = now ^ word[7];
-    wire flips = differs & (word[6:0] == LAST_LOOK);
+    wire flips = differs & (word[6:0] == LAST_SAMPLE);
     wire state = (word[7] ^ flips) & !resetting;
 
-    assign hit = looks & (EXIST != 1'b0) & goes & state & (((PAIR != 1'b0) & (back ^ max)) | ((PAIR == 1'b0) & flips));
+    assign hit = samples & (EXIST != 1'b0) & goes & state & (((PAIR != 1'b0) & (back ^ max)) | ((PAIR == 1'b0) & flips));
 
     always @(*) begin
         pins = limit_min;
@@ -1211,9 +1211,9 @@ module carrystep_limits #(
     end
 
     always @(*) begin
-        chosen = pins & lane;
+        chosen = pins & axis_one_hot;
         if (ONE_FOR_ALL != 1'b0) begin
-            chosen = pins & FIRST_LANE;
+            chosen = pins & FIRST_ONE_HOT;
         end
     end
 
@@ -1240,7 +1240,7 @@ module carrystep_limits #(
 
     always @(*) begin
         switches_write_bits = NO;
-        if (looks & (EXIST != 1'b0)) begin
+        if (samples & (EXIST != 1'b0)) begin
             switches_write_bits = ALL;
         end
     end
@@ -1261,12 +1261,12 @@ module carrystep_limits #(
 endmodule
 
 // Homing: which axes wait for their limit, and which ones have reached it and ramp down.
-module carrystep_homes (
+module carrystep_homing_control (
     input  wire         clock,
     input  wire         set,
     input  wire   [5:0] mask,
-    input  wire         turn_ends,
-    input  wire   [5:0] lane,
+    input  wire         time_slot_ends,
+    input  wire   [5:0] axis_one_hot,
     input  wire         hit,
     input  wire         goes_on,
     input  wire         resetting,
@@ -1281,10 +1281,10 @@ module carrystep_homes (
     reg [5:0] waiting = 6'd0;
     reg [5:0] slowing = 6'd0;
     reg mine_slows = 1'b0;
-    reg [5:0] lane_next;
+    reg [5:0] axis_one_hot_next;
     reg [5:0] slower;
 
-    wire mine = (waiting & lane) != 6'd0;
+    wire mine = (waiting & axis_one_hot) != 6'd0;
     wire caught = hit & mine;
 
     assign axes = waiting;
@@ -1292,23 +1292,23 @@ module carrystep_homes (
     assign slows = mine_slows;
 
     always @(*) begin
-        lane_next = lane;
-        if (turn_ends) begin
-            lane_next = (lane << BY_ONE) | (lane >> TO_TOP);
+        axis_one_hot_next = axis_one_hot;
+        if (time_slot_ends) begin
+            axis_one_hot_next = (axis_one_hot << BY_ONE) | (axis_one_hot >> TO_TOP);
         end
     end
 
     always @(*) begin
         slower = NONE;
         if (caught) begin
-            slower = lane;
+            slower = axis_one_hot;
         end
     end
 
     always @(posedge clock) begin
-        mine_slows <= (slowing & lane_next) != 6'd0;
+        mine_slows <= (slowing & axis_one_hot_next) != 6'd0;
         if (caught) begin
-            waiting <= waiting & ~lane;
+            waiting <= waiting & ~axis_one_hot;
         end
         if (set) begin
             waiting <= mask;
@@ -1316,10 +1316,10 @@ module carrystep_homes (
         if (resetting) begin
             waiting <= NONE;
         end
-        if (turn_ends) begin
+        if (time_slot_ends) begin
             slowing <= slowing | slower;
             if (!goes_on) begin
-                slowing <= (slowing & ~lane) | slower;
+                slowing <= (slowing & ~axis_one_hot) | slower;
             end
         end
     end
@@ -1332,8 +1332,8 @@ module carrystep_stops #(
 ) (
     input  wire         clock,
     input  wire         strobe,
-    input  wire         turn_ends,
-    input  wire   [5:0] lane,
+    input  wire         time_slot_ends,
+    input  wire   [5:0] axis_one_hot,
     input  wire         runs,
     input  wire         too_fast,
     input  wire         limit,
@@ -1387,7 +1387,7 @@ module carrystep_stops #(
     reg found_freezing = 1'b0;
     reg ran = 1'b0;
 
-    wire finds_now = turn_ends & (too_fast | limit | dry);
+    wire finds_now = time_slot_ends & (too_fast | limit | dry);
     wire urgent = (late != 6'd0) | (strobe & pressed) | breaks;
     wire ripe = strobe & found;
     wire by_host = (strobe & missed) | asked | ending;
@@ -1416,17 +1416,17 @@ module carrystep_stops #(
                 kind <= OVERSPEED;
             end
         end
-        if (turn_ends & (too_fast | (limit & (LIMITS_FREEZE != 1'b0)))) begin
+        if (time_slot_ends & (too_fast | (limit & (LIMITS_FREEZE != 1'b0)))) begin
             found_freezing <= 1'b1;
         end
-        if (turn_ends & runs) begin
+        if (time_slot_ends & runs) begin
             ran <= 1'b1;
         end
         if (!called) begin
             if (urgent | (by_host & !ripe)) begin
                 axes <= late;
             end else if (finds_now & !found) begin
-                axes <= lane;
+                axes <= axis_one_hot;
             end
         end
         if (calls & !called) begin
@@ -1515,7 +1515,7 @@ module carrystep_resets (
 endmodule
 
 // Monitors the e-stop and the host (watchdog), and times the power of the drivers.
-module carrystep_watch #(
+module carrystep_supervisor #(
     // Length of a round, the unit of the times below, in ticks; a power of two from 2 to 1024
     parameter [31:0] ROUND_TICKS = 32'd32,
     // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
@@ -1624,13 +1624,13 @@ endmodule
 
 // Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.
 module carrystep_pulser #(
-    // W, the minimum time in clocks for which STEP is high; 1 to 65536
+    // The minimum time in clocks for which STEP is high; 1 to 65536
     parameter [31:0] STEP_HIGH = 32'd8,
-    // S, the minimum time in clocks for which STEP is low; 1 to 65536
+    // The minimum time in clocks for which STEP is low; 1 to 65536
     parameter [31:0] STEP_LOW = 32'd8,
-    // D, the minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
+    // The minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
     parameter [31:0] DIR_SETUP = 32'd2,
-    // H, the minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
+    // The minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
     parameter [31:0] DIR_HOLD = 32'd2
 ) (
     input  wire         clock,
@@ -1641,7 +1641,7 @@ module carrystep_pulser #(
     input  wire         sign_back,
     output wire         step,
     output wire         dir,
-    output wire         owed,
+    output wire         held_back,
     output wire   [5:0] counts,
     output wire         overruns
 );
@@ -1666,8 +1666,8 @@ module carrystep_pulser #(
             used_bits_17 = used_bits_17 | (used_bits_17 >> 16);
         end
     endfunction
-    localparam [16:0] PULSE_OVER = STEP_HIGH[16:0] - 17'd1;
-    localparam [16:0] GAP_OVER = (STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2;
+    localparam [16:0] STEP_HIGH_OVER = STEP_HIGH[16:0] - 17'd1;
+    localparam [16:0] STEP_LOW_OVER = (STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2;
     localparam [16:0] HOLD_OVER = (DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0;
     localparam [16:0] SINCE_BITS = used_bits_17((((((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) > ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) ? ((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) : ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) > (STEP_HIGH[16:0] - 17'd1)) ? ((((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) > ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) ? ((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd2) : ((DIR_HOLD[16:0] > 17'd2) ? (DIR_HOLD[16:0] - 17'd2) : 17'd0)) : (STEP_HIGH[16:0] - 17'd1));
     localparam [15:0] SETUP_OVER = (DIR_SETUP == 32'd1) ? 16'd0 : (DIR_SETUP[15:0] - 16'd2);
@@ -1676,7 +1676,7 @@ module carrystep_pulser #(
     localparam INSTANT = DIR_SETUP == 32'd1;
     localparam [16:0] SINCE_RISE = 17'd0;
     localparam [16:0] SINCE_ONE = 17'd1;
-    localparam [15:0] AFTER_TURN = 16'd0;
+    localparam [15:0] AFTER_DIR_CHANGE = 16'd0;
     localparam [15:0] AFTER_ONE = 16'd1;
     localparam [3:0] AT_3 = 4'd3;
     localparam [2:0] ONE = 3'd1;
@@ -1715,13 +1715,13 @@ module carrystep_pulser #(
 
     wire pending = due | request;
     wire rise = pending & !frozen & !busy & (settled | (INSTANT != 1'b0)) & (dir_pin == first_back);
-    wire turn = !frozen & !held & (dir_pin != aim);
+    wire dir_changes = !frozen & !held & (dir_pin != aim);
     wire second = due & request;
     wire late_now = second & !rise & !frozen;
 
     assign step = step_pin;
     assign dir = dir_pin;
-    assign owed = due;
+    assign held_back = due;
     assign counts = {3'b0, count} | ({3'b0, lost} << AT_3);
     assign overruns = late_now;
 
@@ -1750,10 +1750,10 @@ module carrystep_pulser #(
         if (has_sign) begin
             want <= sign_back;
         end
-        step_pin <= rise | (step_pin & (since != PULSE_OVER));
-        dir_pin <= dir_pin ^ turn;
+        step_pin <= rise | (step_pin & (since != STEP_HIGH_OVER));
+        dir_pin <= dir_pin ^ dir_changes;
         since <= (since + SINCE_ONE) & SINCE_BITS;
-        busy <= busy & (since != GAP_OVER);
+        busy <= busy & (since != STEP_LOW_OVER);
         held <= held & (since != HOLD_OVER);
         if (rise) begin
             since <= SINCE_RISE;
@@ -1762,8 +1762,8 @@ module carrystep_pulser #(
         end
         after <= (after + AFTER_ONE) & AFTER_BITS;
         settled <= settled | (after == SETUP_OVER);
-        if (turn) begin
-            after <= AFTER_TURN;
+        if (dir_changes) begin
+            after <= AFTER_DIR_CHANGE;
             settled <= 1'b0;
         end
         if (rise) begin
@@ -1785,28 +1785,28 @@ module carrystep_engine #(
     parameter [31:0] CLOCKS_PER_TICK = 32'd80,
     // Start value of P: 1 half a step, 0 zero; 0 or 1
     parameter [31:0] START_HALF = 32'd1,
-    // W, the minimum time in clocks for which STEP is high; 1 to 65536
+    // The minimum time in clocks for which STEP is high; 1 to 65536
     parameter [31:0] STEP_HIGH_0 = 32'd8,
     parameter [31:0] STEP_HIGH_1 = 32'd80,
     parameter [31:0] STEP_HIGH_2 = 32'd152,
     parameter [31:0] STEP_HIGH_3 = 32'd200,
     parameter [31:0] STEP_HIGH_4 = 32'd8,
     parameter [31:0] STEP_HIGH_5 = 32'd240,
-    // S, the minimum time in clocks for which STEP is low; 1 to 65536
+    // The minimum time in clocks for which STEP is low; 1 to 65536
     parameter [31:0] STEP_LOW_0 = 32'd8,
     parameter [31:0] STEP_LOW_1 = 32'd80,
     parameter [31:0] STEP_LOW_2 = 32'd152,
     parameter [31:0] STEP_LOW_3 = 32'd200,
     parameter [31:0] STEP_LOW_4 = 32'd8,
     parameter [31:0] STEP_LOW_5 = 32'd240,
-    // D, the minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
+    // The minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
     parameter [31:0] DIR_SETUP_0 = 32'd2,
     parameter [31:0] DIR_SETUP_1 = 32'd16,
     parameter [31:0] DIR_SETUP_2 = 32'd52,
     parameter [31:0] DIR_SETUP_3 = 32'd400,
     parameter [31:0] DIR_SETUP_4 = 32'd2,
     parameter [31:0] DIR_SETUP_5 = 32'd120,
-    // H, the minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
+    // The minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
     parameter [31:0] DIR_HOLD_0 = 32'd2,
     parameter [31:0] DIR_HOLD_1 = 32'd16,
     parameter [31:0] DIR_HOLD_2 = 32'd52,
@@ -1827,7 +1827,7 @@ module carrystep_engine #(
     // Rounds from the rising edge of `enabled` until starts are accepted; 0 to 4095
     parameter [31:0] ENABLE_ROUNDS = 32'd33,
     // Equal consecutive samples, one per round, that change a limit's debounced state; 1 to 127
-    parameter [31:0] DEBOUNCE_LOOKS = 32'd17,
+    parameter [31:0] DEBOUNCE_SAMPLES = 32'd17,
     // Limit switches: 0 none, 1 two per axis, 2 one per axis, 3 one for all axes; 0 to 3
     parameter [31:0] LIMITS = 32'd1,
     // Active level of the limit switches: 0 high, 1 low; 0 or 1
@@ -1926,10 +1926,10 @@ module carrystep_engine #(
     reg [5:0] counted_5;
     reg [5:0] late_bit_5;
 
-    wire [16:0] turn_beat;
-    wire [2:0] turn_axis;
-    wire [2:0] turn_axis_next;
-    wire [5:0] turn_lane;
+    wire [16:0] time_slot_beat;
+    wire [2:0] time_slot_axis;
+    wire [2:0] time_slot_axis_next;
+    wire [5:0] time_slot_axis_one_hot;
     wire [31:0] adder_sum;
     wire adder_ended;
     wire adder_overflow;
@@ -1958,14 +1958,14 @@ module carrystep_engine #(
     wire queue_down;
     wire queue_lost;
     wire [31:0] store_word;
-    wire wheel_strobe;
-    wire wheel_phase_start;
-    wire [5:0] wheel_events;
-    wire [5:0] wheel_backward;
+    wire event_wheel_strobe;
+    wire event_wheel_phase_start;
+    wire [5:0] event_wheel_events;
+    wire [5:0] event_wheel_backward;
     wire limits_hit;
-    wire [5:0] homes_axes;
-    wire homes_waits;
-    wire homes_slows;
+    wire [5:0] homing_control_axes;
+    wire homing_control_waits;
+    wire homing_control_slows;
     wire stops_fault;
     wire stops_finds;
     wire stops_frozen;
@@ -1980,49 +1980,49 @@ module carrystep_engine #(
     wire resets_resetting;
     wire resets_completes;
     wire resets_restarts_round;
-    wire watch_pressed;
-    wire watch_missed;
-    wire watch_enabled;
-    wire watch_warm;
-    wire watch_tick_0;
-    wire watch_tick_1;
+    wire supervisor_pressed;
+    wire supervisor_missed;
+    wire supervisor_enabled;
+    wire supervisor_warm;
+    wire supervisor_tick_0;
+    wire supervisor_tick_1;
     wire pulser_0_step;
     wire pulser_0_dir;
-    wire pulser_0_owed;
+    wire pulser_0_held_back;
     wire [5:0] pulser_0_counts;
     wire pulser_0_overruns;
     wire pulser_1_step;
     wire pulser_1_dir;
-    wire pulser_1_owed;
+    wire pulser_1_held_back;
     wire [5:0] pulser_1_counts;
     wire pulser_1_overruns;
     wire pulser_2_step;
     wire pulser_2_dir;
-    wire pulser_2_owed;
+    wire pulser_2_held_back;
     wire [5:0] pulser_2_counts;
     wire pulser_2_overruns;
     wire pulser_3_step;
     wire pulser_3_dir;
-    wire pulser_3_owed;
+    wire pulser_3_held_back;
     wire [5:0] pulser_3_counts;
     wire pulser_3_overruns;
     wire pulser_4_step;
     wire pulser_4_dir;
-    wire pulser_4_owed;
+    wire pulser_4_held_back;
     wire [5:0] pulser_4_counts;
     wire pulser_4_overruns;
     wire pulser_5_step;
     wire pulser_5_dir;
-    wire pulser_5_owed;
+    wire pulser_5_held_back;
     wire [5:0] pulser_5_counts;
     wire pulser_5_overruns;
 
-    wire strobe = wheel_strobe;
+    wire strobe = event_wheel_strobe;
     wire masked = mask[0];
     wire nobody = {1'b0, put_axis} >= AXES;
-    wire listens = turn_beat[7] & (turn_axis == put_axis);
+    wire listens = time_slot_beat[7] & (time_slot_axis == put_axis);
     wire take = put_valid & put_ready & !nobody;
-    wire may_start = enable & watch_warm;
+    wire may_start = enable & supervisor_warm;
     wire free = !stops_fault & !stops_finds;
     wire decides = strobe & waits & free;
     wire go = decides & !unfed & !held;
@@ -2031,9 +2031,9 @@ module carrystep_engine #(
     assign put_ready = !stops_fault & (nobody | (listens & !queue_full));
     assign start_ready = strobe & !waits & !stops_fault & may_start;
     assign get_data = store_word;
-    assign get_valid = turn_beat[11];
-    assign latch = turn_beat[6] & homes_waits;
-    assign latch_axis = turn_axis;
+    assign get_valid = time_slot_beat[11];
+    assign latch = time_slot_beat[6] & homing_control_waits;
+    assign latch_axis = time_slot_axis;
     assign room = queue_room;
     assign room_valid = listens;
     assign step[0] = pulser_0_step;
@@ -2048,7 +2048,7 @@ module carrystep_engine #(
     assign dir[3] = pulser_3_dir;
     assign dir[4] = pulser_4_dir;
     assign dir[5] = pulser_5_dir;
-    assign enabled = watch_enabled;
+    assign enabled = supervisor_enabled;
     assign idle = rests;
     assign fault = stops_fault;
     assign halted = stops_halted;
@@ -2057,7 +2057,7 @@ module carrystep_engine #(
     assign culprits = stops_culprits;
     assign armed = waits;
     assign ready = may_start;
-    assign homing = homes_axes;
+    assign homing = homing_control_axes;
     assign started = go;
 
     always @(*) begin
@@ -2072,12 +2072,12 @@ module carrystep_engine #(
 
     always @(*) begin
         pins_busy = 1'b0;
-        pins_busy = pins_busy | pulser_0_owed | pulser_0_step;
-        pins_busy = pins_busy | pulser_1_owed | pulser_1_step;
-        pins_busy = pins_busy | pulser_2_owed | pulser_2_step;
-        pins_busy = pins_busy | pulser_3_owed | pulser_3_step;
-        pins_busy = pins_busy | pulser_4_owed | pulser_4_step;
-        pins_busy = pins_busy | pulser_5_owed | pulser_5_step;
+        pins_busy = pins_busy | pulser_0_held_back | pulser_0_step;
+        pins_busy = pins_busy | pulser_1_held_back | pulser_1_step;
+        pins_busy = pins_busy | pulser_2_held_back | pulser_2_step;
+        pins_busy = pins_busy | pulser_3_held_back | pulser_3_step;
+        pins_busy = pins_busy | pulser_4_held_back | pulser_4_step;
+        pins_busy = pins_busy | pulser_5_held_back | pulser_5_step;
     end
 
     always @(*) begin
@@ -2092,7 +2092,7 @@ module carrystep_engine #(
 
     always @(*) begin
         counted_0 = NONE;
-        if (turn_lane[0]) begin
+        if (time_slot_axis_one_hot[0]) begin
             counted_0 = pulser_0_counts;
         end
     end
@@ -2106,7 +2106,7 @@ module carrystep_engine #(
 
     always @(*) begin
         counted_1 = NONE;
-        if (turn_lane[1]) begin
+        if (time_slot_axis_one_hot[1]) begin
             counted_1 = pulser_1_counts;
         end
     end
@@ -2120,7 +2120,7 @@ module carrystep_engine #(
 
     always @(*) begin
         counted_2 = NONE;
-        if (turn_lane[2]) begin
+        if (time_slot_axis_one_hot[2]) begin
             counted_2 = pulser_2_counts;
         end
     end
@@ -2134,7 +2134,7 @@ module carrystep_engine #(
 
     always @(*) begin
         counted_3 = NONE;
-        if (turn_lane[3]) begin
+        if (time_slot_axis_one_hot[3]) begin
             counted_3 = pulser_3_counts;
         end
     end
@@ -2148,7 +2148,7 @@ module carrystep_engine #(
 
     always @(*) begin
         counted_4 = NONE;
-        if (turn_lane[4]) begin
+        if (time_slot_axis_one_hot[4]) begin
             counted_4 = pulser_4_counts;
         end
     end
@@ -2162,7 +2162,7 @@ module carrystep_engine #(
 
     always @(*) begin
         counted_5 = NONE;
-        if (turn_lane[5]) begin
+        if (time_slot_axis_one_hot[5]) begin
             counted_5 = pulser_5_counts;
         end
     end
@@ -2174,18 +2174,18 @@ module carrystep_engine #(
         end
     end
 
-    carrystep_turn turn (
+    carrystep_time_slot time_slot (
         .clock(clock),
         .strobe(strobe),
-        .beat(turn_beat),
-        .axis(turn_axis),
-        .axis_next(turn_axis_next),
-        .lane(turn_lane)
+        .beat(time_slot_beat),
+        .axis(time_slot_axis),
+        .axis_next(time_slot_axis_next),
+        .axis_one_hot(time_slot_axis_one_hot)
     );
 
     carrystep_adder adder (
         .clock(clock),
-        .beat(turn_beat),
+        .beat(time_slot_beat),
         .word(store_word),
         .put(put_data),
         .counts(queue_running),
@@ -2207,14 +2207,14 @@ module carrystep_engine #(
 
     carrystep_queue queue (
         .clock(clock),
-        .beat(turn_beat),
-        .axis(turn_axis),
-        .axis_next(turn_axis_next),
+        .beat(time_slot_beat),
+        .axis(time_slot_axis),
+        .axis_next(time_slot_axis_next),
         .starts(going & masked),
         .halted(stops_halted),
-        .ramp(stops_ramp | homes_slows),
+        .ramp(stops_ramp | homing_control_slows),
         .clear(stops_clearing),
-        .empties(homes_slows & !queue_goes_on),
+        .empties(homing_control_slows & !queue_goes_on),
         .take(take),
         .put_word(put_word),
         .last(put_data[0]),
@@ -2255,8 +2255,8 @@ module carrystep_engine #(
         .STOP_ACCEL_5(STOP_ACCEL_5)
     ) store (
         .clock(clock),
-        .beat(turn_beat),
-        .axis(turn_axis),
+        .beat(time_slot_beat),
+        .axis(time_slot_axis),
         .live(queue_live),
         .fresh(queue_fresh),
         .running(queue_running),
@@ -2274,36 +2274,36 @@ module carrystep_engine #(
         .word(store_word)
     );
 
-    carrystep_wheel #(
+    carrystep_event_wheel #(
         .CLOCKS_PER_TICK(CLOCKS_PER_TICK),
         .EVENT_MEMORY(EVENT_MEMORY)
-    ) wheel (
+    ) event_wheel (
         .clock(clock),
-        .turn_ends(turn_beat[12]),
-        .lane(turn_lane),
+        .time_slot_ends(time_slot_beat[12]),
+        .axis_one_hot(time_slot_axis_one_hot),
         .crosses(queue_moves & adder_crosses),
         .has_sign(queue_moves & !adder_still),
         .back(adder_back),
-        .phase_known(turn_beat[16]),
+        .phase_known(time_slot_beat[16]),
         .q(adder_q),
-        .strobe(wheel_strobe),
-        .phase_start(wheel_phase_start),
-        .events(wheel_events),
-        .backward(wheel_backward)
+        .strobe(event_wheel_strobe),
+        .phase_start(event_wheel_phase_start),
+        .events(event_wheel_events),
+        .backward(event_wheel_backward)
     );
 
     carrystep_limits #(
-        .DEBOUNCE_LOOKS(DEBOUNCE_LOOKS),
+        .DEBOUNCE_SAMPLES(DEBOUNCE_SAMPLES),
         .LIMITS(LIMITS),
         .LIMITS_LOW(LIMITS_LOW)
     ) limits (
         .clock(clock),
-        .turn_ends(turn_beat[12]),
-        .axis(turn_axis),
-        .axis_next(turn_axis_next),
-        .lane(turn_lane),
-        .tick_0(watch_tick_0),
-        .tick_1(watch_tick_1),
+        .time_slot_ends(time_slot_beat[12]),
+        .axis(time_slot_axis),
+        .axis_next(time_slot_axis_next),
+        .axis_one_hot(time_slot_axis_one_hot),
+        .tick_0(supervisor_tick_0),
+        .tick_1(supervisor_tick_1),
         .limit_min(limit_min),
         .limit_max(limit_max),
         .goes(queue_moves & !adder_still),
@@ -2312,18 +2312,18 @@ module carrystep_engine #(
         .hit(limits_hit)
     );
 
-    carrystep_homes homes (
+    carrystep_homing_control homing_control (
         .clock(clock),
         .set(home_valid),
         .mask(home_mask),
-        .turn_ends(turn_beat[12]),
-        .lane(turn_lane),
+        .time_slot_ends(time_slot_beat[12]),
+        .axis_one_hot(time_slot_axis_one_hot),
         .hit(limits_hit),
         .goes_on(queue_goes_on),
         .resetting(resets_resetting),
-        .axes(homes_axes),
-        .waits(homes_waits),
-        .slows(homes_slows)
+        .axes(homing_control_axes),
+        .waits(homing_control_waits),
+        .slows(homing_control_slows)
     );
 
     carrystep_stops #(
@@ -2331,16 +2331,16 @@ module carrystep_engine #(
     ) stops (
         .clock(clock),
         .strobe(strobe),
-        .turn_ends(turn_beat[12]),
-        .lane(turn_lane),
+        .time_slot_ends(time_slot_beat[12]),
+        .axis_one_hot(time_slot_axis_one_hot),
         .runs(queue_running),
         .too_fast(queue_too_fast),
-        .limit(limits_hit & !homes_waits & !homes_slows),
+        .limit(limits_hit & !homing_control_waits & !homing_control_slows),
         .dry(queue_dry),
         .late(late),
-        .pressed(watch_pressed),
+        .pressed(supervisor_pressed),
         .breaks((((put_valid & nobody) | broken | queue_misplaced) & !stops_fault) | (decides & unfed)),
-        .missed(watch_missed & !rest_2),
+        .missed(supervisor_missed & !rest_2),
         .asked(stop),
         .clear(clear),
         .pins_busy(pins_busy),
@@ -2372,12 +2372,12 @@ module carrystep_engine #(
         .restarts_round(resets_restarts_round)
     );
 
-    carrystep_watch #(
+    carrystep_supervisor #(
         .ROUND_TICKS(ROUND_TICKS),
         .WATCHDOG_ROUNDS(WATCHDOG_ROUNDS),
         .ENABLE_ROUNDS(ENABLE_ROUNDS),
         .ESTOP_LOW(ESTOP_LOW)
-    ) watch (
+    ) supervisor (
         .clock(clock),
         .strobe(strobe),
         .estop(estop),
@@ -2387,12 +2387,12 @@ module carrystep_engine #(
         .ending(resets_ending),
         .resetting(resets_resetting),
         .restarts_round(resets_restarts_round),
-        .pressed(watch_pressed),
-        .missed(watch_missed),
-        .enabled(watch_enabled),
-        .warm(watch_warm),
-        .tick_0(watch_tick_0),
-        .tick_1(watch_tick_1)
+        .pressed(supervisor_pressed),
+        .missed(supervisor_missed),
+        .enabled(supervisor_enabled),
+        .warm(supervisor_warm),
+        .tick_0(supervisor_tick_0),
+        .tick_1(supervisor_tick_1)
     );
 
     carrystep_pulser #(
@@ -2403,13 +2403,13 @@ module carrystep_engine #(
     ) pulser_0 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[0] & wheel_phase_start),
-        .request_back(wheel_backward[0]),
-        .has_sign(wheel_events[0] & strobe),
-        .sign_back(wheel_backward[0]),
+        .request(event_wheel_events[0] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[0]),
+        .has_sign(event_wheel_events[0] & strobe),
+        .sign_back(event_wheel_backward[0]),
         .step(pulser_0_step),
         .dir(pulser_0_dir),
-        .owed(pulser_0_owed),
+        .held_back(pulser_0_held_back),
         .counts(pulser_0_counts),
         .overruns(pulser_0_overruns)
     );
@@ -2422,13 +2422,13 @@ module carrystep_engine #(
     ) pulser_1 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[1] & wheel_phase_start),
-        .request_back(wheel_backward[1]),
-        .has_sign(wheel_events[1] & strobe),
-        .sign_back(wheel_backward[1]),
+        .request(event_wheel_events[1] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[1]),
+        .has_sign(event_wheel_events[1] & strobe),
+        .sign_back(event_wheel_backward[1]),
         .step(pulser_1_step),
         .dir(pulser_1_dir),
-        .owed(pulser_1_owed),
+        .held_back(pulser_1_held_back),
         .counts(pulser_1_counts),
         .overruns(pulser_1_overruns)
     );
@@ -2441,13 +2441,13 @@ module carrystep_engine #(
     ) pulser_2 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[2] & wheel_phase_start),
-        .request_back(wheel_backward[2]),
-        .has_sign(wheel_events[2] & strobe),
-        .sign_back(wheel_backward[2]),
+        .request(event_wheel_events[2] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[2]),
+        .has_sign(event_wheel_events[2] & strobe),
+        .sign_back(event_wheel_backward[2]),
         .step(pulser_2_step),
         .dir(pulser_2_dir),
-        .owed(pulser_2_owed),
+        .held_back(pulser_2_held_back),
         .counts(pulser_2_counts),
         .overruns(pulser_2_overruns)
     );
@@ -2460,13 +2460,13 @@ module carrystep_engine #(
     ) pulser_3 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[3] & wheel_phase_start),
-        .request_back(wheel_backward[3]),
-        .has_sign(wheel_events[3] & strobe),
-        .sign_back(wheel_backward[3]),
+        .request(event_wheel_events[3] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[3]),
+        .has_sign(event_wheel_events[3] & strobe),
+        .sign_back(event_wheel_backward[3]),
         .step(pulser_3_step),
         .dir(pulser_3_dir),
-        .owed(pulser_3_owed),
+        .held_back(pulser_3_held_back),
         .counts(pulser_3_counts),
         .overruns(pulser_3_overruns)
     );
@@ -2479,13 +2479,13 @@ module carrystep_engine #(
     ) pulser_4 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[4] & wheel_phase_start),
-        .request_back(wheel_backward[4]),
-        .has_sign(wheel_events[4] & strobe),
-        .sign_back(wheel_backward[4]),
+        .request(event_wheel_events[4] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[4]),
+        .has_sign(event_wheel_events[4] & strobe),
+        .sign_back(event_wheel_backward[4]),
         .step(pulser_4_step),
         .dir(pulser_4_dir),
-        .owed(pulser_4_owed),
+        .held_back(pulser_4_held_back),
         .counts(pulser_4_counts),
         .overruns(pulser_4_overruns)
     );
@@ -2498,29 +2498,29 @@ module carrystep_engine #(
     ) pulser_5 (
         .clock(clock),
         .frozen(stops_frozen),
-        .request(wheel_events[5] & wheel_phase_start),
-        .request_back(wheel_backward[5]),
-        .has_sign(wheel_events[5] & strobe),
-        .sign_back(wheel_backward[5]),
+        .request(event_wheel_events[5] & event_wheel_phase_start),
+        .request_back(event_wheel_backward[5]),
+        .has_sign(event_wheel_events[5] & strobe),
+        .sign_back(event_wheel_backward[5]),
         .step(pulser_5_step),
         .dir(pulser_5_dir),
-        .owed(pulser_5_owed),
+        .held_back(pulser_5_held_back),
         .counts(pulser_5_counts),
         .overruns(pulser_5_overruns)
     );
 
     always @(posedge clock) begin
-        taken <= taken & !turn_beat[9];
+        taken <= taken & !time_slot_beat[9];
         if (take) begin
             taken <= put_word != COMMIT;
         end
-        if (turn_beat[7]) begin
+        if (time_slot_beat[7]) begin
             taken_word <= put_word;
         end
         if (strobe) begin
             going <= go;
         end
-        if (turn_beat[12]) begin
+        if (time_slot_beat[12]) begin
             mask <= (mask >> BY_ONE) | (mask << TO_TOP);
         end
         if (start_ready & start_valid) begin
@@ -2530,9 +2530,9 @@ module carrystep_engine #(
         if (go | stops_fault) begin
             waits <= 1'b0;
         end
-        if (turn_beat[12]) begin
+        if (time_slot_beat[12]) begin
             unfed <= unfed | (masked & queue_empty);
-            held <= held | (masked & (queue_goes_on | homes_slows));
+            held <= held | (masked & (queue_goes_on | homing_control_slows));
             active <= active | queue_running | !queue_empty;
         end
         if (strobe) begin

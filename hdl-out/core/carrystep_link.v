@@ -12,11 +12,11 @@
 //
 // Clock        80000000 Hz
 // Line         uart, 87 clocks a bit
-// Build id     1fe1f986e7ca9793
+// Build id     ba2608fc03d32853
 
 `default_nettype none
 
-// Program memory of the processor carrystep_machine.
+// Program memory of the processor carrystep_processor.
 module carrystep_instructions (
     input  wire         clock,
     input  wire   [7:0] read_address,
@@ -260,7 +260,7 @@ module carrystep_instructions (
     end
 endmodule
 
-// Data memory of carrystep_machine: the request, its answer, constants and variables.
+// Data memory of carrystep_processor: the request, its answer, constants and variables.
 module carrystep_data (
     input  wire         clock,
     input  wire   [7:0] read_address,
@@ -338,7 +338,7 @@ module carrystep_ring (
 endmodule
 
 // Computes the CRC-32 of frames, and assembles words from bytes; one bit per clock.
-module carrystep_check (
+module carrystep_crc (
     input  wire         clock,
     input  wire         begins,
     input  wire  [31:0] word,
@@ -386,7 +386,7 @@ module carrystep_check (
 endmodule
 
 // A small processor that reads the host's requests, executes them and writes the answers.
-module carrystep_machine (
+module carrystep_processor (
     input  wire         clock,
     input  wire         received,
     input  wire   [7:0] received_data,
@@ -465,8 +465,8 @@ module carrystep_machine (
     wire [15:0] instructions_read_data;
     wire [7:0] data_read_data;
     wire [7:0] ring_read_data;
-    wire check_over;
-    wire [31:0] check_word_out;
+    wire crc_over;
+    wire [31:0] crc_word_out;
 
     wire [15:0] code = instructions_read_data;
     wire executes = stage == EXECUTE;
@@ -477,14 +477,14 @@ module carrystep_machine (
     wire does = acts & !code[15] & !code[14];
     wire steps = does & code[2];
     wire waits = does & code[5];
-    wire over = (!waits | waited) & (!steps | check_over);
+    wire over = (!waits | waited) & (!steps | crc_over);
     wire empty = read == written;
 
     assign answer_valid = waits & code[9];
     assign x = index;
     assign a = sum;
     assign put_valid = does & code[11];
-    assign put_data = check_word_out;
+    assign put_data = crc_word_out;
     assign start_valid = does & code[10];
     assign clear = clears;
     assign broken = does & code[8];
@@ -578,7 +578,7 @@ module carrystep_machine (
             value = index;
         end
         if (code[10:8] == FROM_CHECK) begin
-            value = check_word_out[7:0];
+            value = crc_word_out[7:0];
         end
     end
 
@@ -630,15 +630,15 @@ module carrystep_machine (
         .write_data(received_data)
     );
 
-    carrystep_check check (
+    carrystep_crc crc (
         .clock(clock),
         .begins(does & code[4]),
         .word(facts),
         .step(steps),
         .data(sum),
         .feed(code[3]),
-        .over(check_over),
-        .word_out(check_word_out)
+        .over(crc_over),
+        .word_out(crc_word_out)
     );
 
     always @(posedge clock) begin
@@ -681,10 +681,10 @@ module carrystep_machine (
     end
 endmodule
 
-// Memory of carrystep_facts: constants of the build, and the last known state of each axis.
+// Memory of carrystep_register_mirror: constants of the build, and the last known state of each axis.
 module carrystep_known #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'h1fe1f986e7ca9793,
+    parameter [63:0] BUILD_ID = 64'hba2608fc03d32853,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -728,9 +728,9 @@ module carrystep_known #(
 endmodule
 
 // What the host can read: constants of the build, and the last known state of each axis.
-module carrystep_facts #(
+module carrystep_register_mirror #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'h1fe1f986e7ca9793,
+    parameter [63:0] BUILD_ID = 64'hba2608fc03d32853,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -809,7 +809,7 @@ endmodule
 // The host link: receives requests, passes segments to the engine and sends answers.
 module carrystep_link #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
-    parameter [63:0] BUILD_ID = 64'h1fe1f986e7ca9793,
+    parameter [63:0] BUILD_ID = 64'hba2608fc03d32853,
     // Frequency of the clock in Hz, reported to the host; 1 to 10^9
     parameter [31:0] CLOCK_HZ = 32'h4c4b400,
     // Length of a tick in ns, reported to the host; 1 to 2^32 - 1
@@ -858,62 +858,62 @@ module carrystep_link #(
     input  wire   [5:0] homing
 );
 
-    wire machine_answer_valid;
-    wire [7:0] machine_x;
-    wire [7:0] machine_a;
-    wire machine_put_valid;
-    wire [31:0] machine_put_data;
-    wire machine_start_valid;
-    wire machine_clear;
-    wire machine_broken;
-    wire machine_home_valid;
-    wire machine_kick;
-    wire machine_enable;
-    wire machine_stop;
-    wire [31:0] facts_data;
-    wire [2:0] facts_get_axis;
-    wire [1:0] facts_get_item;
-    wire facts_scanned;
+    wire processor_answer_valid;
+    wire [7:0] processor_x;
+    wire [7:0] processor_a;
+    wire processor_put_valid;
+    wire [31:0] processor_put_data;
+    wire processor_start_valid;
+    wire processor_clear;
+    wire processor_broken;
+    wire processor_home_valid;
+    wire processor_kick;
+    wire processor_enable;
+    wire processor_stop;
+    wire [31:0] register_mirror_data;
+    wire [2:0] register_mirror_get_axis;
+    wire [1:0] register_mirror_get_item;
+    wire register_mirror_scanned;
 
-    assign answer_valid = machine_answer_valid;
-    assign answer = machine_a;
-    assign put_valid = machine_put_valid;
-    assign put_axis = machine_a[5:3];
-    assign put_word = machine_x[4:2];
-    assign put_data = machine_put_data;
-    assign start_valid = machine_start_valid;
-    assign start_mask = machine_a[5:0];
-    assign clear = machine_clear;
-    assign stop = machine_stop;
-    assign broken = machine_broken;
-    assign home_valid = machine_home_valid;
-    assign home_mask = machine_a[5:0];
-    assign kick = machine_kick;
-    assign enable = machine_enable;
-    assign get_axis = facts_get_axis;
-    assign get_item = facts_get_item;
+    assign answer_valid = processor_answer_valid;
+    assign answer = processor_a;
+    assign put_valid = processor_put_valid;
+    assign put_axis = processor_a[5:3];
+    assign put_word = processor_x[4:2];
+    assign put_data = processor_put_data;
+    assign start_valid = processor_start_valid;
+    assign start_mask = processor_a[5:0];
+    assign clear = processor_clear;
+    assign stop = processor_stop;
+    assign broken = processor_broken;
+    assign home_valid = processor_home_valid;
+    assign home_mask = processor_a[5:0];
+    assign kick = processor_kick;
+    assign enable = processor_enable;
+    assign get_axis = register_mirror_get_axis;
+    assign get_item = register_mirror_get_item;
 
-    carrystep_machine machine (
+    carrystep_processor processor (
         .clock(clock),
         .received(received_valid),
         .received_data(received),
-        .answer_valid(machine_answer_valid),
+        .answer_valid(processor_answer_valid),
         .answer_take(answer_take),
-        .x(machine_x),
-        .a(machine_a),
-        .facts(facts_data),
-        .put_valid(machine_put_valid),
-        .put_data(machine_put_data),
+        .x(processor_x),
+        .a(processor_a),
+        .facts(register_mirror_data),
+        .put_valid(processor_put_valid),
+        .put_data(processor_put_data),
         .put_ready(put_ready),
-        .start_valid(machine_start_valid),
+        .start_valid(processor_start_valid),
         .start_ready(start_ready),
-        .clear(machine_clear),
-        .broken(machine_broken),
-        .home_valid(machine_home_valid),
-        .kick(machine_kick),
-        .enable(machine_enable),
-        .stop(machine_stop),
-        .scanned(facts_scanned),
+        .clear(processor_clear),
+        .broken(processor_broken),
+        .home_valid(processor_home_valid),
+        .kick(processor_kick),
+        .enable(processor_enable),
+        .stop(processor_stop),
+        .scanned(register_mirror_scanned),
         .fault(fault),
         .halted(halted),
         .idle(idle),
@@ -926,23 +926,23 @@ module carrystep_link #(
         .homing(homing)
     );
 
-    carrystep_facts #(
+    carrystep_register_mirror #(
         .BUILD_ID(BUILD_ID),
         .CLOCK_HZ(CLOCK_HZ),
         .TICK_NS(TICK_NS),
         .ROUND_TICKS(ROUND_TICKS),
         .WATCHDOG_ROUNDS(WATCHDOG_ROUNDS)
-    ) facts (
+    ) register_mirror (
         .clock(clock),
-        .address(machine_x[6:0]),
-        .data(facts_data),
-        .get_axis(facts_get_axis),
-        .get_item(facts_get_item),
+        .address(processor_x[6:0]),
+        .data(register_mirror_data),
+        .get_axis(register_mirror_get_axis),
+        .get_item(register_mirror_get_item),
         .get_data(get_data),
         .get_valid(get_valid),
         .latch(latch),
         .latch_axis(latch_axis),
-        .scanned(facts_scanned)
+        .scanned(register_mirror_scanned)
     );
 endmodule
 

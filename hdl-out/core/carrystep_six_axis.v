@@ -15,12 +15,12 @@
 // Latency      161 clocks from the load of a move to the edge of its tick 1, phase 0
 // P starts at  half a step
 // Pins         in clocks: STEP high, STEP low, DIR before STEP, DIR after STEP
-//   axis 0     W 8, S 8, D 2, H 2
-//   axis 1     W 80, S 80, D 16, H 16
-//   axis 2     W 152, S 152, D 52, H 52
-//   axis 3     W 200, S 200, D 400, H 400
-//   axis 4     W 8, S 8, D 2, H 2
-//   axis 5     W 240, S 240, D 120, H 120
+//   axis 0     STEP_HIGH 8, STEP_LOW 8, DIR_SETUP 2, DIR_HOLD 2
+//   axis 1     STEP_HIGH 80, STEP_LOW 80, DIR_SETUP 16, DIR_HOLD 16
+//   axis 2     STEP_HIGH 152, STEP_LOW 152, DIR_SETUP 52, DIR_HOLD 52
+//   axis 3     STEP_HIGH 200, STEP_LOW 200, DIR_SETUP 400, DIR_HOLD 400
+//   axis 4     STEP_HIGH 8, STEP_LOW 8, DIR_SETUP 2, DIR_HOLD 2
+//   axis 5     STEP_HIGH 240, STEP_LOW 240, DIR_SETUP 120, DIR_HOLD 120
 
 `default_nettype none
 
@@ -427,13 +427,13 @@ endmodule
 
 // Drives STEP and DIR of one axis with the pulse width, gap, set-up and hold of its driver.
 module carrystep_shaper #(
-    // W, the minimum time in clocks for which STEP is high; 1 to 65536
+    // The minimum time in clocks for which STEP is high; 1 to 65536
     parameter [31:0] STEP_HIGH = 32'd8,
-    // S, the minimum time in clocks for which STEP is low; 1 to 65536
+    // The minimum time in clocks for which STEP is low; 1 to 65536
     parameter [31:0] STEP_LOW = 32'd8,
-    // D, the minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
+    // The minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
     parameter [31:0] DIR_SETUP = 32'd2,
-    // H, the minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
+    // The minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
     parameter [31:0] DIR_HOLD = 32'd2
 ) (
     input  wire         clock,
@@ -445,7 +445,7 @@ module carrystep_shaper #(
     input  wire         want_back,
     output wire         step,
     output wire         dir,
-    output wire         owed,
+    output wire         held_back,
     output wire  [31:0] position,
     output wire  [31:0] discarded,
     output wire         overrun
@@ -471,7 +471,7 @@ module carrystep_shaper #(
             used_bits_17 = used_bits_17 | (used_bits_17 >> 16);
         end
     endfunction
-    localparam [16:0] GAP = STEP_LOW[16:0];
+    localparam [16:0] STEP_FALLS_AT = STEP_LOW[16:0];
     localparam [16:0] BUSY_LOAD = (STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd1;
     localparam [16:0] BUSY_BITS = used_bits_17((STEP_HIGH[16:0] + STEP_LOW[16:0]) - 17'd1);
     localparam [15:0] HOLD_LOAD = DIR_HOLD[15:0] - 16'd1;
@@ -515,12 +515,12 @@ module carrystep_shaper #(
     wire want_now = want_back | (want & !want_fwd);
     wire pending = due | request;
     wire rise = pending & !frozen & (busy == 17'd0) & (setup == 16'd0) & (dir_pin == first_back);
-    wire turn = !frozen & (hold == 16'd0) & (dir_pin != aim);
+    wire dir_changes = !frozen & (hold == 16'd0) & (dir_pin != aim);
     wire second = due & request;
 
     assign step = step_pin;
     assign dir = dir_pin;
-    assign owed = due;
+    assign held_back = due;
     assign position = steps;
     assign discarded = lost;
     assign overrun = late;
@@ -541,8 +541,8 @@ module carrystep_shaper #(
 
     always @(posedge clock) begin
         want <= want_now;
-        step_pin <= rise | (step_pin & (busy != GAP));
-        dir_pin <= dir_pin ^ turn;
+        step_pin <= rise | (step_pin & (busy != STEP_FALLS_AT));
+        dir_pin <= dir_pin ^ dir_changes;
         if (rise) begin
             busy <= BUSY_LOAD;
         end else if (busy != 17'd0) begin
@@ -553,7 +553,7 @@ module carrystep_shaper #(
         end else if (hold != 16'd0) begin
             hold <= (hold - TIMER_ONE) & HOLD_BITS;
         end
-        if (turn) begin
+        if (dir_changes) begin
             setup <= SETUP_LOAD;
         end else if (setup != 16'd0) begin
             setup <= (setup - TIMER_ONE) & SETUP_BITS;
@@ -596,28 +596,28 @@ module carrystep_six_axis #(
     parameter [31:0] CLOCKS_PER_TICK = 32'd80,
     // Start value of P: 1 half a step, 0 zero; 0 or 1
     parameter [31:0] START_HALF = 32'd1,
-    // W, the minimum time in clocks for which STEP is high; 1 to 65536
+    // The minimum time in clocks for which STEP is high; 1 to 65536
     parameter [31:0] STEP_HIGH_0 = 32'd8,
     parameter [31:0] STEP_HIGH_1 = 32'd80,
     parameter [31:0] STEP_HIGH_2 = 32'd152,
     parameter [31:0] STEP_HIGH_3 = 32'd200,
     parameter [31:0] STEP_HIGH_4 = 32'd8,
     parameter [31:0] STEP_HIGH_5 = 32'd240,
-    // S, the minimum time in clocks for which STEP is low; 1 to 65536
+    // The minimum time in clocks for which STEP is low; 1 to 65536
     parameter [31:0] STEP_LOW_0 = 32'd8,
     parameter [31:0] STEP_LOW_1 = 32'd80,
     parameter [31:0] STEP_LOW_2 = 32'd152,
     parameter [31:0] STEP_LOW_3 = 32'd200,
     parameter [31:0] STEP_LOW_4 = 32'd8,
     parameter [31:0] STEP_LOW_5 = 32'd240,
-    // D, the minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
+    // The minimum time in clocks from a change of DIR to a rising edge of STEP; 1 to 65536
     parameter [31:0] DIR_SETUP_0 = 32'd2,
     parameter [31:0] DIR_SETUP_1 = 32'd16,
     parameter [31:0] DIR_SETUP_2 = 32'd52,
     parameter [31:0] DIR_SETUP_3 = 32'd400,
     parameter [31:0] DIR_SETUP_4 = 32'd2,
     parameter [31:0] DIR_SETUP_5 = 32'd120,
-    // H, the minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
+    // The minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
     parameter [31:0] DIR_HOLD_0 = 32'd2,
     parameter [31:0] DIR_HOLD_1 = 32'd16,
     parameter [31:0] DIR_HOLD_2 = 32'd52,
@@ -729,37 +729,37 @@ module carrystep_six_axis #(
     wire axis_5_underrun;
     wire shaper_0_step;
     wire shaper_0_dir;
-    wire shaper_0_owed;
+    wire shaper_0_held_back;
     wire [31:0] shaper_0_position;
     wire [31:0] shaper_0_discarded;
     wire shaper_0_overrun;
     wire shaper_1_step;
     wire shaper_1_dir;
-    wire shaper_1_owed;
+    wire shaper_1_held_back;
     wire [31:0] shaper_1_position;
     wire [31:0] shaper_1_discarded;
     wire shaper_1_overrun;
     wire shaper_2_step;
     wire shaper_2_dir;
-    wire shaper_2_owed;
+    wire shaper_2_held_back;
     wire [31:0] shaper_2_position;
     wire [31:0] shaper_2_discarded;
     wire shaper_2_overrun;
     wire shaper_3_step;
     wire shaper_3_dir;
-    wire shaper_3_owed;
+    wire shaper_3_held_back;
     wire [31:0] shaper_3_position;
     wire [31:0] shaper_3_discarded;
     wire shaper_3_overrun;
     wire shaper_4_step;
     wire shaper_4_dir;
-    wire shaper_4_owed;
+    wire shaper_4_held_back;
     wire [31:0] shaper_4_position;
     wire [31:0] shaper_4_discarded;
     wire shaper_4_overrun;
     wire shaper_5_step;
     wire shaper_5_dir;
-    wire shaper_5_owed;
+    wire shaper_5_held_back;
     wire [31:0] shaper_5_position;
     wire [31:0] shaper_5_discarded;
     wire shaper_5_overrun;
@@ -843,12 +843,12 @@ module carrystep_six_axis #(
 
     always @(*) begin
         at_rest = !armed;
-        at_rest = at_rest & axis_0_drained & !(shaper_0_owed | shaper_0_step);
-        at_rest = at_rest & axis_1_drained & !(shaper_1_owed | shaper_1_step);
-        at_rest = at_rest & axis_2_drained & !(shaper_2_owed | shaper_2_step);
-        at_rest = at_rest & axis_3_drained & !(shaper_3_owed | shaper_3_step);
-        at_rest = at_rest & axis_4_drained & !(shaper_4_owed | shaper_4_step);
-        at_rest = at_rest & axis_5_drained & !(shaper_5_owed | shaper_5_step);
+        at_rest = at_rest & axis_0_drained & !(shaper_0_held_back | shaper_0_step);
+        at_rest = at_rest & axis_1_drained & !(shaper_1_held_back | shaper_1_step);
+        at_rest = at_rest & axis_2_drained & !(shaper_2_held_back | shaper_2_step);
+        at_rest = at_rest & axis_3_drained & !(shaper_3_held_back | shaper_3_step);
+        at_rest = at_rest & axis_4_drained & !(shaper_4_held_back | shaper_4_step);
+        at_rest = at_rest & axis_5_drained & !(shaper_5_held_back | shaper_5_step);
     end
 
     always @(*) begin
@@ -1103,7 +1103,7 @@ module carrystep_six_axis #(
         .want_back(axis_0_want_back),
         .step(shaper_0_step),
         .dir(shaper_0_dir),
-        .owed(shaper_0_owed),
+        .held_back(shaper_0_held_back),
         .position(shaper_0_position),
         .discarded(shaper_0_discarded),
         .overrun(shaper_0_overrun)
@@ -1124,7 +1124,7 @@ module carrystep_six_axis #(
         .want_back(axis_1_want_back),
         .step(shaper_1_step),
         .dir(shaper_1_dir),
-        .owed(shaper_1_owed),
+        .held_back(shaper_1_held_back),
         .position(shaper_1_position),
         .discarded(shaper_1_discarded),
         .overrun(shaper_1_overrun)
@@ -1145,7 +1145,7 @@ module carrystep_six_axis #(
         .want_back(axis_2_want_back),
         .step(shaper_2_step),
         .dir(shaper_2_dir),
-        .owed(shaper_2_owed),
+        .held_back(shaper_2_held_back),
         .position(shaper_2_position),
         .discarded(shaper_2_discarded),
         .overrun(shaper_2_overrun)
@@ -1166,7 +1166,7 @@ module carrystep_six_axis #(
         .want_back(axis_3_want_back),
         .step(shaper_3_step),
         .dir(shaper_3_dir),
-        .owed(shaper_3_owed),
+        .held_back(shaper_3_held_back),
         .position(shaper_3_position),
         .discarded(shaper_3_discarded),
         .overrun(shaper_3_overrun)
@@ -1187,7 +1187,7 @@ module carrystep_six_axis #(
         .want_back(axis_4_want_back),
         .step(shaper_4_step),
         .dir(shaper_4_dir),
-        .owed(shaper_4_owed),
+        .held_back(shaper_4_held_back),
         .position(shaper_4_position),
         .discarded(shaper_4_discarded),
         .overrun(shaper_4_overrun)
@@ -1208,7 +1208,7 @@ module carrystep_six_axis #(
         .want_back(axis_5_want_back),
         .step(shaper_5_step),
         .dir(shaper_5_dir),
-        .owed(shaper_5_owed),
+        .held_back(shaper_5_held_back),
         .position(shaper_5_position),
         .discarded(shaper_5_discarded),
         .overrun(shaper_5_overrun)

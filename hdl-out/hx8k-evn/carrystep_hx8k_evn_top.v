@@ -73,7 +73,7 @@ module carrystep_hx8k_evn_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'haab7bd2eb16c269d),
+        .BUILD_ID(64'h64727a8259ea8439),
         .CLOCK_HZ(32'h47868c0),
         .TICK_NS(32'd1280),
         .ROUND_TICKS(32'd32),
@@ -156,7 +156,7 @@ module carrystep_hx8k_evn_top (
         .ROUND_TICKS(32'd32),
         .WATCHDOG_ROUNDS(32'd2443),
         .ENABLE_ROUNDS(32'd26),
-        .DEBOUNCE_LOOKS(32'd14),
+        .DEBOUNCE_SAMPLES(32'd14),
         .LIMITS(32'd2),
         .LIMITS_LOW(32'd0),
         .LIMIT_FREEZES(32'd0),

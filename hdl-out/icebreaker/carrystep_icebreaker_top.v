@@ -73,7 +73,7 @@ module carrystep_icebreaker_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'ha127af722b2a6c66),
+        .BUILD_ID(64'ha378d1134a7d3f66),
         .CLOCK_HZ(32'h23c3460),
         .TICK_NS(32'd2560),
         .ROUND_TICKS(32'd16),
@@ -156,7 +156,7 @@ module carrystep_icebreaker_top (
         .ROUND_TICKS(32'd16),
         .WATCHDOG_ROUNDS(32'd2443),
         .ENABLE_ROUNDS(32'd26),
-        .DEBOUNCE_LOOKS(32'd14),
+        .DEBOUNCE_SAMPLES(32'd14),
         .LIMITS(32'd2),
         .LIMITS_LOW(32'd0),
         .LIMIT_FREEZES(32'd0),

@@ -73,7 +73,7 @@ module carrystep_icestick_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'he0223e5f83e2d4ef),
+        .BUILD_ID(64'h504f66e75b91b70c),
         .CLOCK_HZ(32'h2dc6c00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -156,7 +156,7 @@ module carrystep_icestick_top (
         .ROUND_TICKS(32'd16),
         .WATCHDOG_ROUNDS(32'd3126),
         .ENABLE_ROUNDS(32'd33),
-        .DEBOUNCE_LOOKS(32'd17),
+        .DEBOUNCE_SAMPLES(32'd17),
         .LIMITS(32'd2),
         .LIMITS_LOW(32'd0),
         .LIMIT_FREEZES(32'd0),

@@ -73,7 +73,7 @@ module carrystep_icesugar_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h100d37a0fa7e0dbe),
+        .BUILD_ID(64'h74c346ad2df0a6df),
         .CLOCK_HZ(32'h1c9c380),
         .TICK_NS(32'd3200),
         .ROUND_TICKS(32'd8),
@@ -156,7 +156,7 @@ module carrystep_icesugar_top (
         .ROUND_TICKS(32'd8),
         .WATCHDOG_ROUNDS(32'd3908),
         .ENABLE_ROUNDS(32'd41),
-        .DEBOUNCE_LOOKS(32'd21),
+        .DEBOUNCE_SAMPLES(32'd21),
         .LIMITS(32'd2),
         .LIMITS_LOW(32'd0),
         .LIMIT_FREEZES(32'd0),

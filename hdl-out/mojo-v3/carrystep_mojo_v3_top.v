@@ -88,7 +88,7 @@ module carrystep_mojo_v3_top (
     assign uart_tx = driven ? uart_tx_out : 1'bz;
 
     carrystep_link #(
-        .BUILD_ID(64'hff2ba82297bf515f),
+        .BUILD_ID(64'h3a3295ce2c11b8b),
         .CLOCK_HZ(32'h4c4b400),
         .TICK_NS(32'd1000),
         .ROUND_TICKS(32'd32),
@@ -171,7 +171,7 @@ module carrystep_mojo_v3_top (
         .ROUND_TICKS(32'd32),
         .WATCHDOG_ROUNDS(32'd3126),
         .ENABLE_ROUNDS(32'd33),
-        .DEBOUNCE_LOOKS(32'd17),
+        .DEBOUNCE_SAMPLES(32'd17),
         .LIMITS(32'd2),
         .LIMITS_LOW(32'd0),
         .LIMIT_FREEZES(32'd0),

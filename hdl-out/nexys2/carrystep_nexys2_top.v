@@ -73,7 +73,7 @@ module carrystep_nexys2_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h13fc1afb82cdf20f),
+        .BUILD_ID(64'h9932dedab97a6731),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -156,7 +156,7 @@ module carrystep_nexys2_top (
         .ROUND_TICKS(32'd16),
         .WATCHDOG_ROUNDS(32'd3126),
         .ENABLE_ROUNDS(32'd33),
-        .DEBOUNCE_LOOKS(32'd17),
+        .DEBOUNCE_SAMPLES(32'd17),
         .LIMITS(32'd2),
         .LIMITS_LOW(32'd0),
         .LIMIT_FREEZES(32'd0),

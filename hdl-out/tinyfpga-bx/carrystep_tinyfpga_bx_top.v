@@ -74,7 +74,7 @@ module carrystep_tinyfpga_bx_top (
     );
 
     carrystep_link #(
-        .BUILD_ID(64'h725c0f2b297fa6fe),
+        .BUILD_ID(64'h922beed8bb78e091),
         .CLOCK_HZ(32'h2625a00),
         .TICK_NS(32'd2000),
         .ROUND_TICKS(32'd16),
@@ -157,7 +157,7 @@ module carrystep_tinyfpga_bx_top (
         .ROUND_TICKS(32'd16),
         .WATCHDOG_ROUNDS(32'd3126),
         .ENABLE_ROUNDS(32'd33),
-        .DEBOUNCE_LOOKS(32'd17),
+        .DEBOUNCE_SAMPLES(32'd17),
         .LIMITS(32'd2),
         .LIMITS_LOW(32'd0),
         .LIMIT_FREEZES(32'd0),
