@@ -137,6 +137,7 @@ fn with_parameters(verilog: &str, of: &EngineBuild) -> String {
     assert!(overrides.len() > 30, "too few parameters: {overrides:?}");
     let connections: Vec<String> = ports
         .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
         .filter_map(|line| line.trim().trim_end_matches(',').rsplit(' ').next())
         .map(|port| format!(".{port}({port})"))
         .collect();

@@ -8,6 +8,7 @@ mod table;
 
 use carrystep_simulators::Level;
 use carrystep_sweep::Shard;
+use carrystep_verilog::Prefix;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser};
 pub use machine::{MachineArguments, MachineCommand, MachineNew};
@@ -227,6 +228,10 @@ pub struct Verilog {
     /// the board's clock.
     #[arg(long, value_name = "MACHINE.toml")]
     pub machine: Option<PathBuf>,
+    /// The beginning of the names of all modules and files: two configurations with different
+    /// prefixes can be in one design.
+    #[arg(long, default_value_t = Prefix::default(), value_name = "NAME")]
+    pub prefix: Prefix,
     /// Folder for all files; default: hdl-out/core, or sim/out/BOARD.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -78,18 +78,22 @@ use time_slot::TimeSlot;
 pub struct Engine<const N: usize> {
     /// The clock.
     pub clock: Input<Clock>,
-    /// The host offers a word of a segment and holds it until the engine accepts it.
+    /// The host offers a word of a segment and holds it until the engine accepts it, which takes up
+    /// to a tick while the queue has space.
     pub put_valid: Input<Bit>,
-    /// The axis of the offered word. Also the axis whose free queue space `room` reports.
+    /// The axis of the offered word, as a number from 0. Also the axis whose free queue space `room`
+    /// reports.
     pub put_axis: Input<Word<3>>,
-    /// The number of the word. The words of a segment come in order: 0 is ticks - 1, 1 and 2 V, 3 and 4 A, 5 and 6 J, low half first; 7
-    /// commits the segment.
+    /// The number of the word. The words of a segment come in order: 0 is its duration in ticks less
+    /// 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7 commits the
+    /// segment.
     pub put_word: Input<Word<3>>,
     /// The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
     pub put_data: Input<Word<32>>,
     /// The engine accepts an offered word in this clock.
     pub put_ready: Signal<Out, Bit>,
-    /// The host offers a start and holds it until the engine accepts it.
+    /// The host offers a start and holds it until the engine accepts it, which it does in the last
+    /// clock of a tick.
     pub start_valid: Input<Bit>,
     /// The axes to start; bit i is axis i.
     pub start_mask: Input<Word<N>>,
@@ -97,31 +101,37 @@ pub struct Engine<const N: usize> {
     pub start_ready: Signal<Out, Bit>,
     /// Clears a stop. The host holds it until `fault` falls.
     pub clear: Input<Bit>,
-    /// Stops the engine and returns it to its state at configuration; the positions stay. A host
-    /// that does not need it ties it to 0.
+    /// Stops the engine and returns it to its state at configuration; the positions stay. It is
+    /// synchronous, unlike the pins, and begins in any clock. A host that does not need it ties it
+    /// to 0.
     pub reset: Input<Bit>,
-    /// The host requests a controlled stop by a ramp.
+    /// The host requests a controlled stop by a ramp; asserted for one clock or longer.
     pub stop: Input<Bit>,
-    /// The host has broken the segment protocol. The engine freezes all axes.
+    /// The host has broken the segment protocol; asserted for one clock or longer. The engine
+    /// freezes all axes.
     pub broken: Input<Bit>,
     /// The host replaces the mask of the axes that wait for their limit.
     pub home_valid: Input<Bit>,
     /// The axes that wait for their limit from the next clock on, valid with `home_valid`; bit i is
     /// axis i.
     pub home_mask: Input<Word<N>>,
-    /// A sign of life of the host: the watchdog restarts.
+    /// A sign of life of the host: the watchdog restarts in each clock in which it is asserted.
     pub kick: Input<Bit>,
-    /// The host requests power for the motor drivers.
+    /// The host requests power for the motor drivers, as long as it is asserted.
     pub enable: Input<Bit>,
-    /// The e-stop pin; asynchronous.
+    /// The e-stop pin; asynchronous. The parameter `ESTOP_LOW` gives its active level. It stops the
+    /// axes if it is active for a whole tick.
     pub estop: Input<Bit>,
-    /// The pins of the limit switches at the low ends; bit i is axis i; asynchronous.
+    /// The pins of the limit switches at the low ends; bit i is axis i; asynchronous. `LIMITS` tells
+    /// how they are wired, `LIMITS_LOW` their active level. Each is sampled once per round.
     pub limit_min: Input<Word<N>>,
-    /// The pins of the limit switches at the high ends; bit i is axis i; asynchronous.
+    /// The pins of the limit switches at the high ends; bit i is axis i; asynchronous. They are used
+    /// only if `LIMITS` is 1.
     pub limit_max: Input<Word<N>>,
     /// The axis that the host reads.
     pub get_axis: Input<Word<3>>,
-    /// The item that the host reads: 0 and 1 P, low and high half; 2 position; 3 discarded steps.
+    /// The item that the host reads: 0 and 1 P, low and high half; 2 the position in steps, two's
+    /// complement; 3 the number of discarded steps.
     pub get_item: Input<Word<2>>,
     /// The item that the engine returns.
     pub get_data: Signal<Out, Word<32>>,
@@ -135,9 +145,9 @@ pub struct Engine<const N: usize> {
     pub room: Signal<Out, Word<3>>,
     /// `room` is valid in this clock, once in the time slot of that axis.
     pub room_valid: Signal<Out, Bit>,
-    /// The STEP pins.
+    /// The STEP pins; bit i is axis i. A rising edge is a step.
     pub step: PerAxis<Signal<Out, Bit>, N>,
-    /// The DIR pins; 1 is backward.
+    /// The DIR pins; bit i is axis i; 1 is backward.
     pub dir: PerAxis<Signal<Out, Bit>, N>,
     /// The motor drivers are to be powered.
     pub enabled: Signal<Out, Bit>,
@@ -149,8 +159,9 @@ pub struct Engine<const N: usize> {
     pub halted: Signal<Out, Bit>,
     /// The engine is returning to its state at configuration, after `reset`.
     pub resetting: Signal<Out, Bit>,
-    /// The first cause of the stop, numbered as [`carrystep_core::engine::Cause`]. It has no
-    /// meaning while `fault` is not asserted.
+    /// The first cause of the stop: 0 e-stop, 1 overrun, 2 segment protocol broken, 3 watchdog,
+    /// 4 overspeed, 5 limit, 6 underrun, 7 stop of the host. It has no meaning while `fault` is not
+    /// asserted.
     pub cause: Signal<Out, Word<3>>,
     /// The axes that caused the stop; bit i is axis i. It has no meaning while `fault` is not
     /// asserted.
@@ -162,7 +173,7 @@ pub struct Engine<const N: usize> {
     pub ready: Signal<Out, Bit>,
     /// The axes that wait for their limit; bit i is axis i.
     pub homing: Signal<Out, Word<N>>,
-    /// Axes start at the end of this clock.
+    /// Axes start at the end of this clock; asserted for one clock per start.
     pub started: Signal<Out, Bit>,
     time_slot: TimeSlot<N>,
     adder: Adder,

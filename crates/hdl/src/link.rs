@@ -78,7 +78,7 @@ pub struct Link<const N: usize> {
     pub start_ready: Input<Bit>,
     /// The engine clears a stop.
     pub clear: Signal<Out, Bit>,
-    /// The host requests a controlled stop.
+    /// The host requests a controlled stop, as long as it is asserted.
     pub stop: Signal<Out, Bit>,
     /// The host has broken the segment protocol.
     pub broken: Signal<Out, Bit>,
@@ -88,7 +88,7 @@ pub struct Link<const N: usize> {
     pub home_mask: Signal<Out, Word<N>>,
     /// The host has sent a valid request: the watchdog restarts.
     pub kick: Signal<Out, Bit>,
-    /// The host requests power for the motor drivers.
+    /// The host requests power for the motor drivers, as long as it is asserted.
     pub enable: Signal<Out, Bit>,
     /// The axis whose state the link reads from the engine.
     pub get_axis: Signal<Out, Word<3>>,
@@ -113,7 +113,7 @@ pub struct Link<const N: usize> {
     pub ready: Input<Bit>,
     /// A start is armed.
     pub armed: Input<Bit>,
-    /// The first cause of the stop, numbered as [`carrystep_core::engine::Cause`].
+    /// The first cause of the stop, numbered as at the port `cause` of the engine.
     pub cause: Input<Word<3>>,
     /// The axes that caused the stop; bit i is axis i.
     pub culprits: Input<Word<N>>,

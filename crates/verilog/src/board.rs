@@ -12,6 +12,7 @@ pub use gateware::{Gateware, shipped_machine};
 pub(crate) use page::pages;
 
 use crate::ExportError;
+use crate::prefix::Prefix;
 use crate::write::TextFile;
 use carrystep_boards::{
     Board, BoardError, BoardPort, OSCILLATOR, PORTS, Part, Place, Tie, Way, Wire,
@@ -35,6 +36,8 @@ pub struct Design<'a> {
     pub uart: Option<Uart>,
     /// Name of the top module, and base name of all files.
     pub top: String,
+    /// The beginning of the name of the clock module.
+    pub prefix: &'a Prefix,
     /// Names of the Verilog files, in the directory of the script.
     pub sources: &'a [&'a str],
     /// The bits of the top level's ports, such as `uart_rx` or `step[0]`, out of those of
@@ -43,7 +46,7 @@ pub struct Design<'a> {
     pub ports: &'a [String],
 }
 
-/// Name of the clock module, which the top level instantiates. It has the ports `oscillator` (in)
+/// Usual name of the clock module, which the top level instantiates. It has the ports `oscillator` (in)
 /// and `clock` (out).
 pub const CLOCK_NAME: &str = "carrystep_clock";
 
@@ -65,8 +68,9 @@ impl Design<'_> {
     /// # Errors
     /// [`ExportError::Board`] if the board cannot make the clock.
     pub fn clock(&self) -> Result<TextFile, ExportError> {
-        let text = clock::verilog(self.board, self.clock_hz)?;
-        Ok(TextFile::new(format!("{CLOCK_NAME}.v"), text))
+        let name = self.prefix.name(CLOCK_NAME);
+        let text = clock::verilog(self.board, self.clock_hz, &name)?;
+        Ok(TextFile::new(format!("{name}.v"), text))
     }
 
     /// The constraint file, which assigns each port to a pin.

@@ -1,12 +1,13 @@
 //! Writes a core as one file: a header, and then every module once, children first.
 
-use crate::ExportError;
-use crate::guard;
-use crate::module::module_text;
+use crate::docs::{self, wrapped};
+use crate::module::{COLUMNS, module_text};
 use crate::names::{Names, split_index};
 use crate::netlist::{self, Module};
-use crate::parameters;
+use crate::prefix::Prefix;
+use crate::synchronizers::{self, Synchronizer};
 use crate::write::{TextFile, write};
+use crate::{ExportError, guard, instances, parameters};
 use carrystep_core::link::{BYTE_PORTS, LineKind};
 use carrystep_core::{Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_hdl::primitives::formula::ParameterValue;
@@ -28,6 +29,12 @@ pub const CORE_WAIVERS: &str = include_str!("carrystep_six_axis.vlt");
 
 /// Verilator's waivers for the engine, each with its reason.
 pub const ENGINE_WAIVERS: &str = include_str!("carrystep_engine.vlt");
+
+/// Verilator's waivers for the host link, each with its reason.
+const LINK_WAIVERS: &str = include_str!("carrystep_link.vlt");
+
+/// Verilator's waivers for the UART, each with its reason.
+const UART_WAIVERS: &str = include_str!("carrystep_uart.vlt");
 
 /// The version that the workspace pins.
 const RUST_HDL: &str = "0.46.0";
@@ -152,8 +159,7 @@ const PURPOSES: [(&str, &str); 35] = [
 /// # Errors
 /// [`ExportError`] if the core cannot be generated.
 pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, ExportError> {
-    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, "");
-    file_text(&mut SixAxis::new(build)?, CORE_NAME, &facts, description)
+    Ok(six_axis(build, &Prefix::default(), description)?.text)
 }
 
 /// The engine of this build as Verilog-2005 with the top module [`ENGINE_NAME`]. Otherwise as
@@ -162,8 +168,7 @@ pub fn six_axis_verilog(build: &Build, description: &str) -> Result<String, Expo
 /// # Errors
 /// [`ExportError`] if the engine cannot be generated.
 pub fn engine_verilog(build: &EngineBuild, description: &str) -> Result<String, ExportError> {
-    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, &guard::lines(build));
-    file_text(engine(build)?.as_mut(), ENGINE_NAME, &facts, description)
+    Ok(engine_of(build, &Prefix::default(), description)?.text)
 }
 
 /// The host link of this build as Verilog-2005 with the top module [`LINK_NAME`]. Otherwise as
@@ -176,13 +181,7 @@ pub fn link_verilog(
     line: LineKind,
     description: &str,
 ) -> Result<String, ExportError> {
-    let id = line.build_id(build);
-    let lines = format!(
-        "// Clock        {} Hz\n// Line         {line}\n// Build id     {id}\n",
-        build.timebase.clock_hz()
-    );
-    let facts = Facts { title: "the host link of an engine".to_owned(), lines };
-    file_text(link(build, id)?.as_mut(), LINK_NAME, &facts, description)
+    Ok(link_of(build, line, &Prefix::default(), description)?.text)
 }
 
 /// The line to the host as Verilog-2005 with the top module [`line_name`]. Otherwise as
@@ -191,11 +190,64 @@ pub fn link_verilog(
 /// # Errors
 /// [`ExportError`] if the module cannot be generated.
 pub fn line_verilog(line: LineKind, description: &str) -> Result<String, ExportError> {
+    Ok(line_of(line, &Prefix::default(), description)?.text)
+}
+
+/// The six-axis core, exported.
+pub(crate) fn six_axis(
+    build: &Build,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Exported, ExportError> {
+    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, "");
+    let top = Top { name: CORE_NAME, kind: "SixAxis", waivers: Some(CORE_WAIVERS) };
+    Exported::new(&mut SixAxis::new(build)?, top, prefix, &facts, description)
+}
+
+/// The engine, exported.
+pub(crate) fn engine_of(
+    build: &EngineBuild,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Exported, ExportError> {
+    let facts = Facts::of_axes(&build.timebase, build.phase, &build.pins, &guard::lines(build));
+    let top = Top { name: ENGINE_NAME, kind: "Engine", waivers: Some(ENGINE_WAIVERS) };
+    Exported::new(engine(build)?.as_mut(), top, prefix, &facts, description)
+}
+
+/// The host link, exported.
+pub(crate) fn link_of(
+    build: &EngineBuild,
+    line: LineKind,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Exported, ExportError> {
+    let id = line.build_id(build);
+    let lines = format!(
+        "// Clock        {} Hz\n// Line         {line}\n// Build id     {id}\n",
+        build.timebase.clock_hz()
+    );
+    let facts = Facts { title: "the host link of an engine".to_owned(), lines };
+    let top = Top { name: LINK_NAME, kind: "Link", waivers: Some(LINK_WAIVERS) };
+    Exported::new(link(build, id)?.as_mut(), top, prefix, &facts, description)
+}
+
+/// The line to the host, exported.
+pub(crate) fn line_of(
+    line: LineKind,
+    prefix: &Prefix,
+    description: &str,
+) -> Result<Exported, ExportError> {
     let facts = Facts {
         title: "the line to the host".to_owned(),
         lines: format!("// Line         {line}\n"),
     };
-    file_text(line_block(line).as_mut(), line_name(line), &facts, description)
+    let (kind, waivers) = match line {
+        LineKind::Uart(_) => ("UartLine", Some(UART_WAIVERS)),
+        LineKind::Spi => ("Spi", None),
+    };
+    let top = Top { name: line_name(line), kind, waivers };
+    Exported::new(line_block(line).as_mut(), top, prefix, &facts, description)
 }
 
 fn line_block(line: LineKind) -> Box<dyn Block> {
@@ -256,85 +308,134 @@ struct Facts {
     lines: String,
 }
 
-fn file_text(
-    core: &mut dyn Block,
-    name: &str,
-    build: &Facts,
-    description: &str,
-) -> Result<String, ExportError> {
-    core.connect_all();
-    check_all(core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
-    let mut top = netlist::read(core)?;
-    top.instance = name.trim_start_matches("carrystep_").into();
-    let mut library = Library::default();
-    library.add(&top)?;
-    let mut text = header(name, build, description);
-    for Written { name, text: module, .. } in &library.modules {
-        let purpose = PURPOSES
-            .iter()
-            .find(|(kind, _)| name.starts_with(kind))
-            .map_or("", |(_, purpose)| purpose);
-        text.push_str(&format!("\n// {purpose}\n{module}"));
-    }
-    text.push_str("\n`default_nettype wire\n");
-    Ok(text)
+/// A top module that can be exported.
+struct Top {
+    /// Its usual name.
+    name: &'static str,
+    /// The struct that it is in Rust.
+    kind: &'static str,
+    waivers: Option<&'static str>,
 }
 
-/// Writes the six-axis core's Verilog and its waivers into `dir`. Each file appears completely or
-/// not at all.
+/// A core as Verilog, and what else its files are made from.
+pub(crate) struct Exported {
+    /// Name of the top module and of the files.
+    pub(crate) name: String,
+    /// The Verilog.
+    pub(crate) text: String,
+    pub(crate) top: Module,
+    pub(crate) synchronizers: Vec<Synchronizer>,
+    prefix: Prefix,
+    waivers: Option<&'static str>,
+}
+
+impl Exported {
+    fn new(
+        core: &mut dyn Block,
+        Top { name: usual, kind, waivers }: Top,
+        prefix: &Prefix,
+        build: &Facts,
+        description: &str,
+    ) -> Result<Self, ExportError> {
+        core.connect_all();
+        check_all(core).map_err(|error| HdlError::Check(format!("{error:?}")))?;
+        let mut top = netlist::read(core)?;
+        top.instance = usual.trim_start_matches("carrystep_").into();
+        docs::describe(&mut top, kind)?;
+        let synchronizers = synchronizers::of(&top)?;
+        let mut library = Library { prefix, modules: Vec::new() };
+        let name = library.add(&top)?;
+        let mut text = header(&name, build, description);
+        for Written { usual, text: module, .. } in &library.modules {
+            let (_, purpose) = PURPOSES
+                .iter()
+                .find(|(kind, _)| usual == kind)
+                .ok_or_else(|| ExportError::undescribed(usual, "the module"))?;
+            let purpose = wrapped(&prefix.in_text(purpose), "// ", COLUMNS).join("\n");
+            text.push_str(&format!("\n{purpose}\n{module}"));
+        }
+        text.push_str("\n`default_nettype wire\n");
+        Ok(Self { name, text, top, synchronizers, prefix: prefix.clone(), waivers })
+    }
+
+    /// The Verilog as a file.
+    pub(crate) fn verilog(self) -> TextFile {
+        TextFile::new(format!("{}.v", self.name), self.text)
+    }
+
+    /// All files: the Verilog, its waivers, a template of an instance, and the constraints of its
+    /// synchronizers if it has any.
+    pub(crate) fn files(&self) -> Result<Vec<TextFile>, ExportError> {
+        let Self { name, prefix, synchronizers, .. } = self;
+        let file = |extension: &str, text| TextFile::new(format!("{name}.{extension}"), text);
+        let mut files: Vec<TextFile> =
+            self.waivers.iter().map(|waivers| file("vlt", prefix.in_text(waivers))).collect();
+        files.push(file("veo", instances::template(&self.top, name)?));
+        if !synchronizers.is_empty() {
+            files.push(file("xdc", instances::xdc(name, synchronizers)));
+            files.push(file("sdc", instances::sdc(name, prefix, synchronizers)));
+        }
+        files.insert(0, file("v", self.text.clone()));
+        Ok(files)
+    }
+}
+
+/// Writes the six-axis core into `dir`: its Verilog, its waivers and a template of an instance. Each
+/// file appears completely or not at all.
 ///
 /// # Errors
 /// [`ExportError`] if the core cannot be generated or a file cannot be written.
 pub fn write_core(
     dir: &Path,
     build: &Build,
+    prefix: &Prefix,
     description: &str,
 ) -> Result<Vec<PathBuf>, ExportError> {
-    write(dir, &files(CORE_NAME, six_axis_verilog(build, description)?, CORE_WAIVERS))
+    write(dir, &six_axis(build, prefix, description)?.files()?)
 }
 
-/// Writes the engine's Verilog and its waivers into `dir`. Otherwise as [`write_core`].
+/// Writes the engine into `dir`, with the constraints of its synchronizers. Otherwise as
+/// [`write_core`].
 ///
 /// # Errors
 /// [`ExportError`] if the engine cannot be generated or a file cannot be written.
 pub fn write_engine(
     dir: &Path,
     build: &EngineBuild,
+    prefix: &Prefix,
     description: &str,
 ) -> Result<Vec<PathBuf>, ExportError> {
-    write(dir, &files(ENGINE_NAME, engine_verilog(build, description)?, ENGINE_WAIVERS))
-}
-
-fn files(name: &str, verilog: String, waivers: &str) -> [TextFile; 2] {
-    [TextFile::new(format!("{name}.v"), verilog), TextFile::new(format!("{name}.vlt"), waivers)]
+    write(dir, &engine_of(build, prefix, description)?.files()?)
 }
 
 /// The modules collected so far, children first.
-#[derive(Default)]
-struct Library {
+struct Library<'a> {
+    prefix: &'a Prefix,
     modules: Vec<Written>,
 }
 
 /// A module in Verilog.
 struct Written {
-    name: String,
+    /// Its name with the usual prefix.
+    usual: String,
     /// Its text without the values of its parameters.
     neutral: String,
     /// Its text; its parameters have the values of its first instance.
     text: String,
 }
 
-impl Library {
+impl Library<'_> {
     /// Adds a module and its children, and returns the module's name.
     fn add(&mut self, module: &Module) -> Result<String, ExportError> {
         let kinds =
             module.children.iter().map(|child| self.add(child)).collect::<Result<Vec<_>, _>>()?;
-        let name = format!("carrystep_{}", split_index(&module.instance).0);
+        let usual = format!("carrystep_{}", split_index(&module.instance).0);
+        let name = self.prefix.name(&usual);
         let neutral = module_text(&module.without_values(), &name, &kinds)?;
-        match self.modules.iter().find(|known| known.name == name) {
+        match self.modules.iter().find(|known| known.usual == usual) {
             None => {
                 let text = module_text(module, &name, &kinds)?;
-                self.modules.push(Written { name: name.clone(), neutral, text });
+                self.modules.push(Written { usual, neutral, text });
             }
             Some(known) if known.neutral == neutral => {}
             Some(_) => return Err(ExportError::SameName(name)),
@@ -389,6 +490,11 @@ fn header(name: &str, facts: &Facts, description: &str) -> String {
 //
 // Made from    {description}
 // Made by      carrystep {version}, with Rust-HDL {RUST_HDL}
+//
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
+// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
+// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
+// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
 //
 // The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
 // the host link too: by this id the host knows the parameters for which it plans moves. With the id

@@ -1,9 +1,10 @@
 //! All files of the workspace that are generated from tables of `spec`: the files of the register
-//! map, the pages of boards and drivers, and the boards' gateware.
+//! map, the pages of boards and drivers, the cores, and the boards' gateware.
 
-use crate::core::{LINK_NAME, line_name, line_verilog, link_verilog};
+use crate::core::{engine_of, line_of, link_of, six_axis};
+use crate::prefix::Prefix;
 use crate::write::{TextFile, write};
-use crate::{ExportError, Gateware, board, registers};
+use crate::{ExportError, Gateware, board, fusesoc, registers};
 use carrystep_boards::boards;
 use carrystep_core::link::LineKind;
 use carrystep_files::{Machine, SourceText};
@@ -35,17 +36,29 @@ pub fn generated_files() -> Result<Vec<TextFile>, ExportError> {
     Ok(files)
 }
 
-/// The modules of the host's link, each once, with the parameters of the shipped machine as defaults.
+/// The cores, each with its files, with the parameters of the shipped machine as defaults, and their
+/// description for FuseSoC.
 fn core_files() -> Result<Vec<TextFile>, ExportError> {
     let machine =
         Machine::from_source(&SourceText { path: SHIPPED.into(), text: SHIPPED_TEXT.into() })?;
-    let (build, line) = (machine.engine(), machine.line()?);
-    let file = |name: &str, text| TextFile::new(format!("{CORE}/{name}.v"), text);
-    let mut files = vec![file(LINK_NAME, link_verilog(&build, line, SHIPPED)?)];
-    for line in [line, LineKind::Spi] {
-        files.push(file(line_name(line), line_verilog(line, SHIPPED)?));
+    let (build, line, prefix) = (machine.engine(), machine.line()?, Prefix::default());
+    let cores = [
+        engine_of(&build, &prefix, SHIPPED)?,
+        link_of(&build, line, &prefix, SHIPPED)?,
+        line_of(line, &prefix, SHIPPED)?,
+        line_of(LineKind::Spi, &prefix, SHIPPED)?,
+        six_axis(&machine.build()?, &prefix, SHIPPED)?,
+    ];
+    let description = fusesoc::description(&cores)?;
+    let mut files = Vec::new();
+    for core in cores {
+        files.extend(core.files()?);
     }
-    Ok(files)
+    files.push(description);
+    Ok(files
+        .into_iter()
+        .map(|file| TextFile { name: format!("{CORE}/{}", file.name), ..file })
+        .collect())
 }
 
 /// Writes the files to their places under `root`, the root of the workspace. Each file appears

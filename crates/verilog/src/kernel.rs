@@ -132,7 +132,7 @@ impl Step {
 }
 
 /// Whether the text contains the signal's name.
-fn mentions(text: &str, signal: &str) -> bool {
+pub(crate) fn mentions(text: &str, signal: &str) -> bool {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|word| word == signal)
 }
 

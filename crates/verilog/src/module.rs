@@ -1,6 +1,7 @@
 //! Writes one module as text: Verilog-2005, ANSI ports, registers with initial values.
 
 use crate::ExportError;
+use crate::docs::wrapped;
 use crate::kernel::{Kernel, Step};
 use crate::names::{Constant, Names, Role, plain};
 use crate::netlist::Module;
@@ -8,6 +9,9 @@ use crate::parameters;
 use carrystep_hdl::primitives::constant::ERROR;
 use carrystep_hdl::primitives::formula::ParameterValue;
 use rust_hdl::prelude::{AtomKind, Verilog};
+
+/// The greatest length of a line of comment.
+pub(crate) const COLUMNS: usize = 100;
 
 /// The text of `module` under the name `name`; `kinds` are the module names of its children.
 pub(crate) fn module_text(
@@ -79,7 +83,10 @@ fn head(page: &mut Page, module: &Module, names: &Names, name: &str) -> Result<(
     }
     page.open(&format!("module {name} #("));
     for line in parameters::head(&parameters) {
-        page.line(&line);
+        match line.strip_prefix("// ") {
+            Some(comment) => page.comment(comment),
+            None => page.line(&line),
+        }
     }
     page.close(") (");
     page.indent += 1;
@@ -95,6 +102,7 @@ fn ports(page: &mut Page, names: &Names, kernel: &Kernel) {
         };
         let comma = if place + 1 < names.ports.len() { "," } else { "" };
         let range = if port.width == 1 { String::new() } else { format!("[{}:0]", port.width - 1) };
+        page.comment(port.about.unwrap_or_default());
         page.line(&format!("{kind} {range:>7} {}{comma}", port.name));
     }
 }
@@ -279,6 +287,13 @@ impl Page {
         self.text.extend(std::iter::repeat_n("    ", self.indent));
         self.text.push_str(line);
         self.text.push('\n');
+    }
+
+    /// Adds a comment; nothing if the text is empty.
+    fn comment(&mut self, text: &str) {
+        for line in wrapped(text, "// ", COLUMNS - 4 * self.indent) {
+            self.line(&line);
+        }
     }
 
     fn open(&mut self, line: &str) {

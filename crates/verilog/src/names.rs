@@ -3,7 +3,7 @@
 //! port).
 
 use crate::ExportError;
-use crate::netlist::Module;
+use crate::netlist::{Module, Wire};
 use rust_hdl::prelude::AtomKind;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -38,6 +38,8 @@ pub(crate) struct Port {
     pub(crate) name: String,
     pub(crate) width: usize,
     pub(crate) output: bool,
+    /// Its doc comment in Rust.
+    pub(crate) about: Option<&'static str>,
 }
 
 /// A constant of the module in Verilog.
@@ -74,7 +76,7 @@ impl Names {
                         (_, true) => Role::Driven,
                         _ => Role::Given,
                     };
-                    let text = names.port(base, index.filter(|_| elements > 1), atom.width, output);
+                    let text = names.port(atom, index.filter(|_| elements > 1));
                     names.add(&atom.name, text, atom.width, role);
                 }
                 AtomKind::LocalSignal => {
@@ -139,15 +141,18 @@ impl Names {
     }
 
     /// Adds a port, or an element to a vector, and returns the text of a reference to it.
-    fn port(&mut self, base: &str, index: Option<usize>, width: usize, output: bool) -> String {
-        let name = plain(base);
+    fn port(&mut self, atom: &Wire, index: Option<usize>) -> String {
+        let name = plain(split_index(&atom.name).0);
+        let Wire { width, about, .. } = *atom;
+        let output = atom.kind == AtomKind::OutputParameter;
+        let port = Port { name: name.clone(), width, output, about };
         let Some(index) = index else {
-            self.ports.push(Port { name: name.clone(), width, output });
+            self.ports.push(port);
             return name;
         };
         match self.ports.iter_mut().find(|port| port.name == name) {
             Some(port) => port.width += width,
-            None => self.ports.push(Port { name: name.clone(), width, output }),
+            None => self.ports.push(port),
         }
         slice(&name, index * width, width)
     }

@@ -28,6 +28,8 @@ pub(crate) struct Wire {
     pub(crate) value: Number,
     /// Of a constant that follows from parameters.
     pub(crate) note: Option<Note>,
+    /// The doc comment of a port.
+    pub(crate) about: Option<&'static str>,
 }
 
 /// A register.
@@ -125,6 +127,7 @@ impl Probe for Reader {
                 is_clock: signal.descriptor().name == "clock",
                 value,
                 note: Note::read(&signal.descriptor().name),
+                about: None,
             });
         }
     }

@@ -4,7 +4,7 @@
 
 use carrystep_boards::{Board, OSCILLATOR, PORTS, Way, board, boards};
 use carrystep_files::SourceText;
-use carrystep_verilog::{Design, ExportError, Gateware, TextFile, shipped_machine};
+use carrystep_verilog::{Design, ExportError, Gateware, Prefix, TextFile, shipped_machine};
 use std::path::Path;
 use std::process::Command;
 
@@ -22,6 +22,7 @@ fn files(board: &Board, ports: &[String]) -> Result<Vec<TextFile>, ExportError> 
         clock_hz,
         uart: None,
         top,
+        prefix: &Prefix::default(),
         sources: &["carrystep_clock.v", "top.v"],
         ports,
     }

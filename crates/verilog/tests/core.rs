@@ -6,7 +6,7 @@ use carrystep_core::engine::{Guard, LimitWiring};
 use carrystep_core::{AXES, Build, EngineBuild, PinTiming, StartPhase, Timebase};
 use carrystep_files::Machine;
 use carrystep_verilog::{
-    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, engine_verilog,
+    CORE_NAME, CORE_WAIVERS, ENGINE_NAME, ENGINE_WAIVERS, ExportError, Prefix, engine_verilog,
     generated_files, six_axis_verilog, write_core, write_engine,
 };
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ const CORES: [Core; 2] = [
     Core {
         name: CORE_NAME,
         of_machine: |machine, description| six_axis_verilog(&machine.build().unwrap(), description),
-        write: write_core,
+        write: |folder, build, about| write_core(folder, build, &Prefix::default(), about),
         waivers: CORE_WAIVERS,
         machine: "sim/six-axis.toml",
         timebases: [(48_000_000, 1000, 16), (20_000_000, 1000, 4), (16_000_000, 1000, 1)],
@@ -37,7 +37,9 @@ const CORES: [Core; 2] = [
     Core {
         name: ENGINE_NAME,
         of_machine: |machine, description| engine_verilog(&machine.engine(), description),
-        write: |folder, build, description| write_engine(folder, &guarded(build), description),
+        write: |folder, build, about| {
+            write_engine(folder, &guarded(build), &Prefix::default(), about)
+        },
         waivers: ENGINE_WAIVERS,
         machine: "sim/six-axis.toml",
         timebases: [(48_000_000, 2000, 16), (12_000_000, 10_000, 4), (90_000_000, 1000, 1)],
@@ -94,7 +96,7 @@ fn on_each_core(tool: &str, arguments: fn(&str) -> Vec<String>, fine: fn(bool, &
     }
     for axes in 1..=8 {
         let folder = tempfile::tempdir().unwrap();
-        write_engine(folder.path(), &engine_of(axes), "a test").unwrap();
+        write_engine(folder.path(), &engine_of(axes), &Prefix::default(), "a test").unwrap();
         let (ok, said) = run(tool, &arguments(ENGINE_NAME), folder.path());
         assert!(fine(ok, &said), "{ENGINE_NAME} of {axes} axes: {said}");
     }
@@ -128,7 +130,7 @@ fn timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
     let mut build = build(48_000_000, 16);
     build.pins[3].step_low = 0;
     let folder = tempfile::tempdir().unwrap();
-    let error = write_core(folder.path(), &build, "a test").unwrap_err();
+    let error = write_core(folder.path(), &build, &Prefix::default(), "a test").unwrap_err();
     assert!(error.to_string().contains("step_low is 0 clocks"), "{error}");
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
 }
@@ -136,8 +138,8 @@ fn timing_that_cannot_be_counted_is_refused_and_nothing_is_written() {
 #[test]
 fn engine_whose_turns_do_not_fit_is_refused_with_the_arithmetic() {
     let folder = tempfile::tempdir().unwrap();
-    let error =
-        write_engine(folder.path(), &guarded(&build(48_000_000, 16)), "a test").unwrap_err();
+    let engine = guarded(&build(48_000_000, 16));
+    let error = write_engine(folder.path(), &engine, &Prefix::default(), "a test").unwrap_err();
     assert_eq!(
         error.to_string(),
         "6 axes need 13 clocks each and one to close the tick, 79 in all, but a tick of 1000 ns at 48000000 Hz has 48: \
@@ -172,7 +174,8 @@ fn engine_with_invalid_parameters_is_refused_by_name() {
         let mut build = engine_of(6);
         spoil(&mut build);
         let folder = tempfile::tempdir().unwrap();
-        let error = write_engine(folder.path(), &build, "a test").unwrap_err().to_string();
+        let error = write_engine(folder.path(), &build, &Prefix::default(), "a test").unwrap_err();
+        let error = error.to_string();
         assert!(error.contains(says), "{error}, not: {says}");
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
     }

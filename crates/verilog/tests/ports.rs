@@ -55,7 +55,7 @@ fn declared(text: &str, module: &str) -> Vec<(String, (bool, u32))> {
         let width = high.map_or(1, |(high, _)| high.parse::<u32>().unwrap() + 1);
         ((*name).to_owned(), (*way == "input", width))
     };
-    ports.lines().map(port).collect()
+    ports.lines().filter(|line| !line.trim_start().starts_with("//")).map(port).collect()
 }
 
 /// The names that an instance of a module connects: `.name(`.

@@ -17,10 +17,6 @@ const GRAB: &str = "gtkwave::/Edit/UnHighlight_All\ngtkwave::/File/Grab_To_File 
 /// Generates `hdl-out/` and the files that are made from tables: register map, pages of boards,
 /// JSON Schemas. The list of boards in `docs/SUMMARY.md` follows.
 pub fn generate() -> TaskResult {
-    let write = ["run", "--quiet", "--release", "--", "verilog", "--out", "hdl-out/core", "--core"];
-    ["parallel", "engine"]
-        .iter()
-        .try_for_each(|core| shell::run("cargo", &[write.as_slice(), &[core]].concat()))?;
     shell::run(
         "cargo",
         &["run", "--quiet", "--release", "--", "schemas", "--out", "docs/schemas"],

@@ -51,11 +51,11 @@ pub struct ParallelAxis {
     pub push: Input<Bit>,
     /// Offered segment: its duration in ticks.
     pub seg_ticks: Input<Word<32>>,
-    /// Offered segment: the initial speed V.
+    /// Offered segment: the initial speed V, in 2^-64 step per tick, two's complement.
     pub seg_v: Input<Word<64>>,
-    /// Offered segment: the initial acceleration A.
+    /// Offered segment: the initial acceleration A, in 2^-64 step per tick^2, two's complement.
     pub seg_a: Input<Word<64>>,
-    /// Offered segment: the jerk J.
+    /// Offered segment: the jerk J, in 2^-64 step per tick^3, two's complement.
     pub seg_j: Input<Word<64>>,
     /// Offered segment: it is the last of its move, and the axis rests after it.
     pub seg_last: Input<Bit>,

@@ -4,10 +4,10 @@
 use super::{CLOCK_NAME, Design, rendered};
 use crate::ExportError;
 use crate::core::{
-    ENGINE_NAME, LINK_NAME, Overrides, engine_verilog, line_name, line_verilog, link_ports,
-    link_verilog,
+    ENGINE_NAME, LINK_NAME, Overrides, engine_of, line_name, line_of, link_of, link_ports,
 };
 use crate::parameters::overrides;
+use crate::prefix::Prefix;
 use crate::write::TextFile;
 use carrystep_boards::{Board, Clocking, Part};
 use carrystep_core::engine::LimitWiring;
@@ -33,6 +33,7 @@ pub struct Gateware<'a> {
     build: EngineBuild,
     line: LineKind,
     chosen_tick: Option<ChosenTick>,
+    prefix: Prefix,
     /// The machine file. It is exported with the gateware, because moves are planned from it.
     machine: SourceText,
 }
@@ -52,7 +53,8 @@ impl<'a> Gateware<'a> {
             board.takes(uart.baud())?;
         }
         build.check().map_err(carrystep_hdl::HdlError::from)?;
-        let gateware = Self { board, part, build, line, chosen_tick: read.chosen_tick, machine };
+        let (chosen_tick, prefix) = (read.chosen_tick, Prefix::default());
+        let gateware = Self { board, part, build, line, chosen_tick, prefix, machine };
         // Checks that each port has a pin; the error names the first one that has none.
         gateware.design(&gateware.ports(), &[]).constraints()?;
         Ok(gateware)
@@ -67,9 +69,15 @@ impl<'a> Gateware<'a> {
         Self::new(board, part, SourceText { path: "machine.toml".into(), text: text.into() })
     }
 
-    /// Name of the top module, `carrystep_BOARD_top`.
+    /// The same gateware with other names of modules and files.
+    #[must_use]
+    pub fn with_prefix(self, prefix: Prefix) -> Self {
+        Self { prefix, ..self }
+    }
+
+    /// Name of the top module, `carrystep_BOARD_top` with the usual prefix.
     pub fn top(&self) -> String {
-        format!("carrystep_{}_top", self.board.name.replace('-', "_"))
+        format!("{}{}_top", self.prefix, self.board.name.replace('-', "_"))
     }
 
     /// Build id, which the host compares before it uses the gateware.
@@ -106,13 +114,12 @@ impl<'a> Gateware<'a> {
     /// [`ExportError`] if a module cannot be generated.
     pub fn verilog(&self) -> Result<Vec<TextFile>, ExportError> {
         let description = format!("{} for {}", self.machine.path.display(), self.board.title);
-        let file = |name: &str, text| TextFile::new(format!("{name}.v"), text);
         Ok(vec![
-            file(&self.top(), self.top_level()?),
+            TextFile::new(format!("{}.v", self.top()), self.top_level()?),
             self.design(&[], &[]).clock()?,
-            file(line_name(self.line), line_verilog(self.line, &description)?),
-            file(LINK_NAME, link_verilog(&self.build, self.line, &description)?),
-            file(ENGINE_NAME, engine_verilog(&self.build, &description)?),
+            line_of(self.line, &self.prefix, &description)?.verilog(),
+            link_of(&self.build, self.line, &self.prefix, &description)?.verilog(),
+            engine_of(&self.build, &self.prefix, &description)?.verilog(),
         ])
     }
 
@@ -134,7 +141,8 @@ impl<'a> Gateware<'a> {
     pub fn files_beside(&self, core: &str) -> Result<Vec<TextFile>, ExportError> {
         let all = self.verilog()?;
         let is_own = |file: &TextFile| {
-            file.name == format!("{}.v", self.top()) || file.name == format!("{CLOCK_NAME}.v")
+            let clock = self.prefix.name(CLOCK_NAME);
+            [self.top(), clock].iter().any(|own| file.name == format!("{own}.v"))
         };
         let source = |file: &TextFile| {
             if is_own(file) { file.name.clone() } else { format!("{core}/{}", file.name) }
@@ -203,6 +211,7 @@ impl<'a> Gateware<'a> {
             clock_hz: self.build.timebase.clock_hz(),
             uart: self.uart(),
             top: self.top(),
+            prefix: &self.prefix,
             sources,
             ports,
         }
@@ -225,10 +234,10 @@ impl<'a> Gateware<'a> {
         let values = context! {
             title => &self.board.title,
             top => self.top(),
-            clock => CLOCK_NAME,
-            line => line_name(self.line),
-            link => LINK_NAME,
-            engine => ENGINE_NAME,
+            clock => self.prefix.name(CLOCK_NAME),
+            line => self.prefix.name(line_name(self.line)),
+            link => self.prefix.name(LINK_NAME),
+            engine => self.prefix.name(ENGINE_NAME),
             line_parameters => overrides(&given.line),
             link_parameters => overrides(&given.link),
             engine_parameters => overrides(&given.engine),

@@ -12,7 +12,7 @@
 
 `default_nettype none
 
-module carrystep_clock (
+module {{ name }} (
     input wire oscillator,
     output wire clock
 );
