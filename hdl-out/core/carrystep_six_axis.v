@@ -6,6 +6,11 @@
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 //
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
+// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
+// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
+// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
+//
 // The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
 // the host link too: by this id the host knows the parameters for which it plans moves. With the id
 // of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
@@ -29,9 +34,13 @@ module carrystep_tick #(
     // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
     parameter [31:0] CLOCKS_PER_TICK = 32'd80
 ) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of each tick.
     output wire         strobe,
+    // Asserted in the first clock of each phase.
     output wire         phase_start,
+    // The number of the present phase, 0 to Q - 1.
     output wire   [3:0] phase
 );
     // A mask of the bits that a counter from 0 to `greatest` uses.
@@ -82,26 +91,47 @@ endmodule
 
 // Holds the running segment of an axis and one waiting segment.
 module carrystep_sequencer (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick, unless the core is frozen.
     input  wire         strobe,
+    // Asserted while a fault is latched. The axis stops running.
     input  wire         frozen,
+    // The next V is out of range. The axis stops running.
     input  wire         stop,
+    // Clears the waiting segment and the fault.
     input  wire         clear,
+    // The waiting segment may start an axis at rest in this clock.
     input  wire         go,
+    // The sequencer stores the offered segment in this clock.
     input  wire         push,
+    // Offered segment: its duration in ticks.
     input  wire  [31:0] seg_ticks,
+    // Offered segment: the initial speed V, in 2^-64 step per tick, two's complement.
     input  wire  [63:0] seg_v,
+    // Offered segment: the initial acceleration A, in 2^-64 step per tick^2, two's complement.
     input  wire  [63:0] seg_a,
+    // Offered segment: the jerk J, in 2^-64 step per tick^3, two's complement.
     input  wire  [63:0] seg_j,
+    // Offered segment: it is the last of its move, and the axis rests after it.
     input  wire         seg_last,
+    // A segment is stored and not yet loaded.
     output wire         waiting,
+    // The waiting segment could start at a strobe in this clock.
     output wire         startable,
+    // A segment runs.
     output wire         running,
+    // The axis loads V, A and J from the waiting segment.
     output wire         load,
+    // The running segment continues: the axis advances V and A.
     output wire         advance,
+    // The V of the waiting segment.
     output wire  [63:0] v,
+    // The A of the waiting segment.
     output wire  [63:0] a,
+    // The J of the waiting segment.
     output wire  [63:0] j,
+    // Latched fault: a segment that was not the last of its move ended, and no segment was waiting.
     output wire         underrun
 );
     localparam [31:0] ONE = 32'd1;
@@ -161,24 +191,44 @@ endmodule
 
 // Finds the phase of a step in its tick by bisection; requests the step in that phase.
 module carrystep_step_edge (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick, even while the core is frozen.
     input  wire         strobe,
+    // Asserted in the first clock of a phase.
     input  wire         phase_start,
+    // The number of the present phase, 0 to Q - 1.
     input  wire   [3:0] phase,
+    // Asserted while a fault is latched. No new tick enters; steps that have already been found
+    // continue.
     input  wire         frozen,
+    // Clears the stored signs of V.
     input  wire         clear,
+    // The tick that ends at this strobe contains a step.
     input  wire         crosses,
+    // V > 0 in the tick that ends at this strobe.
     input  wire         forward,
+    // V < 0 in the tick that ends at this strobe.
     input  wire         backward,
+    // The upper 32 bits of P before the addition.
     input  wire  [31:0] p,
+    // The upper 32 bits of V before the addition.
     input  wire  [31:0] v,
+    // Asserted for one clock when a step is due.
     output wire         request,
+    // The requested step is backward.
     output wire         request_back,
+    // V > 0 in the tick that is being emitted.
     output wire         want_fwd,
+    // V < 0 in the tick that is being emitted.
     output wire         want_back,
+    // A step has been found and may not have been requested yet.
     output wire         in_flight,
+    // The tick accumulated last contained a step.
     output wire         crossed,
+    // V < 0 in the tick accumulated last.
     output wire         back,
+    // The phase of that step, valid when the bisection has finished.
     output wire   [3:0] q
 );
     localparam [31:0] SIGN = 32'h80000000;
@@ -254,33 +304,61 @@ module carrystep_axis #(
     // Start value of P: 1 half a step, 0 zero; 0 or 1
     parameter [31:0] START_HALF = 32'd1
 ) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick.
     input  wire         strobe,
+    // Asserted in the first clock of a phase.
     input  wire         phase_start,
+    // The number of the present phase, 0 to Q - 1.
     input  wire   [3:0] phase,
+    // Asserted while a fault of any axis is latched. The axis does not move.
     input  wire         frozen,
+    // Sets P to its start value and clears the segments and the faults.
     input  wire         clear,
+    // The waiting segment may start this axis at the strobe in this clock.
     input  wire         go,
+    // The axis stores the offered segment in this clock.
     input  wire         push,
+    // Offered segment: its duration in ticks.
     input  wire  [31:0] seg_ticks,
+    // Offered segment: the initial speed V, in 2^-64 step per tick, two's complement.
     input  wire  [63:0] seg_v,
+    // Offered segment: the initial acceleration A, in 2^-64 step per tick^2, two's complement.
     input  wire  [63:0] seg_a,
+    // Offered segment: the jerk J, in 2^-64 step per tick^3, two's complement.
     input  wire  [63:0] seg_j,
+    // Offered segment: it is the last of its move, and the axis rests after it.
     input  wire         seg_last,
+    // A segment is stored and not yet loaded.
     output wire         waiting,
+    // The waiting segment could start at a strobe in this clock.
     output wire         startable,
+    // Asserted for one clock when a step is due.
     output wire         request,
+    // The requested step is backward.
     output wire         request_back,
+    // V > 0 in the tick that is being emitted.
     output wire         want_fwd,
+    // V < 0 in the tick that is being emitted.
     output wire         want_back,
+    // A step has been found and may not have reached the shaper.
     output wire         in_flight,
+    // The axis is at rest, no segment waits, and every step has reached the shaper.
     output wire         drained,
+    // Latched fault: the next V would have been outside -2^63 < V < 2^63.
     output wire         overspeed,
+    // Latched fault: a segment that was not the last of its move ended, and no segment was waiting.
     output wire         underrun,
+    // For observation: the last tick contained a step.
     output wire         crossed,
+    // For observation: V < 0 in the last tick.
     output wire         back,
+    // For observation: the phase of that step, valid when the bisection has finished.
     output wire   [3:0] q,
+    // For observation: P.
     output wire  [63:0] p,
+    // For observation: V.
     output wire  [63:0] v
 );
     localparam [63:0] START_VALUE = START_HALF[0] ? 64'h8000000000000000 : 64'h0;
@@ -436,18 +514,32 @@ module carrystep_shaper #(
     // The minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
     parameter [31:0] DIR_HOLD = 32'd2
 ) (
+    // The clock.
     input  wire         clock,
+    // Asserted while a fault is latched. No new pulse starts and DIR does not change.
     input  wire         frozen,
+    // Clears the fault.
     input  wire         clear,
+    // A step is due in this clock.
     input  wire         request,
+    // The requested step is backward.
     input  wire         request_back,
+    // V > 0: DIR should be forward.
     input  wire         want_fwd,
+    // V < 0: DIR should be backward.
     input  wire         want_back,
+    // The STEP pin.
     output wire         step,
+    // The DIR pin; 1 is backward.
     output wire         dir,
+    // A step is held back.
     output wire         held_back,
+    // The steps forward less the steps backward, 32 bits two's complement.
     output wire  [31:0] position,
+    // The number of steps that were requested but not made, modulo 2^32: the step of an overrun and
+    // those discarded while frozen.
     output wire  [31:0] discarded,
+    // Latched fault: a second step arrived while one was held back.
     output wire         overrun
 );
     // A mask of the bits that a counter from 0 to `greatest` uses.
@@ -625,29 +717,56 @@ module carrystep_six_axis #(
     parameter [31:0] DIR_HOLD_4 = 32'd2,
     parameter [31:0] DIR_HOLD_5 = 32'd120
 ) (
+    // The clock.
     input  wire         clock,
+    // The host offers a segment and holds it until the core accepts it.
     input  wire         seg_valid,
+    // The number of the axis that the segment is for, 0 to 5.
     input  wire   [2:0] seg_axis,
+    // Offered segment: its duration in ticks.
     input  wire  [31:0] seg_ticks,
+    // Offered segment: the initial speed V, in 2^-64 step per tick, two's complement.
     input  wire  [63:0] seg_v,
+    // Offered segment: the initial acceleration A, in 2^-64 step per tick^2, two's complement.
     input  wire  [63:0] seg_a,
+    // Offered segment: the jerk J, in 2^-64 step per tick^3, two's complement.
     input  wire  [63:0] seg_j,
+    // Offered segment: it is the last of its move, and the axis rests after it.
     input  wire         seg_last,
+    // The core accepts an offered segment in this clock.
     output wire         seg_ready,
+    // The host offers a start and holds it until the core accepts it.
     input  wire         start_valid,
+    // The axes to start; bit i is axis i.
     input  wire   [5:0] start_mask,
+    // The core accepts an offered start in this clock.
     output wire         start_ready,
+    // Clears a fault. The host holds it until `fault` falls.
     input  wire         clear,
+    // The STEP pins; bit i is axis i. A rising edge is a step.
     output wire   [5:0] step,
+    // The DIR pins; bit i is axis i; 1 is backward.
     output wire   [5:0] dir,
+    // The steps forward less the steps backward of each axis, 32 bits two's complement; axis 0 is
+    // in the lowest bits.
     output wire [191:0] position,
+    // The number of steps of each axis that were requested but not made, modulo 2^32; axis 0 is in
+    // the lowest bits.
     output wire [191:0] discarded,
+    // All axes are at rest, no segment waits and no start is armed.
     output wire         idle,
+    // A fault is latched, and all axes are frozen.
     output wire         fault,
+    // Latched fault of an axis: a second step arrived while one was held back.
     output wire   [5:0] overrun,
+    // Latched fault of an axis: the next V would have been outside -2^63 < V < 2^63.
     output wire   [5:0] overspeed,
+    // Latched fault of an axis: a segment that was not the last of its move ended, and no segment
+    // was waiting.
     output wire   [5:0] underrun,
+    // Latched fault: the host broke the segment protocol.
     output wire         protocol,
+    // Axes start at the end of this clock; asserted for one clock per start.
     output wire         started
 );
     localparam [5:0] FIRST = 6'd1;

@@ -176,7 +176,8 @@ impl Engine {
         self.supervisor.clock(guard, inputs, strobe, outputs.idle);
         self.stop = stop;
         if strobe && before.clearing {
-            self.clear();
+            self.stop = Stop::default();
+            self.empty();
         }
         self.clock_reset(reset, inputs.reset);
         if strobe {
@@ -395,8 +396,8 @@ impl Engine {
         }
     }
 
-    fn clear(&mut self) {
-        self.stop = Stop::default();
+    /// Sets P of all axes to its start value and removes all segments.
+    fn empty(&mut self) {
         for axis_model in &mut self.axis_models {
             axis_model.p = self.build.phase.start_value();
             axis_model.queue.clear();

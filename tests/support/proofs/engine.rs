@@ -104,7 +104,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         promises: Promises { text: include_str!("../../../crates/hdl/src/engine/promises.sv") },
         cases: builds.into_iter().chain([built.clone()]).map(case).collect(),
         depth: 1,
-        reach: 200,
+        reach: 340,
         bugs: BUGS,
     }
 }

@@ -101,7 +101,7 @@ pub(super) fn proof(built: &BuiltEngine) -> Proof {
         },
         cases: vec![case],
         depth: 1,
-        reach: 30,
+        reach: 260,
         bugs: BUGS,
     }
 }

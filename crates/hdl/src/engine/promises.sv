@@ -75,7 +75,7 @@ module promises (
     (* inside = "dut.stops.breaks" *) wire breaks;
     (* inside = "dut.queue_misplaced" *) wire misplaced;
     (* inside = "dut.resets_ending" *) wire ending;
-    (* inside = "dut.resets_stage_1" *) wire stage_1;
+    (* inside = "dut.resets.first" *) wire stage_1;
     (* inside = "dut.resets_stage_2" *) wire stage_2;
     (* inside = "dut.resets_completes" *) wire completes;
     (* inside = "dut.resets_restarts_round" *) wire restarts_round;

@@ -7,6 +7,7 @@
 
 use super::Engine;
 use super::axis_model::Limit;
+use super::guard::Stop;
 
 /// How far a reset is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -50,14 +51,15 @@ impl Engine {
             1 => self.reset.stage = 2,
             _ => {
                 self.supervisor.tick_of_round = 0;
+                self.empty();
+                for axis_model in &mut self.axis_models {
+                    axis_model.limits = [Limit::default(); 2];
+                    axis_model.shaper.discarded = 0;
+                }
                 if !requested {
                     self.reset = Reset::default();
-                    self.clear();
+                    self.stop = Stop::default();
                     self.rest = 2;
-                    for axis_model in &mut self.axis_models {
-                        axis_model.limits = [Limit::default(); 2];
-                        axis_model.shaper.discarded = 0;
-                    }
                 }
             }
         }

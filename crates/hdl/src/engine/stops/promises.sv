@@ -72,7 +72,8 @@ module promises (
     wire [2:0] call = overrun ? OVERRUN : e_stop ? E_STOP : breaks ? PROTOCOL : found ? tick_cause
         : watchdog ? WATCHDOG : HOST;
     wire [`AXES-1:0] caller = overrun ? late : !e_stop & !breaks & found ? tick_axis : 0;
-    (* inside = "dut.wiping" *) wire wiping;   // `clear` clears the stop in this tick
+    // `clear` clears the stop in this tick.
+    (* inside = "dut.wiping" *) wire wiping;
     wire cleared = strobe & wiping | completes;
 
     // ---- Values of the clock before, and of the last strobe.
