@@ -109,24 +109,12 @@ fn line_column(before: &str) -> (usize, usize) {
     (line, column)
 }
 
-/// Keys of earlier releases, and the keys that have replaced them.
-const RENAMED: [(&str, &str); 4] = [
-    ("step_ns", "step_high_ns"),
-    ("gap_ns", "step_low_ns"),
-    ("setup_ns", "dir_setup_ns"),
-    ("hold_ns", "dir_hold_ns"),
-];
-
 /// The known key or value that is most like the unknown one, from a message of the parser such as
 /// "unknown field `a`, expected one of `b`, `c`".
 fn meant(message: &str) -> Option<&str> {
     let (wrong, known) = message.strip_prefix("unknown ")?.split_once("`, expected ")?;
     let (_, wrong) = wrong.split_once('`')?;
-    let mut known = known.split('`').skip(1).step_by(2);
-    match RENAMED.iter().find(|(old, _)| *old == wrong) {
-        Some((_, new)) => known.find(|known| known == new),
-        None => nearest(wrong, known),
-    }
+    nearest(wrong, known.split('`').skip(1).step_by(2))
 }
 
 /// Shortens a message that quotes a long text of a file: its first and last 400 characters remain.

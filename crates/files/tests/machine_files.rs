@@ -56,6 +56,14 @@ fn limits_are_exact_products() {
 }
 
 #[test]
+fn pin_times_by_their_names_of_the_first_edition_are_read() {
+    let times = |text: &str| machine(&format!("{AT_48}{AXIS}{text}")).axes.remove(0).pins_ns;
+    let now = "step_high_ns = 900\nstep_low_ns = 800\ndir_setup_ns = 70\ndir_hold_ns = 60\n";
+    let then = "step_ns = 900\ngap_ns = 800\nsetup_ns = 70\nhold_ns = 60\n";
+    assert_eq!(times(then), times(now));
+}
+
+#[test]
 fn single_pin_times_override_the_driver_preset() {
     let pins = |lines: &str| machine(&format!("[machine]\n{AXIS}{lines}")).axes[0].pins_ns;
     let a4988 = PinTimes { step_high: 1000, step_low: 1000, dir_setup: 200, dir_hold: 200 };

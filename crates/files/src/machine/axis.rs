@@ -31,9 +31,14 @@ pub(super) struct RawAxis {
     jerk_limit: Option<Spanned<f64>>,
     stop_accel: Option<Spanned<f64>>,
     driver: Option<Spanned<String>>,
+    // The aliases are the names of the first edition, which files of users contain.
+    #[serde(alias = "step_ns")]
     step_high_ns: Option<Spanned<u64>>,
+    #[serde(alias = "gap_ns")]
     step_low_ns: Option<Spanned<u64>>,
+    #[serde(alias = "setup_ns")]
     dir_setup_ns: Option<Spanned<u64>>,
+    #[serde(alias = "hold_ns")]
     dir_hold_ns: Option<Spanned<u64>>,
     travel: Option<Spanned<Vec<Spanned<f64>>>>,
     home: Option<Spanned<RawHome>>,

@@ -12,7 +12,7 @@
 //! `DIR_SETUP` is the set-up of DIR before STEP rises, `DIR_HOLD` its hold after STEP has risen.
 //! All are in clocks. A step that this timing delays is held back (`due` in
 //! the code, `held_back` at the output), at most one. A second one calls the stop `overrun`. In the
-//! code, `turn` means that DIR changes.
+//! code, `dir_changes` means that DIR changes.
 //!
 //! Two free-running counters measure the time: `since` counts clocks since STEP rose, `after`
 //! clocks since DIR changed. A counter that reaches a limit only ends a condition (the pulse, the

@@ -2,7 +2,7 @@
 //
 //   parameters   AXES: number of axes
 //                CLOCKS: the least number of clocks from one strobe to the next
-//                `DUT: the name of the exported module `turn`
+//                `DUT: the name of the exported module `time_slot`
 //   assumptions  A tick is never shorter than CLOCKS (proved in event_wheel/promises.sv).
 //
 // In every tick each axis has one time slot of 13 beats. That of axis 0 begins in the clock after
