@@ -60,7 +60,7 @@
 #define CARRYSTEP_IDENTITY 0x00u
 /* Version of the protocol (read) */
 #define CARRYSTEP_PROTOCOL 0x01u
-/* Build id, low half: a hash of the register map and of all parameters of the build (read) */
+/* Build id, low half: a hash of register map and build parameters, for hosts to compare (read) */
 #define CARRYSTEP_BUILD_LOW 0x02u
 /* Build id, high half (read) */
 #define CARRYSTEP_BUILD_HIGH 0x03u
@@ -76,11 +76,11 @@
 #define CARRYSTEP_WATCHDOG_TICKS 0x08u
 /* Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write) */
 #define CARRYSTEP_CONTROL 0x20u
-/* Axes, one bit each, to start together once all of them rest; an empty queue is a fault (write) */
+/* Axes, one bit each, to start together once all rest; an empty queue: fault (protocol) (write) */
 #define CARRYSTEP_START 0x21u
-/* Any value ends a stop: it empties the queues and resets P, but not the position (write) */
+/* Any value ends a complete stop: queues empty, P at its start value, position kept (write) */
 #define CARRYSTEP_CLEAR 0x22u
-/* Axes, one bit each, whose next limit latches the position and stops this axis only (write) */
+/* Axes, one bit each: the next limit latches the position and ramps down this axis only (write) */
 #define CARRYSTEP_HOME 0x23u
 /* P, the fraction of a step in units of 2^-64 step, low half (read, axis 0) */
 #define CARRYSTEP_P_LOW 0x40u

@@ -53,7 +53,7 @@ pub const QUEUE_SEGMENTS: u8 = 0x07;
 pub const IDENTITY: u8 = 0x00;
 /// Version of the protocol (read).
 pub const PROTOCOL: u8 = 0x01;
-/// Build id, low half: a hash of the register map and of all parameters of the build (read).
+/// Build id, low half: a hash of register map and build parameters, for hosts to compare (read).
 pub const BUILD_LOW: u8 = 0x02;
 /// Build id, high half (read).
 pub const BUILD_HIGH: u8 = 0x03;
@@ -69,11 +69,11 @@ pub const PHASES: u8 = 0x07;
 pub const WATCHDOG_TICKS: u8 = 0x08;
 /// Bit 0: power the drivers; bit 1: stop all axes, each with its ramp (write).
 pub const CONTROL: u8 = 0x20;
-/// Axes, one bit each, to start together once all of them rest; an empty queue is a fault (write).
+/// Axes, one bit each, to start together once all rest; an empty queue: fault (protocol) (write).
 pub const START: u8 = 0x21;
-/// Any value ends a stop: it empties the queues and resets P, but not the position (write).
+/// Any value ends a complete stop: queues empty, P at its start value, position kept (write).
 pub const CLEAR: u8 = 0x22;
-/// Axes, one bit each, whose next limit latches the position and stops this axis only (write).
+/// Axes, one bit each: the next limit latches the position and ramps down this axis only (write).
 pub const HOME: u8 = 0x23;
 /// P, the fraction of a step in units of 2^-64 step, low half (read, axis 0).
 pub const P_LOW: u8 = 0x40;

@@ -58,7 +58,7 @@ registers! {
     IDENTITY     = 0x00 Read "The bytes of \"CSTP\", low byte first, which identify carrystep";
     PROTOCOL     = 0x01 Read "Version of the protocol";
     BUILD_LOW    = 0x02 Read
-        "Build id, low half: a hash of the register map and of all parameters of the build";
+        "Build id, low half: a hash of register map and build parameters, for hosts to compare";
     BUILD_HIGH   = 0x03 Read "Build id, high half";
     AXIS_COUNT   = 0x04 Read "Number of axes";
     CLOCK_HZ     = 0x05 Read "Frequency of the clock in Hz";
@@ -68,11 +68,11 @@ registers! {
         "Ticks without a valid frame after which all axes are stopped; 0: no watchdog";
     CONTROL      = 0x20 Write "Bit 0: power the drivers; bit 1: stop all axes, each with its ramp";
     START        = 0x21 Write
-        "Axes, one bit each, to start together once all of them rest; an empty queue is a fault";
+        "Axes, one bit each, to start together once all rest; an empty queue: fault (protocol)";
     CLEAR        = 0x22 Write
-        "Any value ends a stop: it empties the queues and resets P, but not the position";
+        "Any value ends a complete stop: queues empty, P at its start value, position kept";
     HOME         = 0x23 Write
-        "Axes, one bit each, whose next limit latches the position and stops this axis only";
+        "Axes, one bit each: the next limit latches the position and ramps down this axis only";
     P_LOW        = 0x40 Read "P, the fraction of a step in units of 2^-64 step, low half";
     P_HIGH       = 0x41 Read "P, high half";
     POSITION     = 0x42 Read "Position: steps forward minus steps backward, two's complement";
