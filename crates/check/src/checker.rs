@@ -3,9 +3,10 @@
 //! knows nothing of the plan's segments.
 //!
 //! For the k-th rising edge of STEP of an axis, e = m - t, where m is the time of the edge minus
-//! the origin, and t the time at which the profile crosses the k-th step. The capture is judged as
-//! a stream, in constant memory. A missing or extra pulse is reported where it occurs, and the
-//! pulses after it are still compared with the crossings to which they belong.
+//! the origin, and t the time at which the profile crosses the k-th step. A pulse with e > 0 is
+//! late, one with e < 0 early. The capture is judged as a stream, in constant memory. A missing or
+//! extra pulse is reported where it occurs, and the pulses after it are still compared with the
+//! crossings to which they belong.
 
 use crate::axis_check::{AxisCheck, AxisSetup};
 use crate::edge::{PinChange, PinSink};
@@ -98,6 +99,9 @@ impl<'a> Checker<'a> {
             Origin::Fixed { .. } => OriginKind::Fixed,
         };
         let shift = if kind == OriginKind::Midpoint { midpoint(&self.axes) } else { 0 };
+        // The greatest bound of all axes for e, in seconds. `LinesCheck::off` allows each axis the
+        // distance that it travels in this time; `finish` makes the result a part of the axis'
+        // `passed`.
         let late = self.axes.iter().map(AxisCheck::bound_ps).fold(0.0, f64::max) / crate::ideal::PS;
         let axes = self.axes.into_iter().enumerate();
         let axes: Vec<_> =

@@ -17,7 +17,8 @@ pub struct Segment {
     pub a: i64,
     /// Jerk in 2^-64 step per tick^3.
     pub j: i64,
-    /// Whether the axis stops (V = A = J = 0) at the end of this segment. A segment that is not the
+    /// Whether the axis stops (V = A = J = 0) at the end of this segment. A segment that follows in
+    /// the queue then waits for the next [`Command::Start`] of the axis. A segment that is not the
     /// last needs a successor in the queue at its end; without one there is an underrun.
     pub last: bool,
 }

@@ -110,7 +110,8 @@ impl<const N: usize> Window<N> {
         Ok(())
     }
 
-    /// Removes the writes that were never sent; `withdrawn` is called with each.
+    /// Removes the writes that were never sent; `withdrawn` is called with each. Writes that were
+    /// sent in any round stay, because the gateware may have executed them.
     pub fn withdraw(&mut self, mut withdrawn: impl FnMut(&Body)) {
         while self.length > self.reached {
             self.length -= 1;
@@ -141,8 +142,9 @@ impl<const N: usize> Window<N> {
         Some(request)
     }
 
-    /// Checks that this answers a write of this host, as far as that can be known. Of acknowledged
-    /// writes only the number is left, so a late answer to one of them is accepted.
+    /// Checks that this answers a write of this host, as far as that can be known. An answer to a
+    /// read passes. Of acknowledged writes only the number is left, so a late answer to one of them
+    /// passes here too; [`Self::answer`] may still refuse it.
     ///
     /// # Errors
     /// [`Foreign`] if the number was never sent, or was sent with another address.
@@ -201,8 +203,9 @@ impl<const N: usize> Window<N> {
     }
 
     /// Processes a refusal. The gateware refuses every write behind a missing one, so one loss
-    /// causes many refusals with rising numbers. A new round begins with the first of them, and
-    /// with one whose number does not rise: then a write of the new round was refused too.
+    /// causes many refusals with rising numbers. The first of them begins a new round; the others
+    /// are only recorded. A refusal whose number does not rise is not one of them: it answers a
+    /// write of the new round, and begins another round.
     fn refusal(&mut self, behind: u8, now: u32) {
         if self.refused.is_some_and(|before| behind > before) {
             self.refused = Some(behind);

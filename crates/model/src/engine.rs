@@ -3,12 +3,16 @@
 //! The contract is the section "engine" of docs/clock-by-clock.md; change both together.
 //!
 //! ```text
-//! strobe      ^ n - 1        ^ n            ^ n + 1        ^ n + 2
-//! words put   |--------------| seen by tick n + 1
-//! tick n      |  worked out  |
-//! its step    |              |              | requested in tick n + 2, at phase q;
-//!                                             on the pin one clock later
+//! tick     |       n       |     n + 1     |     n + 2     |
+//! strobe   _______________/^______________/^______________/^
+//! segment  |  committed    |  in the queue
+//! step     |  computed     |  waits        |  requested in phase q
 //! ```
+//!
+//! A segment whose commit arrives in tick n is in the queue from tick n + 1 on. The additions of
+//! tick n find a step and its phase q; the strobe that ends tick n commits them. The step is
+//! requested of the shaper two ticks later, in the first clock of phase q of tick n + 2, and is on
+//! the pin one clock after that.
 
 mod axis_model;
 mod guard;
@@ -26,8 +30,8 @@ use guard::{Stop, Supervisor, freezes};
 use reset::Reset;
 use std::sync::Arc;
 
-/// The beat of an axis' time slot in which the engine outputs the position
-/// of an axis that waits for its limit.
+/// The beat of a time slot in which the output `latch` gives the number of its axis, if this axis
+/// waits for its limit. The gateware outputs the position of the axis at `get_data` then.
 const LATCH_BEAT: u32 = 6;
 
 /// The beat of a time slot in which the limit pin is sampled.
@@ -153,6 +157,7 @@ impl Engine {
         {
             stop.call(Cause::Protocol, 0, guard);
         }
+        // While the engine is at rest, a silent host calls no stop.
         let waits = self.rest == 2;
         if strobe {
             stop = self.end_tick(inputs, &outputs, stop, busy);
@@ -318,9 +323,10 @@ impl Engine {
         (axis_models.collect(), found)
     }
 
-    /// Decides at this strobe about the armed start. It waits for an axis that runs on, and for one
-    /// that `slows` since an earlier tick. An axis that meets its limit in this very tick does not
-    /// hold it back, because `self.axis_models` has `slows` as it was before the tick.
+    /// Decides at this strobe about the armed start. The start waits while an axis of its mask runs
+    /// on after this tick, or was slowing down for its limit (`slows`) when this tick began. A
+    /// limit that an axis meets in this very tick sets `slows` only for the next tick, so it does
+    /// not delay the start by itself.
     fn decision(&self, (ticked, found): &(Vec<AxisModel>, Vec<(Cause, usize)>)) -> Decision {
         let free = self.stop.fault.is_none() && found.is_empty();
         let Some(mask) = self.armed.filter(|_| free) else { return Decision::Wait };
@@ -373,6 +379,8 @@ impl Engine {
                 }
             }
         }
+        // The decision above was about the start that was armed before. The start that is accepted
+        // now is decided about at the next strobe at the earliest.
         if outputs.start_ready {
             self.armed = inputs.start;
         }
@@ -382,6 +390,11 @@ impl Engine {
         self.axis_models = axis_models;
         self.time_slots = true;
         let freezes = found.iter().any(|(cause, _)| freezes(*cause, guard));
+        // The engine is halted: after a freeze, from the first strobe before which `frozen` was
+        // set; for a freezing cause found in a tick, from the strobe that ends this tick; in a
+        // ramp, from the first strobe at which the ramp was in force and no axis ran in the tick.
+        // At the next strobe the stop is settled. From the strobe after that one a clear is
+        // accepted (`clearing`), and takes effect one strobe later.
         Stop {
             ramp: before.fault.is_some() || !found.is_empty(),
             halted: before.frozen || freezes || (before.ramp && !ran),
@@ -396,7 +409,9 @@ impl Engine {
         }
     }
 
-    /// Sets P of all axes to its start value and removes all segments.
+    /// Sets P of every axis to its start value, and removes all queued segments and the words of
+    /// segments that are not committed. Positions, discarded steps, pins and debounced limits stay
+    /// as they are.
     fn empty(&mut self) {
         for axis_model in &mut self.axis_models {
             axis_model.p = self.build.phase.start_value();

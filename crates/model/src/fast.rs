@@ -63,7 +63,9 @@ impl Fast {
         self.core.outputs(inputs)
     }
 
-    /// Advances by one cycle and reports the edges on the pins to `to`.
+    /// Advances by one cycle and reports the edges on the pins to `to`. The pins are registers, so
+    /// an edge has the number of the cycle after the executed one: the first cycle with the new
+    /// level.
     pub fn clock(&mut self, inputs: &Inputs, to: &mut impl Edges) {
         let before = self.core.axis_models.map(|axis_model| axis_model.shaper);
         self.core.clock(inputs);
@@ -104,7 +106,9 @@ impl Fast {
         clocks
     }
 
-    /// Cycles before the strobe that ends the first of the running segments.
+    /// Cycles from the present one, itself included, to the strobe that ends the first of the
+    /// running segments, that strobe not included. The ticks `left` of a segment include the
+    /// present tick.
     fn clocks_to_load(&self) -> u64 {
         let left = |axis_model: &crate::parallel::six_axis::AxisModel| {
             axis_model.axis.running.then_some(axis_model.axis.left.saturating_sub(1))

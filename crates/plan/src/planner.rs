@@ -45,8 +45,8 @@ pub fn plan<F: Real>(file: &MoveFile) -> Result<Plan, PlanError> {
     Ok(Plan { build: planner.build, moves })
 }
 
-/// A fitted piece is at least this many tolerances long: in a shorter one the tolerance is its
-/// length in ticks divided by this number.
+/// Limits the tolerance of a fit in a short piece, in ticks, to the length of the piece in ticks
+/// divided by this number. A piece of 16 ticks has a tolerance of at most 0.25 ticks.
 const LEAST_RATIO: f64 = 64.0;
 
 /// The fraction of the tolerance by which rounding a breakpoint to a whole tick may move an edge.
@@ -137,7 +137,8 @@ impl<'a> Planner<'a> {
     }
 
     /// Turns the error of a move that is too slow into [`PlanError::TooSlow`], which names the
-    /// longest time that works. Every other error is returned unchanged.
+    /// longest time that works. It is found by bisection between the shortest and the given time;
+    /// each candidate is planned as a trial. Every other error is returned unchanged.
     fn explained<F: Real>(&self, index: usize, error: PlanError) -> PlanError {
         let PlanError::Broken { axis, broken: broken @ (Broken::Slow | Broken::Segments), .. } =
             error
@@ -237,6 +238,9 @@ impl<'a> Planner<'a> {
         let (mut rows, mut risen) = (Vec::new(), Vec::new());
         for (index, &piece) in pieces.iter().enumerate() {
             let last = index + 1 == pieces.len();
+            // Slow pulses each get a tick of their own (`placed.rs`). Of the other pieces, those
+            // that are curved and belong to a sine or a logistic profile are fitted. The rest are
+            // exact.
             if piece.by_pulse {
                 writer.placed(piece, &pulses)?;
             } else if kind.is_fitted() && !is_straight(profile, clock, piece) {
@@ -266,12 +270,13 @@ impl<'a> Planner<'a> {
                     risen = segments;
                 }
             } else {
-                // In a fitted move only the last piece has to land exactly, because each exact
-                // landing costs a segment. A piece also lands exactly if the next piece is too
-                // small to take over its remainder.
+                // In a move that is not fitted every piece lands exactly. In a fitted move only the
+                // last piece must, because each exact landing costs a segment; the remainder of
+                // another piece goes to the next one. There are two exceptions. A piece lands
+                // exactly if the next one is too small to take over its remainder.
                 let small = |next: &Piece| next.ticks == 1 || next.units <= i128::from(piece.ticks);
-                // A piece longer than one segment's 32-bit tick counter also lands exactly: an
-                // uncorrected rounding of half a unit in V would shift edges visibly after some
+                // And a piece longer than one segment's 32-bit tick counter lands exactly, because
+                // an uncorrected rounding of half a unit in V would shift edges visibly after some
                 // hours.
                 let long = piece.ticks > u64::from(u32::MAX);
                 let lands = !kind.is_fitted() || long || pieces.get(index + 1).is_none_or(small);
@@ -316,6 +321,8 @@ impl<'a> Planner<'a> {
         let mut before = still(rest);
         let mut early = None;
         let mut borrowed = 0;
+        // A rest in which DIR changes is written by `turning_rest`, whose length has 32 bits; a
+        // longer one is refused.
         if own_rest > 0 && strokes.is_some_and(|s| self.pins[axis].changes_dir(&s)) {
             before = turning_rest(u32::try_from(rest).map_err(|_| Broken::Range)?, backward, phase);
             early = Some(i128::from(self.build.timebase.clocks_per_tick()));
@@ -360,8 +367,8 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// The edge tolerance of a fit in ticks. It is never less than the time that the floats of the
-/// profile can resolve.
+/// The edge tolerance of a fit in ticks: that of the move file, but not less than the time that the
+/// floats of the profile can resolve. In a short piece, `LEAST_RATIO` reduces it further.
 fn tolerance<F: Real>(fit_ns: u64, clock: &Clock<F>, tick_ns: u64) -> f64 {
     let noise = F::epsilon().to_f64().unwrap_or(0.0) * 16.0 * clock.ticks as f64;
     (fit_ns as f64 / tick_ns as f64).max(noise)
@@ -374,7 +381,8 @@ fn is_straight<F: Real>(profile: &dyn Profile<F>, clock: &Clock<F>, piece: Piece
     piece.ticks == 1 || (profile.acceleration(middle).is_zero() && profile.jerk(middle).is_zero())
 }
 
-/// Segments that keep an axis at rest for a number of ticks.
+/// Segments that keep an axis at rest for a number of ticks. Each has at most 2^32 - 1 ticks, the
+/// limit of the gateware's counter.
 fn still(mut ticks: u64) -> Vec<Segment> {
     let mut segments = Vec::new();
     while ticks > 0 {

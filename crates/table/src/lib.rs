@@ -7,10 +7,11 @@
 //! writes the table as C, and [`PLAYER`] holds the C files that play it.
 //!
 //! ```
-//! use carrystep_table::{Kind, Mode, Motor, Options, Pulses, Speed, Table, TableRequest, Timer};
+//! use carrystep_table::{Kind, Motor, Options, Pulses, Speed, Table, TableRequest};
+//! use carrystep_table::{Timer, TimerMode};
 //!
 //! let request = TableRequest {
-//!     timer: Timer::avr16(16_000_000, 64, Mode::Ctc),
+//!     timer: Timer::avr16(16_000_000, 64, TimerMode::Ctc),
 //!     motor: Motor { step_angle_deg: 1.8, microsteps: 8 },
 //!     start_frequency: 500.0,
 //!     top_speed: Speed::Rpm(500.0),

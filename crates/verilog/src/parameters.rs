@@ -4,6 +4,7 @@
 //! ```text
 //! engine #(STEP_HIGH_0, STEP_HIGH_1, ...)       one parameter per axis, with the axis' number
 //!   pulser pulser_0 #(.STEP_HIGH(STEP_HIGH_0))  each instance receives that of its own axis
+//!   supervisor supervisor #(.ROUND_TICKS(ROUND_TICKS))  not per axis: the same name
 //! ```
 //!
 //! A module has the parameters that its own constants use, and those of its children.
@@ -58,7 +59,8 @@ pub(crate) fn in_parent(instance: &str, name: &str) -> String {
 }
 
 /// The declarations of the parameters in the head of a module. A comment that describes a parameter
-/// precedes the first one of its kind.
+/// precedes the first one of its kind. A parameter of 0 bits is a string and is declared without a
+/// range.
 pub(crate) fn head(parameters: &[ParameterValue]) -> Vec<String> {
     let mut lines = Vec::new();
     let mut before: Option<&Described> = None;
@@ -125,7 +127,7 @@ fn place(name: &str) -> (usize, Option<usize>) {
 
 impl Module {
     /// The same module without the values of its parameters. Two modules that then have the same
-    /// text differ only in these values.
+    /// text differ only in these values, and the export writes them once.
     pub(crate) fn without_values(&self) -> Self {
         let mut module = self.clone();
         let atoms = module.atoms.iter_mut().filter_map(|atom| atom.note.as_mut());

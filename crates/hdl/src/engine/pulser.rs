@@ -8,10 +8,20 @@
 //!           STEP_HIGH:<---->:<------>:STEP_LOW
 //! ```
 //!
-//! `STEP_HIGH` is the least time for which STEP is high, `STEP_LOW` that for which it is low.
-//! `DIR_SETUP` is the set-up of DIR before STEP rises, `DIR_HOLD` its hold after STEP has risen.
-//! All are in clocks. A step that this timing delays is held back (`due` in
-//! the code, `held_back` at the output), at most one. A second one calls the stop `overrun`. In the
+//! `STEP_HIGH` is the least time for which STEP is high, `STEP_LOW` that for which it is low; so
+//! two rising edges are at least their sum apart. `DIR_SETUP` is the set-up of DIR before STEP
+//! rises, `DIR_HOLD` its hold after STEP has risen. All are in clocks, from 1 to 65536
+//! ([`MAX_CLOCKS`]).
+//!
+//! A step that this timing delays is held back (`due` in the code, `held_back` at the output), at
+//! most one. When a second step arrives, there are two cases:
+//! - If the first one rises in this clock, the second one takes its place and is held back.
+//! - Otherwise the second one is discarded and counted, and `overruns` is asserted. This calls the
+//!   engine's stop `overrun`, which freezes the pins from the next clock on: in that clock the
+//!   first step is discarded and counted too.
+//!
+//! As soon as the hold time is over, DIR takes the direction of the step that is due or held back.
+//! If there is none, it takes the direction of the last speed that was not zero (`want`). In the
 //! code, `dir_changes` means that DIR changes.
 //!
 //! Two free-running counters measure the time: `since` counts clocks since STEP rose, `after`
@@ -19,8 +29,9 @@
 //! gap, the hold or the set-up). The counters therefore need not stop, and their wrap-around has no
 //! effect.
 //!
-//! Pulses and discarded steps are counted modulo eight; the queue and the adder transfer these
-//! counts to the 32-bit counters in memory, one step per tick.
+//! Pulses and discarded steps are counted modulo eight. The queue and the adder compare these
+//! counts with the 32-bit counters in memory, and correct the memory by at most one pulse of each
+//! axis per tick. Discarded steps follow in the same way while the axis does not run.
 //!
 //! Cost: there is one pulser per axis; every other module of the engine exists once. The counters
 //! of a pulser are as wide as its pin timing requires.
@@ -46,8 +57,9 @@ pub struct Pulser {
     pub request: Input<Bit>,
     /// The requested step is backward.
     pub request_back: Input<Bit>,
-    /// Valid at the strobe: V != 0 in the tick whose steps are made in the tick that begins. The
-    /// register `want` keeps the direction.
+    /// Asserted only at a strobe, if V != 0 in the tick before the one that ends: with the strobe
+    /// that ends tick n + 1 the V of tick n, whose step is made in tick n + 2. The register `want`
+    /// keeps the direction.
     pub has_sign: Input<Bit>,
     /// V < 0 in that tick; valid with `has_sign`.
     pub sign_back: Input<Bit>,
@@ -60,7 +72,8 @@ pub struct Pulser {
     /// Bits 2 to 0: steps forward less steps backward, modulo 8. Bits 5 to 3: discarded steps,
     /// modulo 8.
     pub counts: Signal<Out, Word<6>>,
-    /// A second step arrives while one is held back. The stop takes effect in the next clock.
+    /// A second step arrives while one is held back that does not rise in this clock. The stop
+    /// takes effect in the next clock.
     pub overruns: Signal<Out, Bit>,
     step_pin: Register<Bit>,
     dir_pin: Register<Bit>,
@@ -89,7 +102,7 @@ pub struct Pulser {
     setup_over: Parameter<16>,
     after_bits: Parameter<16>,
     holds: Parameter<1>,
-    instant: Parameter<1>, // the set-up is one clock, so that no wait is needed
+    instant: Parameter<1>, // the set-up is one clock: STEP may rise in the clock after DIR changes
     since_rise: Literal<17, 0>,
     since_one: Literal<17, 1>,
     after_dir_change: Literal<16, 0>,
@@ -97,6 +110,8 @@ pub struct Pulser {
     at_3: Literal<4, 3>,
     one: Literal<3, 1>,
     minus_one: Literal<3, 7>,
+    // Where a parameter is not from 1 to 65536, the Verilog instantiates a module that does not
+    // exist, so that no tool accepts the design.
     step_high_out_of_range: ParameterRefusal,
     step_low_out_of_range: ParameterRefusal,
     dir_setup_out_of_range: ParameterRefusal,

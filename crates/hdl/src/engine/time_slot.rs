@@ -11,10 +11,13 @@
 //!
 //! The bisection of an axis needs four further beats, 13 to 16, which overlap the slot of the next
 //! axis. The slots begin in the clock after the strobe. After the last slot, beats 13 to 16 of its
-//! axis follow; beats 0 to 12 are not asserted until the clock after the next strobe.
+//! axis follow; beats 0 to 12 are not asserted until the clock after the next strobe. In a short
+//! tick these four beats may overlap the first slot of the next tick. So at most two bits of `beat`
+//! are asserted in a clock: one of 0 to 12, and one of 13 to 16.
 //!
 //! Interface: all modules that work in time slots take their schedule from `beat` or from single
-//! bits of it. The pulsers and the watch do not: they work with the strobe and with the phases.
+//! bits of it. The pulsers and the supervisor do not: they work with the strobe and with the
+//! phases.
 //!
 //! Cost: one flip-flop per beat, in a shift register of 17 bits, so that no module needs to decode
 //! a beat counter; one flip-flop per axis for `axis_one_hot`; and 3 bits for the number of the
@@ -57,7 +60,8 @@ pub struct TimeSlot<const N: usize> {
 }
 
 impl<const N: usize> TimeSlot<N> {
-    /// Makes the schedule of N axes.
+    /// Makes the schedule of N axes. At configuration no bit of `beat` is asserted and the axis is
+    /// the first one; the first slot begins after the first strobe.
     pub fn new() -> Self {
         Self {
             one_hot: Register::new(Word::new(1)),

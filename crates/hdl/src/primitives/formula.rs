@@ -125,8 +125,9 @@ impl<const N: usize> Formula<N> {
         &self.given
     }
 
-    /// A mask of the bits that a counter from 0 to this number uses. Kernels mask their timers with
-    /// it, so that all higher bits are constantly 0 and synthesis removes their flip-flops.
+    /// A mask of the bits that a counter from 0 to this number uses: 0 gives 0, 4 gives 7. A module
+    /// masks its timers with it (in its kernel, the `update` function that becomes Verilog), so
+    /// that all higher bits are constantly 0 and synthesis removes their flip-flops.
     pub fn used_bits(self) -> Self {
         let value = match self.value.value().checked_ilog2() {
             Some(top) => (2 << top) - 1,
@@ -184,6 +185,8 @@ impl<const N: usize> Formula<N> {
         if self.is_closed { self.text.clone() } else { format!("({})", self.text) }
     }
 
+    /// A comparison: one bit, 1 if it holds. Its text is the comparison itself (`X > 32'd1`), which
+    /// has the same value in Verilog.
     fn compared(&self, sign: &str, other: &Self, value: bool) -> Formula<1> {
         self.clone().and_then(sign, other.clone(), self.value).with(Word::from(u64::from(value)))
     }
@@ -241,7 +244,8 @@ impl<const N: usize> From<Word<N>> for Formula<N> {
 }
 
 /// The description of a constant for the Verilog export. Rust-HDL passes on only the value of a
-/// constant and the name of its type, so a note is encoded as this name.
+/// constant and the name of its type, so a note is encoded as this name (`constant.rs` puts it
+/// there).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Note {
     /// The expression.
