@@ -6,6 +6,11 @@
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 //
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
+// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
+// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
+// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
+//
 // The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
 // the host link too: by this id the host knows the parameters for which it plans moves. With the id
 // of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
@@ -37,11 +42,17 @@
 
 // The schedule: in each tick every axis has a time slot of thirteen clocks (beats).
 module carrystep_time_slot (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick.
     input  wire         strobe,
+    // Bit i is asserted in beat i. Bits 13 to 16 belong to the axis of the slot before.
     output wire  [16:0] beat,
+    // The axis of the slot, as a number.
     output wire   [2:0] axis,
+    // The axis of the next clock, as a number.
     output wire   [2:0] axis_next,
+    // The axis of the slot, one-hot. After the last slot it is the first axis.
     output wire   [5:0] axis_one_hot
 );
     localparam BY_ONE = 1'b1;
@@ -89,24 +100,44 @@ endmodule
 
 // The only adder, 32 bits: P + V, V + A, A + J, remaining ticks, positions, bisection.
 module carrystep_adder (
+    // The clock.
     input  wire         clock,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
     input  wire  [16:0] beat,
+    // The word that the memory returns.
     input  wire  [31:0] word,
+    // The word that the host offers.
     input  wire  [31:0] put,
+    // The axis runs: beat 6 subtracts one from its remaining ticks.
     input  wire         counts,
+    // The axis is at rest, and beat 6 adds one to its discarded steps. Never asserted with
+    // `counts`.
     input  wire         lost,
+    // Beat 7 adds one to the position.
     input  wire         up,
+    // Beat 7 subtracts one from the position.
     input  wire         down,
+    // The sums that replace P are zero.
     input  wire         wipe,
+    // A reset: the sum that replaces the discarded steps is zero.
     input  wire         forgets,
+    // The sum of the beat before.
     output wire  [31:0] sum,
+    // From beat 8: the running segment ends with this tick.
     output wire         ended,
+    // From beat 12: V + A does not fit in 64 bits.
     output wire         overflow,
+    // From beat 12: V + A and V have different signs.
     output wire         turned,
+    // In beat 12: the tick contains a step.
     output wire         crosses,
+    // From beat 12: V < 0.
     output wire         back,
+    // From beat 12: V = 0.
     output wire         still,
+    // From beat 12: V = -2^63.
     output wire         least,
+    // After beat 16: the phase of the step, in 1/16 tick.
     output wire   [3:0] q
 );
     localparam [31:0] NOTHING = 32'd0;
@@ -265,11 +296,17 @@ endmodule
 
 // Memory of the control words: the queue state and flags of each axis.
 module carrystep_control (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [2:0] read_address,
+    // The word at the address of the cycle before.
     output wire  [18:0] read_data,
+    // The address of the word to write.
     input  wire   [2:0] write_address,
+    // The write enable of each bit.
     input  wire  [18:0] write_bits,
+    // The new values of the bits that are written.
     input  wire  [18:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
@@ -291,11 +328,17 @@ endmodule
 
 // Memory of one bit per segment: the segment is the last of its move.
 module carrystep_lasts (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [5:0] read_address,
+    // The word at the address of the cycle before.
     output wire         read_data,
+    // The address of the word to write.
     input  wire   [5:0] write_address,
+    // The write enable of each bit.
     input  wire         write_bits,
+    // The new values of the bits that are written.
     input  wire         write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
@@ -317,42 +360,79 @@ endmodule
 
 // The segment queue of each axis: which segment runs, and which segments wait.
 module carrystep_queue (
+    // The clock.
     input  wire         clock,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
     input  wire  [16:0] beat,
+    // The axis of the time slot.
     input  wire   [2:0] axis,
+    // The axis of the next clock.
     input  wire   [2:0] axis_next,
+    // The axis starts in this tick.
     input  wire         starts,
+    // A stop is complete: no axis runs.
     input  wire         halted,
+    // The axis ramps down.
     input  wire         ramp,
+    // Removes all segments.
     input  wire         clear,
+    // In beat 12: removes the waiting segments.
     input  wire         empties,
+    // The engine accepts the host's word in this clock.
     input  wire         take,
+    // The number of that word.
     input  wire   [2:0] put_word,
+    // The committed segment is the last of its move.
     input  wire         last,
+    // The running segment ends with this tick.
     input  wire         ended,
+    // V + A does not fit in 64 bits.
     input  wire         overflow,
+    // V = -2^63.
     input  wire         least,
+    // V + A and V have different signs.
     input  wire         turned,
+    // V < 0.
     input  wire         back,
+    // The low bits of the position, from the pulser.
     input  wire   [2:0] pulses,
+    // The low bits of the discarded steps, from the pulser.
     input  wire   [2:0] losses,
+    // The slot of the running segment.
     output wire   [2:0] live,
+    // The slot that the host writes.
     output wire   [2:0] fresh,
+    // Fault: the accepted word is not the one that is due.
     output wire         misplaced,
+    // No slot is free for the host.
     output wire         full,
+    // The number of segments for which the queue has space, 0 to 7.
     output wire   [2:0] room,
+    // No segment waits.
     output wire         empty,
+    // The axis runs in this tick.
     output wire         running,
+    // The axis runs, and V is in range as far as is known before beat 12.
     output wire         sound,
+    // V changes by the stop acceleration in this tick.
     output wire         slows,
+    // The ramp began with V < 0, so that V increases.
     output wire         upward,
+    // V stays unchanged in this tick, the first of a ramp.
     output wire         steady,
+    // In beat 12: the axis runs and its V is in range.
     output wire         moves,
+    // In beat 12: the axis runs in the next tick too.
     output wire         goes_on,
+    // In beat 12, fault: V is out of range.
     output wire         too_fast,
+    // In beat 12, fault: the segment ends, it is not the last of its move, and no segment waits.
     output wire         dry,
+    // From beat 5: a step forward is added to the position.
     output wire         up,
+    // From beat 5: a step backward is subtracted from the position.
     output wire         down,
+    // From beat 5: a discarded step is counted. Asserted only while the axis does not run.
     output wire         lost
 );
     localparam [2:0] ONE = 3'd1;
@@ -582,11 +662,17 @@ module carrystep_segments #(
     parameter [63:0] STOP_ACCEL_4 = 64'hee9bfab4c61,
     parameter [63:0] STOP_ACCEL_5 = 64'h2843ebe81b0
 ) (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [8:0] read_address,
+    // The word at the address of the cycle before.
     output wire  [31:0] read_data,
+    // The address of the word to write.
     input  wire   [8:0] write_address,
+    // The write enable of each bit.
     input  wire  [31:0] write_bits,
+    // The new values of the bits that are written.
     input  wire  [31:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
@@ -648,23 +734,42 @@ module carrystep_store #(
     parameter [63:0] STOP_ACCEL_4 = 64'hee9bfab4c61,
     parameter [63:0] STOP_ACCEL_5 = 64'h2843ebe81b0
 ) (
+    // The clock.
     input  wire         clock,
+    // The beats of `time_slot`: bit i is asserted in beat i of a time slot.
     input  wire  [16:0] beat,
+    // The axis of the time slot.
     input  wire   [2:0] axis,
+    // The slot of the running segment of the axis.
     input  wire   [2:0] live,
+    // The slot that the host writes.
     input  wire   [2:0] fresh,
+    // The axis runs in this tick.
     input  wire         running,
+    // The axis runs, and V is in range as far as is known.
     input  wire         sound,
+    // In beat 12: the axis runs and its V is in range.
     input  wire         moves,
+    // The axis ramps down: the stop acceleration replaces A.
     input  wire         slows,
+    // The stop acceleration is added (s), because the ramp began with V < 0. Otherwise it is
+    // subtracted (-s).
     input  wire         upward,
+    // V stays unchanged in this tick.
     input  wire         steady,
+    // P is set to its start value.
     input  wire         wipe,
+    // In beat 9: the word of the host is written.
     input  wire         put,
+    // The number of that word in its segment.
     input  wire   [2:0] put_word,
+    // The axis that the host reads.
     input  wire   [2:0] get_axis,
+    // The item that the host reads; it is the slot of word 7.
     input  wire   [1:0] get_item,
+    // The sum to write.
     input  wire  [31:0] sum,
+    // The word that was read.
     output wire  [31:0] word
 );
     localparam [2:0] TICKS = 3'd0;
@@ -868,9 +973,13 @@ module carrystep_tick #(
     // Clocks per tick; a multiple of the phases, from 13 x axes + 1 and 2 x phases to 65536
     parameter [31:0] CLOCKS_PER_TICK = 32'd80
 ) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of each tick.
     output wire         strobe,
+    // Asserted in the first clock of each phase.
     output wire         phase_start,
+    // The number of the present phase, 0 to Q - 1.
     output wire   [3:0] phase
 );
     // A mask of the bits that a counter from 0 to `greatest` uses.
@@ -919,16 +1028,22 @@ module carrystep_tick #(
     end
 endmodule
 
-// 
+// Memory of the event wheel: the steps of all axes in each phase of four ticks.
 module carrystep_event_memory #(
     // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [6:0] read_address,
+    // The word at the address of the cycle before.
     output wire  [15:0] read_data,
+    // The address of the word to write.
     input  wire   [6:0] write_address,
+    // The write enable of each bit.
     input  wire  [15:0] write_bits,
+    // The new values of the bits that are written.
     input  wire  [15:0] write_data
 );
     // Words of different lengths are compared.
@@ -966,17 +1081,30 @@ module carrystep_event_wheel #(
     // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last beat of a time slot. The inputs of the following beats belong to its
+    // axis.
     input  wire         time_slot_ends,
+    // The axis of the present time slot, one-hot.
     input  wire   [5:0] axis_one_hot,
+    // The tick of the axis contains a step.
     input  wire         crosses,
+    // The V of the axis is not zero.
     input  wire         has_sign,
+    // From the following beat on: V < 0.
     input  wire         back,
+    // Asserted four beats after `time_slot_ends`: `q` is valid from the next clock on.
     input  wire         phase_known,
+    // The phase of the step, in 1/16 tick.
     input  wire   [3:0] q,
+    // Asserted in the last clock of a tick.
     output wire         strobe,
+    // Asserted in the first clock of a phase, in which `events` are step events.
     output wire         phase_start,
+    // Bit i: axis i has an event.
     output wire   [5:0] events,
+    // Bit i: the event of axis i is backward.
     output wire   [5:0] backward
 );
     localparam [1:0] ONE_TICK = 2'd1;
@@ -1109,11 +1237,17 @@ endmodule
 
 // Memory of the debounced state of each limit switch, and its count of deviating samples.
 module carrystep_switches (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [3:0] read_address,
+    // The word at the address of the cycle before.
     output wire   [7:0] read_data,
+    // The address of the word to write.
     input  wire   [3:0] write_address,
+    // The write enable of each bit.
     input  wire   [7:0] write_bits,
+    // The new values of the bits that are written.
     input  wire   [7:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
@@ -1142,18 +1276,32 @@ module carrystep_limits #(
     // Active level of the limit switches: 0 high, 1 low; 0 or 1
     parameter [31:0] LIMITS_LOW = 32'd0
 ) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last beat of a time slot.
     input  wire         time_slot_ends,
+    // The axis of the slot, as a number.
     input  wire   [2:0] axis,
+    // The axis of the next clock, as a number.
     input  wire   [2:0] axis_next,
+    // The axis of the slot, one-hot.
     input  wire   [5:0] axis_one_hot,
+    // The first tick of a round: `limit_min` is sampled.
     input  wire         tick_0,
+    // The second tick of a round: `limit_max` is sampled.
     input  wire         tick_1,
+    // The pins at the low ends. With one switch per axis, the pin of that switch; with one for all
+    // axes, bit 0. Asynchronous.
     input  wire   [5:0] limit_min,
+    // The pins at the high ends; asynchronous.
     input  wire   [5:0] limit_max,
+    // The axis moves in this tick, with V != 0.
     input  wire         goes,
+    // V < 0 in this tick.
     input  wire         back,
+    // A reset: the switch of this tick becomes inactive, as at configuration.
     input  wire         resetting,
+    // The axis has reached a limit.
     output wire         hit
 );
     localparam EXIST = LIMITS != 32'd0;
@@ -1262,16 +1410,27 @@ endmodule
 
 // Homing: which axes wait for their limit, and which ones have reached it and ramp down.
 module carrystep_homing_control (
+    // The clock.
     input  wire         clock,
+    // The host replaces the mask of the axes that wait for their limit.
     input  wire         set,
+    // The new mask, valid with `set`; bit i is axis i.
     input  wire   [5:0] mask,
+    // Asserted in the last beat of a time slot.
     input  wire         time_slot_ends,
+    // The axis of the time slot, one-hot.
     input  wire   [5:0] axis_one_hot,
+    // The axis of the slot has reached a limit.
     input  wire         hit,
+    // The axis of the slot runs in the next tick too.
     input  wire         goes_on,
+    // A reset: no axis waits for its limit any more.
     input  wire         resetting,
+    // The axes that wait for their limit; bit i is axis i.
     output wire   [5:0] axes,
+    // The axis of the slot waits for its limit.
     output wire         waits,
+    // The axis of the slot has reached its limit in an earlier tick and ramps down.
     output wire         slows
 );
     localparam [5:0] NONE = 6'd0;
@@ -1330,32 +1489,60 @@ module carrystep_stops #(
     // Effect of a limit: 0 all axes ramp down, 1 all axes freeze; 0 or 1
     parameter [31:0] LIMIT_FREEZES = 32'd0
 ) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick.
     input  wire         strobe,
+    // Asserted in the last beat of a time slot. The inputs about the slot's axis are valid in this
+    // clock.
     input  wire         time_slot_ends,
+    // The axis of the slot, one-hot.
     input  wire   [5:0] axis_one_hot,
+    // The axis of the slot runs in this tick.
     input  wire         runs,
+    // The V of the axis is out of range.
     input  wire         too_fast,
+    // The axis has reached a limit.
     input  wire         limit,
+    // The axis needs a segment, and its queue is empty.
     input  wire         dry,
+    // The axes at which a second step arrives while one is held back.
     input  wire   [5:0] late,
+    // The e-stop is active.
     input  wire         pressed,
+    // The host breaks the segment protocol.
     input  wire         breaks,
+    // The watchdog has timed out.
     input  wire         missed,
+    // The host requests a controlled stop.
     input  wire         asked,
+    // The host requests that the stop is cleared.
     input  wire         clear,
+    // A step is held back, or a STEP pin is high.
     input  wire         pins_busy,
+    // A reset is under way: all axes freeze, and `clear` has no effect.
     input  wire         ending,
+    // The second tick of a reset, which clears the state of all axes.
     input  wire         stage_2,
+    // Asserted in the last clock of a reset: the stop ends.
     input  wire         completes,
+    // A stop has been called and has not been cleared.
     output wire         fault,
+    // A time slot of this tick has found a cause.
     output wire         finds,
+    // The stop is a freeze: no new pulse starts.
     output wire         frozen,
+    // All axes ramp down.
     output wire         ramp,
+    // No axis moves any more.
     output wire         halted,
+    // A stop has been complete for a whole tick, and `clear` is not clearing it.
     output wire         settles,
+    // This tick clears the state of all axes.
     output wire         clearing,
+    // The first cause.
     output wire   [2:0] cause,
+    // The axes that caused the stop; bit i is axis i.
     output wire   [5:0] culprits
 );
     localparam LIMITS_FREEZE = LIMIT_FREEZES[0];
@@ -1474,16 +1661,27 @@ endmodule
 
 // The reset: freezes the engine, waits for rest, and restores the state at configuration.
 module carrystep_resets (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick.
     input  wire         strobe,
+    // The host requests a reset.
     input  wire         reset,
+    // A stop has been complete for a whole tick, and no clear of it is under way.
     input  wire         settled,
+    // A step is held back, or a STEP pin is high.
     input  wire         pins_busy,
+    // A reset is under way: all axes freeze.
     output wire         ending,
+    // The first of the two ticks in which the state is reset.
     output wire         stage_1,
+    // The second of them. It is repeated while `reset` is asserted.
     output wire         stage_2,
+    // One of the two ticks.
     output wire         resetting,
+    // Asserted in the last clock of a reset.
     output wire         completes,
+    // The counter of ticks in a round restarts.
     output wire         restarts_round
 );
 
@@ -1525,20 +1723,35 @@ module carrystep_supervisor #(
     // Active level of the e-stop: 0 high, 1 low; 0 or 1
     parameter [31:0] ESTOP_LOW = 32'd0
 ) (
+    // The clock.
     input  wire         clock,
+    // Asserted in the last clock of a tick.
     input  wire         strobe,
+    // The e-stop pin; asynchronous.
     input  wire         estop,
+    // A sign of life of the host: the watchdog restarts.
     input  wire         kick,
+    // The host requests power for the motor drivers.
     input  wire         enable,
+    // All axes are at rest and no start is armed.
     input  wire         idle,
+    // A reset is under way: the watchdog and the warm-up restart.
     input  wire         ending,
+    // The last two ticks of a reset: the drivers get no power.
     input  wire         resetting,
+    // A reset: the round restarts.
     input  wire         restarts_round,
+    // At a strobe: the e-stop was active in the whole tick.
     output wire         pressed,
+    // The watchdog has timed out: no `kick` for the specified number of rounds.
     output wire         missed,
+    // The drivers are to be powered.
     output wire         enabled,
+    // The drivers have been powered for the specified number of rounds.
     output wire         warm,
+    // The first tick of a round.
     output wire         tick_0,
+    // The second tick of a round.
     output wire         tick_1
 );
     // A mask of the bits that a counter from 0 to `greatest` uses.
@@ -1633,16 +1846,31 @@ module carrystep_pulser #(
     // The minimum time in clocks from a rising edge of STEP to a change of DIR; 1 to 65536
     parameter [31:0] DIR_HOLD = 32'd2
 ) (
+    // The clock.
     input  wire         clock,
+    // Asserted in a freezing stop. No new pulse starts and DIR does not change.
     input  wire         frozen,
+    // A step is due in this clock.
     input  wire         request,
+    // The requested step is backward.
     input  wire         request_back,
+    // Asserted only at a strobe, if V != 0 in the tick before the one that ends: with the strobe
+    // that ends tick n + 1 the V of tick n, whose step is made in tick n + 2. The register `want`
+    // keeps the direction.
     input  wire         has_sign,
+    // V < 0 in that tick; valid with `has_sign`.
     input  wire         sign_back,
+    // The STEP pin.
     output wire         step,
+    // The DIR pin; 1 is backward.
     output wire         dir,
+    // A step is held back.
     output wire         held_back,
+    // Bits 2 to 0: steps forward less steps backward, modulo 8. Bits 5 to 3: discarded steps,
+    // modulo 8.
     output wire   [5:0] counts,
+    // A second step arrives while one is held back that does not rise in this clock. The stop takes
+    // effect in the next clock.
     output wire         overruns
 );
     // A mask of the bits that a counter from 0 to `greatest` uses.
@@ -1839,46 +2067,104 @@ module carrystep_engine #(
     // Event memory: block RAM, or LUTs if block RAM has no write mask; "block" or "distributed"
     parameter EVENT_MEMORY = "block"
 ) (
+    // The clock.
     input  wire         clock,
+    // The host offers a word of a segment and holds it until the engine accepts it, which takes up
+    // to a tick while the queue has space.
     input  wire         put_valid,
+    // The axis of the offered word, as a number from 0. Also the axis whose free queue space `room`
+    // reports.
     input  wire   [2:0] put_axis,
+    // The number of the word. The words of a segment come in order: 0 is its duration in ticks less
+    // 1; 1 and 2 are the initial V, 3 and 4 the initial A, 5 and 6 J, low half first; 7 commits the
+    // segment.
     input  wire   [2:0] put_word,
+    // The offered word. In a commit, bit 0 is 1 if the segment is the last of its move.
     input  wire  [31:0] put_data,
+    // The engine accepts an offered word in this clock.
     output wire         put_ready,
+    // The host offers a start and holds it until the engine accepts it, which it does in the last
+    // clock of a tick.
     input  wire         start_valid,
+    // The axes to start; bit i is axis i.
     input  wire   [5:0] start_mask,
+    // The engine accepts an offered start in this clock.
     output wire         start_ready,
+    // Clears a stop. The host holds it until `fault` falls.
     input  wire         clear,
+    // Stops the engine and returns it to its state at configuration; the positions stay. It is
+    // synchronous, unlike the pins, and begins in any clock. A host that does not need it ties it
+    // to 0.
     input  wire         reset,
+    // The host requests a controlled stop by a ramp; asserted for one clock or longer.
     input  wire         stop,
+    // The host has broken the segment protocol; asserted for one clock or longer. The engine
+    // freezes all axes.
     input  wire         broken,
+    // The host replaces the mask of the axes that wait for their limit.
     input  wire         home_valid,
+    // The axes that wait for their limit from the next clock on, valid with `home_valid`; bit i is
+    // axis i.
     input  wire   [5:0] home_mask,
+    // A sign of life of the host: the watchdog restarts in each clock in which it is asserted.
     input  wire         kick,
+    // The host requests power for the motor drivers, as long as it is asserted.
     input  wire         enable,
+    // The e-stop pin; asynchronous. The parameter `ESTOP_LOW` gives its active level. It stops the
+    // axes if it is active for a whole tick.
     input  wire         estop,
+    // The pins of the limit switches at the low ends; bit i is axis i; asynchronous. `LIMITS` tells
+    // how they are wired, `LIMITS_LOW` their active level. Each is sampled once per round.
     input  wire   [5:0] limit_min,
+    // The pins of the limit switches at the high ends; bit i is axis i; asynchronous. They are used
+    // only if `LIMITS` is 1.
     input  wire   [5:0] limit_max,
+    // The axis that the host reads.
     input  wire   [2:0] get_axis,
+    // The item that the host reads: 0 and 1 P, low and high half; 2 the position in steps, two's
+    // complement; 3 the number of discarded steps.
     input  wire   [1:0] get_item,
+    // The item that the engine returns.
     output wire  [31:0] get_data,
+    // `get_data` is the item requested in the clock before.
     output wire         get_valid,
+    // `get_data` is the position of the axis `latch_axis`, which waits for its limit.
     output wire         latch,
+    // The axis of the present time slot.
     output wire   [2:0] latch_axis,
+    // The number of segments for which the queue of the axis `put_axis` has space, 0 to 7.
     output wire   [2:0] room,
+    // `room` is valid in this clock, once in the time slot of that axis.
     output wire         room_valid,
+    // The STEP pins; bit i is axis i. A rising edge is a step.
     output wire   [5:0] step,
+    // The DIR pins; bit i is axis i; 1 is backward.
     output wire   [5:0] dir,
+    // The motor drivers are to be powered.
     output wire         enabled,
+    // All axes are at rest and no start is armed.
     output wire         idle,
+    // A stop has been called and has not been cleared.
     output wire         fault,
+    // The stop is complete: no axis moves any more.
     output wire         halted,
+    // The engine is returning to its state at configuration, after `reset`.
     output wire         resetting,
+    // The first cause of the stop: 0 e-stop, 1 overrun, 2 segment protocol broken, 3 watchdog, 4
+    // overspeed, 5 limit, 6 underrun, 7 stop of the host. It has no meaning while `fault` is not
+    // asserted.
     output wire   [2:0] cause,
+    // The axes that caused the stop; bit i is axis i. It has no meaning while `fault` is not
+    // asserted.
     output wire   [5:0] culprits,
+    // A start is armed.
     output wire         armed,
+    // The host requests power for the drivers and they have been powered for long enough, so that a
+    // start can be accepted.
     output wire         ready,
+    // The axes that wait for their limit; bit i is axis i.
     output wire   [5:0] homing,
+    // Axes start at the end of this clock; asserted for one clock per start.
     output wire         started
 );
     localparam [5:0] NONE = 6'd0;

@@ -6,6 +6,11 @@
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 //
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
+// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
+// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
+// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
+//
 // The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
 // the host link too: by this id the host knows the parameters for which it plans moves. With the id
 // of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
@@ -18,11 +23,17 @@
 
 // Program memory of the processor carrystep_processor.
 module carrystep_instructions (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [7:0] read_address,
+    // The word at the address of the cycle before.
     output wire  [15:0] read_data,
+    // The address of the word to write.
     input  wire   [7:0] write_address,
+    // The write enable of each bit.
     input  wire  [15:0] write_bits,
+    // The new values of the bits that are written.
     input  wire  [15:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
@@ -262,11 +273,17 @@ endmodule
 
 // Data memory of carrystep_processor: the request, its answer, constants and variables.
 module carrystep_data (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [7:0] read_address,
+    // The word at the address of the cycle before.
     output wire   [7:0] read_data,
+    // The address of the word to write.
     input  wire   [7:0] write_address,
+    // The write enable of each bit.
     input  wire   [7:0] write_bits,
+    // The new values of the bits that are written.
     input  wire   [7:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
@@ -313,11 +330,17 @@ endmodule
 
 // Ring buffer of the received bytes that the processor has not read yet.
 module carrystep_ring (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [7:0] read_address,
+    // The word at the address of the cycle before.
     output wire   [7:0] read_data,
+    // The address of the word to write.
     input  wire   [7:0] write_address,
+    // The write enable of each bit.
     input  wire   [7:0] write_bits,
+    // The new values of the bits that are written.
     input  wire   [7:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
@@ -339,13 +362,22 @@ endmodule
 
 // Computes the CRC-32 of frames, and assembles words from bytes; one bit per clock.
 module carrystep_crc (
+    // The clock.
     input  wire         clock,
+    // Loads the register: with all ones, or with `word` if `feed` is set.
     input  wire         begins,
+    // The word that `begins` loads if `feed` is set.
     input  wire  [31:0] word,
+    // Shifts the register by one bit per clock. It is held for eight clocks.
     input  wire         step,
+    // The byte that is processed.
     input  wire   [7:0] data,
+    // If 1 during `step`, the byte enters the CRC. If 0, the byte is shifted into the upper end of
+    // the register, and the next byte of the register moves to the lower end.
     input  wire         feed,
+    // Asserted in the eighth of the eight clocks.
     output wire         over,
+    // The content of the register.
     output wire  [31:0] word_out
 );
     localparam [2:0] ONE = 3'd1;
@@ -387,35 +419,68 @@ endmodule
 
 // A small processor that reads the host's requests, executes them and writes the answers.
 module carrystep_processor (
+    // The clock.
     input  wire         clock,
+    // The line has received a byte; asserted for one clock per byte.
     input  wire         received,
+    // The received byte.
     input  wire   [7:0] received_data,
+    // A is a byte of the answer. The machine offers it until the line accepts it.
     output wire         answer_valid,
+    // The line accepts the offered byte in this clock.
     input  wire         answer_take,
+    // X: the address of the facts that are read, and the number of the word that is offered.
     output wire   [7:0] x,
+    // A: the byte of the answer, the axis of an offered word, the axes of a start, or the axes that
+    // wait for their limit.
     output wire   [7:0] a,
+    // The word of the facts at address X.
     input  wire  [31:0] facts,
+    // The machine offers a word of a segment to the engine.
     output wire         put_valid,
+    // The offered word.
     output wire  [31:0] put_data,
+    // The engine accepts the offered word in this clock.
     input  wire         put_ready,
+    // The machine offers a start of the axes in A.
     output wire         start_valid,
+    // The engine accepts an offered start in this clock.
     input  wire         start_ready,
+    // The engine clears a stop.
     output wire         clear,
+    // The host has broken the segment protocol.
     output wire         broken,
+    // A replaces the mask of the axes that wait for their limit.
     output wire         home_valid,
+    // The host has sent a valid request.
     output wire         kick,
+    // The host requests power for the motor drivers.
     output wire         enable,
+    // The host requests a controlled stop of all axes.
     output wire         stop,
+    // A cycle through all items of all axes is complete.
     input  wire         scanned,
+    // The engine has latched a stop.
     input  wire         fault,
+    // No axis moves any more after a stop.
     input  wire         halted,
+    // All axes are at rest and no start is armed.
     input  wire         idle,
+    // The host requests power for the drivers and they have been powered for long enough, so that
+    // the engine can accept a start.
     input  wire         ready,
+    // A start is armed.
     input  wire         armed,
+    // The first cause of the stop. Without a fault its value and that of `culprits` have no
+    // meaning.
     input  wire   [2:0] cause,
+    // The number of segments for which the queue of the axis in A has space.
     input  wire   [2:0] room,
+    // `room` is valid in this clock.
     input  wire         room_valid,
+    // The axes that caused the stop; bit i is axis i.
     input  wire   [5:0] culprits,
+    // The axes that wait for their limit; bit i is axis i.
     input  wire   [5:0] homing
 );
     localparam [1:0] FETCH = 2'd0;
@@ -681,7 +746,8 @@ module carrystep_processor (
     end
 endmodule
 
-// Memory of carrystep_register_mirror: constants of the build, and the last known state of each axis.
+// Memory of carrystep_register_mirror: constants of the build, and the last known state of each
+// axis.
 module carrystep_known #(
     // Build id: override it whenever you override another parameter; unique per set of parameters
     parameter [63:0] BUILD_ID = 64'hba2608fc03d32853,
@@ -694,11 +760,17 @@ module carrystep_known #(
     // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
     parameter [31:0] WATCHDOG_ROUNDS = 32'd3126
 ) (
+    // The clock.
     input  wire         clock,
+    // The address of the word to read.
     input  wire   [6:0] read_address,
+    // The word at the address of the cycle before.
     output wire  [31:0] read_data,
+    // The address of the word to write.
     input  wire   [6:0] write_address,
+    // The write enable of each bit.
     input  wire  [31:0] write_bits,
+    // The new values of the bits that are written.
     input  wire  [31:0] write_data
 );
     // No word that is read in the clock in which it is written is ever used: no bypass is needed.
@@ -740,15 +812,26 @@ module carrystep_register_mirror #(
     // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
     parameter [31:0] WATCHDOG_ROUNDS = 32'd3126
 ) (
+    // The clock.
     input  wire         clock,
+    // The address to read.
     input  wire   [6:0] address,
+    // The word at the address of the clock before.
     output wire  [31:0] data,
+    // The axis that is requested from the engine.
     output wire   [2:0] get_axis,
+    // The item that is requested from the engine.
     output wire   [1:0] get_item,
+    // The value that the engine returns.
     input  wire  [31:0] get_data,
+    // `get_data` is the value of the requested item.
     input  wire         get_valid,
+    // `get_data` is the position of the axis `latch_axis`, which waits for its limit.
     input  wire         latch,
+    // The axis of `latch`.
     input  wire   [2:0] latch_axis,
+    // The last item of the last axis arrives in this clock, so that one cycle through all items is
+    // complete.
     output wire         scanned
 );
     localparam [4:0] ONE = 5'd1;
@@ -819,42 +902,80 @@ module carrystep_link #(
     // Rounds without a valid frame of the host after which all axes stop; 0: no watchdog; 0 to 4095
     parameter [31:0] WATCHDOG_ROUNDS = 32'd3126
 ) (
+    // The clock.
     input  wire         clock,
+    // The line has received a byte; asserted for one clock per byte.
     input  wire         received_valid,
+    // The received byte.
     input  wire   [7:0] received,
+    // The link offers a byte of the answer and holds it until the line accepts it.
     output wire         answer_valid,
+    // The offered byte.
     output wire   [7:0] answer,
+    // The line accepts the offered byte in this clock.
     input  wire         answer_take,
+    // The link offers a word of a segment to the engine.
     output wire         put_valid,
+    // The axis of the offered word. Also the axis whose free queue space the link reads.
     output wire   [2:0] put_axis,
+    // The number of the offered word in its segment; 7 commits the segment.
     output wire   [2:0] put_word,
+    // The offered word.
     output wire  [31:0] put_data,
+    // The engine accepts the offered word in this clock.
     input  wire         put_ready,
+    // The number of segments for which the queue of the axis `put_axis` has space.
     input  wire   [2:0] room,
+    // `room` is valid in this clock.
     input  wire         room_valid,
+    // The link offers a start to the engine.
     output wire         start_valid,
+    // The axes to start; bit i is axis i.
     output wire   [5:0] start_mask,
+    // The engine accepts an offered start in this clock.
     input  wire         start_ready,
+    // The engine clears a stop.
     output wire         clear,
+    // The host requests a controlled stop, as long as it is asserted.
     output wire         stop,
+    // The host has broken the segment protocol.
     output wire         broken,
+    // The host replaces the mask of the axes that wait for their limit.
     output wire         home_valid,
+    // The axes that wait for their limit, valid with `home_valid`; bit i is axis i.
     output wire   [5:0] home_mask,
+    // The host has sent a valid request: the watchdog restarts.
     output wire         kick,
+    // The host requests power for the motor drivers, as long as it is asserted.
     output wire         enable,
+    // The axis whose state the link reads from the engine.
     output wire   [2:0] get_axis,
+    // The item that the link reads: 0 and 1 P, low and high half; 2 position; 3 discarded steps.
     output wire   [1:0] get_item,
+    // The value that the engine returns.
     input  wire  [31:0] get_data,
+    // `get_data` is the value of the item requested in the clock before.
     input  wire         get_valid,
+    // `get_data` is the position of the axis `latch_axis`, which waits for its limit.
     input  wire         latch,
+    // The axis of `latch`.
     input  wire   [2:0] latch_axis,
+    // The engine has latched a stop.
     input  wire         fault,
+    // No axis moves any more after a stop.
     input  wire         halted,
+    // All axes are at rest and no start is armed.
     input  wire         idle,
+    // The host requests power for the drivers and they have been powered for long enough, so that
+    // the engine can accept a start.
     input  wire         ready,
+    // A start is armed.
     input  wire         armed,
+    // The first cause of the stop, numbered as at the port `cause` of the engine.
     input  wire   [2:0] cause,
+    // The axes that caused the stop; bit i is axis i.
     input  wire   [5:0] culprits,
+    // The axes that wait for their limit; bit i is axis i.
     input  wire   [5:0] homing
 );
 

@@ -6,6 +6,11 @@
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 //
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
+// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
+// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
+// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
+//
 // The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
 // the host link too: by this id the host knows the parameters for which it plans moves. With the id
 // of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
@@ -16,15 +21,27 @@
 
 // An SPI peripheral in mode 0; SCK may be up to a fifth of the clock.
 module carrystep_spi (
+    // The clock.
     input  wire         clock,
+    // The serial clock from the host; asynchronous.
     input  wire         sck,
+    // The select from the host, active low; asynchronous.
     input  wire         select_n,
+    // The data from the host; asynchronous.
     input  wire         mosi,
+    // The data to the host.
     output wire         miso,
+    // The received byte, valid in the clocks in which `received_valid` is asserted.
     output wire   [7:0] received,
+    // Asserted for one clock per received byte.
     output wire         received_valid,
+    // The byte of the answer that the link offers.
     input  wire   [7:0] answer,
+    // The link offers a byte and holds it until the line accepts it. The link must offer the next
+    // byte of a frame within the duration of one byte; otherwise the line sends an END, which ends
+    // the frame early.
     input  wire         answer_valid,
+    // The line accepts the offered byte in this clock.
     output wire         answer_take
 );
     localparam [2:0] ONE = 3'd1;

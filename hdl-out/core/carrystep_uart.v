@@ -6,6 +6,11 @@
 // Made from    sim/six-axis.toml
 // Made by      carrystep 0.1.0, with Rust-HDL 0.46.0
 //
+// Ports: inputs are sampled at the rising edge of `clock`, and outputs change after it; an output
+// can also depend on inputs of the same clock. Signals are active high. The comment of a port says
+// if it is otherwise; an asynchronous input may come directly from a pin. P is in 2^-64 step, V in
+// 2^-64 step per tick, A in 2^-64 step per tick^2, and J in 2^-64 step per tick^3.
+//
 // The numbers of a build are parameters of the modules. If you override one, override BUILD_ID of
 // the host link too: by this id the host knows the parameters for which it plans moves. With the id
 // of other parameters it plans wrong moves, which is unsafe. The defaults of the parameters:
@@ -19,9 +24,14 @@ module carrystep_uart_in #(
     // Length of a UART bit in clocks: clock frequency / baud rate; 8 to 40000
     parameter [31:0] BIT_CLOCKS = 32'd87
 ) (
+    // The clock.
     input  wire         clock,
+    // The line from the host, high when idle; asynchronous.
     input  wire         line,
+    // The received byte. It is valid while `valid` is asserted and stays until the next byte
+    // begins.
     output wire   [7:0] data,
+    // Asserted for one clock per received byte.
     output wire         valid
 );
     // A mask of the bits that a counter from 0 to `greatest` uses.
@@ -89,10 +99,15 @@ module carrystep_uart_out #(
     // Length of a UART bit in clocks: clock frequency / baud rate; 8 to 40000
     parameter [31:0] BIT_CLOCKS = 32'd87
 ) (
+    // The clock.
     input  wire         clock,
+    // The byte that the link offers.
     input  wire   [7:0] data,
+    // The link offers a byte and holds it until the transmitter accepts it.
     input  wire         valid,
+    // The transmitter accepts the offered byte in this clock.
     output wire         take,
+    // The line to the host.
     output wire         line
 );
     // A mask of the bits that a counter from 0 to `greatest` uses.
@@ -143,13 +158,22 @@ module carrystep_uart #(
     // Length of a UART bit in clocks: clock frequency / baud rate; 8 to 40000
     parameter [31:0] BIT_CLOCKS = 32'd87
 ) (
+    // The clock.
     input  wire         clock,
+    // The line from the host, high when idle; asynchronous.
     input  wire         rx,
+    // The line to the host.
     output wire         tx,
+    // The received byte. It is valid while `received_valid` is asserted and stays until the next
+    // byte begins.
     output wire   [7:0] received,
+    // Asserted for one clock per received byte.
     output wire         received_valid,
+    // The byte of the answer that the link offers.
     input  wire   [7:0] answer,
+    // The link offers a byte and holds it until the line accepts it.
     input  wire         answer_valid,
+    // The line accepts the offered byte in this clock.
     output wire         answer_take
 );
 

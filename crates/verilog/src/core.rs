@@ -85,7 +85,7 @@ const PURPOSES: [(&str, &str); 35] = [
         "The segment memory with its address selection: reads and writes the words of a time slot.",
     ),
     (
-        "carrystep_rim",
+        "carrystep_event_memory",
         "Memory of the event wheel: the steps of all axes in each phase of four ticks.",
     ),
     (
