@@ -33,7 +33,7 @@ fn initial_memory_contents_are_equal_at_all_stages() {
         .expect("memories");
     let [netlist, bitstream] =
         [&stages.netlist.verilog, &stages.read_back].map(|text| equivalence::memories(text));
-    assert_eq!(verilog.len(), 8);
+    assert_eq!(verilog.len(), 9);
     assert!(verilog.values().all(|memory| memory.len() == 18));
     assert_eq!(verilog, netlist);
     assert_eq!(netlist, bitstream);

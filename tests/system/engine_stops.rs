@@ -206,8 +206,8 @@ const BUGS: [planted::Bug; 6] = [
     ("a limit stops the other way", "(back ^ max)", "(back ~^ max)"),
     (
         "an e-stop does not freeze",
-        "if (urgent | (strobe & found_freezing))",
-        "if (breaks | (strobe & found_freezing))",
+        "if (urgent | (strobe & found_freezing) | ending)",
+        "if (breaks | (strobe & found_freezing) | ending)",
     ),
     ("a clear leaves the pins frozen", "freeze <= 1'b0;", "freeze <= freeze;"),
 ];

@@ -7,15 +7,16 @@
 //!
 //! ```
 //! use carrystep_core::ProfileKind;
-//! use carrystep_profile::reference::{Drive, Length, Listing, Quantity, Request, Travel};
+//! use carrystep_profile::reference::{Drive, Length, Listing, Quantity};
+//! use carrystep_profile::reference::{ReferenceDistance, ReferenceRequest};
 //!
 //! // The example of the logistic source.
 //! let drive = Drive { step_angle_deg: 1.8, microsteps: 2, travel_per_rev_mm: Some(5.0) };
-//! let request = Request {
+//! let request = ReferenceRequest {
 //!     speed: Some(Quantity::new(1000.0, Length::Millimetre).per_minute()),
 //!     acceleration: Some(Quantity::new(80.0, Length::Millimetre)),
 //!     centre: Some(0.4),
-//!     ..Request::new(drive, Travel::Ramp)
+//!     ..ReferenceRequest::new(drive, ReferenceDistance::Ramp)
 //! };
 //! let logistic = request.reference(ProfileKind::Logistic)?;
 //! assert_eq!(logistic.whole_steps(), 368.0);

@@ -186,6 +186,7 @@ module promises (
     (* inside = "dut.rest_1" *) wire rest_1;
     (* inside = "dut.rest_2" *) wire rest_2;
     (* inside = "dut.stops.settled" *) wire settled;
+    (* inside = "dut.stops.wiping" *) wire wiping;
     (* inside = "dut.stops.ran" *) wire ran;
     (* inside = "dut.stops.found" *) wire found;
     (* inside = "dut.stops.found_freezing" *) wire found_freezing;
@@ -222,7 +223,8 @@ module promises (
         invariant_19: assert (!(mine && committed && at % TIME_SLOT_CLOCKS >= 8) || word[5:3] + 3'd1 != word[2:0] + {2'd0, starts});
         invariant_21: assert (slows == |(slowing & axis_one_hot) || (`AXES == 1 && was_beat[12]));
         invariant_22: assert (!was_beat[12] || at % TIME_SLOT_CLOCKS == 0 && at != 0 && at <= ALL_TIME_SLOTS);
-        invariant_23: assert (!(stage_1 | stage_2) || ending && settled && halted && !armed && !(stage_1 && stage_2));
+        invariant_23: assert (!(stage_1 | stage_2) || ending && settled && halted && frozen && !wiping && !armed
+            && !(stage_1 && stage_2));
         invariant_24: assert (!(stage_2 && had_time_slot) || quiet);
         invariant_25: assert (turning || !stage_1 && !stage_2 && !settled);
         invariant_18: assert (turning || !{going, taken, armed, active, unfed, held} && quiet);
