@@ -47,6 +47,8 @@ pub struct Engine {
     time_slots: bool,
     armed: Option<u8>,
     stop: Stop,
+    /// The word taken in the cycle before was not the next one of its segment.
+    misplaced: bool,
     reset: Reset,
     supervisor: Supervisor,
     /// Number of whole ticks, saturating at 2, in which no axis ran and no queue held a segment.
@@ -72,6 +74,7 @@ impl Engine {
             time_slots: false,
             armed: None,
             stop: Stop::default(),
+            misplaced: false,
             reset: Reset::default(),
             supervisor: Supervisor::new(),
             rest: 2,
@@ -148,15 +151,12 @@ impl Engine {
             stop.call(Cause::EStop, 0, guard);
         }
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
-        if (nobody || inputs.broken) && before.fault.is_none() {
+        if (nobody || inputs.broken || self.misplaced) && before.fault.is_none() {
             stop.call(Cause::Protocol, 0, guard);
         }
         self.sample(inputs);
-        if let Some(put) = inputs.put.filter(|_| outputs.put_ready && !nobody)
-            && !self.put(put)
-        {
-            stop.call(Cause::Protocol, 0, guard);
-        }
+        let taken = inputs.put.filter(|_| outputs.put_ready && !nobody);
+        self.misplaced = taken.is_some_and(|put| !self.put(put));
         // While the engine is at rest, a silent host calls no stop.
         let waits = self.rest == 2;
         if strobe {

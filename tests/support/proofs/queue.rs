@@ -41,8 +41,8 @@ const BUGS: &[Bug] = &[
     },
     Bug {
         breaks: "promise_6_misplaced_is_taken",
-        text: "misplaced = take & !fits_in",
-        becomes: "misplaced = !fits_in",
+        text: "wrong <= take & !fits_in",
+        becomes: "wrong <= !fits_in",
     },
     Bug { breaks: "promise_6_runs_as_told", text: "(word[7] | least)", becomes: "word[7]" },
     Bug { breaks: "promise_6_goes_on", text: "over = ended & last_one;", becomes: "over = ended;" },

@@ -18,7 +18,7 @@ const BUGS: &[Bug] = &[
         text: "completes = over;",
         becomes: "completes = second;",
     },
-    Bug { breaks: "promise_13_round", text: "(!second | strobe)", becomes: "!second" },
+    Bug { breaks: "promise_13_round", text: "asked & strobe & !first", becomes: "asked & !first" },
     Bug {
         breaks: "promise_13_complete_is_over",
         text: "asked <= 1'b0;",

@@ -94,7 +94,7 @@ module promises (
     reg asked = 0;                   // the start that was taken last includes `who`
     reg first_clock = 1, was_frozen = 0, was_fault = 0, was_enabled = 0, was_breaking = 0, was_cleared = 0;
     reg was_strobe = 0, was_start = 0, was_armed = 0, was_started = 0, was_starts = 0, was_halted = 0, was_ramp = 0;
-    reg was_ending = 0, was_clearing = 0, was_tick_0 = 0, was_tick_1 = 0;
+    reg was_wrong = 0, was_right = 0, was_ending = 0, was_clearing = 0, was_tick_0 = 0, was_tick_1 = 0;
     reg [`AXES-1:0] was_step = 0;
     reg [12:0] was_beat = 0;
     wire start = start_valid & start_ready;
@@ -108,6 +108,8 @@ module promises (
         was_breaking <= (put_valid & put_axis >= `AXES | broken | misplaced) & !fault;
         was_cleared <= strobe & clearing;
         was_ending <= ending;
+        was_wrong <= take && mine && put_word != word[18:16];
+        was_right <= take && mine && put_word == word[18:16];
     end
     wire mine = axis == who & beat[12:0] != 0;
 
@@ -118,7 +120,7 @@ module promises (
         promise_5_every_axis_frozen: assert (pulser_frozen == {`AXES{frozen}});
 
         promise_6_taken_in_its_time_slot: assert (!take || put_valid && put_ready && axis == put_axis && beat[7] && !full);
-        promise_6_words_in_order: assert (!(take && mine) || misplaced == (put_word != word[18:16]));
+        promise_6_words_in_order: assert ((!was_wrong || misplaced) && (!was_right || !misplaced));
         promise_6_nothing_taken_in_a_fault: assert (!fault || !put_ready && !start_ready && !started);
         promise_6_no_such_axis_is_told: assert (!was_breaking || fault || was_cleared);
         promise_6_start_of_nothing_is_told: assert (!started || !breaks || broken || misplaced || put_valid && put_axis >= `AXES);
@@ -152,8 +154,8 @@ module promises (
             || {starts, halted, ramp, clearing} == {was_starts, was_halted, was_ramp, was_clearing});
         assumed_by_queue_clear: assert (!clearing || halted);
         assumed_by_queue_starts: assert (!(mine && starts) || !halted);
-        assumed_by_stops_completes: assert (!completes || strobe);
-        assumed_by_watch: assert (ending || !resetting && !restarts_round);
+        assumed_by_stops_completes: assert (!completes || strobe && ending && stage_2);
+        assumed_by_watch: assert ((ending || !resetting && !restarts_round) && (strobe || !restarts_round));
         assumed_by_limits: assert ((!tick_0 || !tick_1)
             && (!beat[12] || {tick_0, tick_1} == {was_tick_0, was_tick_1}));
         assumed_by_time_slot: assert (!strobe || at == CLOCKS - 1);
@@ -175,7 +177,8 @@ module promises (
     wire [18:0] word;
     memory_probe #("\\dut.queue.control.words", 3, 19) at_control (1'b0, 1'b1, who, word);
     (* inside = "dut.queue.word" *) wire [18:0] word_read;
-    (* inside = "dut.queue.committed" *) wire committed;
+    (* inside = "dut.queue.took" *) wire took;
+    wire committed = took && word_read[18:16] == 7;
     (* inside = "dut.event_wheel.tick.sub" *) wire [15:0] sub;
     (* inside = "dut.event_wheel.tick.phases" *) wire [3:0] phases;
     (* inside = "dut.time_slot.beats" *) wire [16:0] beats;

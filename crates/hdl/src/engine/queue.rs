@@ -81,7 +81,7 @@ pub struct Queue {
     pub live: Signal<Out, Word<3>>,
     /// The slot that the host writes.
     pub fresh: Signal<Out, Word<3>>,
-    /// Fault: the accepted word is not the one that is due.
+    /// Fault: the word accepted in the clock before was not the one that was due.
     pub misplaced: Signal<Out, Bit>,
     /// No slot is free for the host.
     pub full: Signal<Out, Bit>,
@@ -130,9 +130,8 @@ pub struct Queue {
     stays: Signal<Local, Bit>,
     due: Signal<Local, Word<3>>,
     fits_in: Signal<Local, Bit>, // the accepted word is the one that is due
-    commits: Signal<Local, Bit>,
-    took: Register<Bit>, // a word of this axis was accepted in this time slot
-    committed: Register<Bit>,
+    took: Register<Bit>,         // the word that is due was accepted in this time slot
+    wrong: Register<Bit>,        // `misplaced`
     missing: Signal<Local, Word<3>>,
     unseen: Signal<Local, Word<3>>,
     forward: Register<Bit>,  // `up`
@@ -168,7 +167,7 @@ pub struct Queue {
 impl Logic for Queue {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, took, committed, forward, backward, gone);
+        dff_setup!(self, clock, took, wrong, forward, backward, gone);
         clock!(self, clock, control, lasts);
 
         // The control word of this time slot.
@@ -219,18 +218,13 @@ impl Logic for Queue {
         // The host's words and its commit.
         self.due.next = self.word.val().get_bits::<3>(CONTROL_DUE);
         self.fits_in.next = self.put_word.val() == self.due.val();
-        self.misplaced.next = self.take.val() & !self.fits_in.val();
-        self.commits.next =
-            self.take.val() & self.fits_in.val() & (self.due.val() == self.commit.val());
+        self.wrong.d.next = self.take.val() & !self.fits_in.val();
+        self.misplaced.next = self.wrong.q.val();
         if self.beat.val().get_bit(BEAT_FIRST) {
             self.took.d.next = false;
-            self.committed.d.next = false;
         }
-        if self.take.val() {
+        if self.take.val() & self.fits_in.val() {
             self.took.d.next = true;
-        }
-        if self.commits.val() {
-            self.committed.d.next = true;
         }
         self.lasts.read_address.next = (bit_cast::<6, 3>(self.axis.val()) << self.at_3.val())
             | bit_cast::<6, 3>(self.live_now.val());
@@ -241,7 +235,8 @@ impl Logic for Queue {
             self.lasts.write_data.next = self.set.val();
         }
         self.lasts.write_bits.next = self.unset.val();
-        if self.commits.val() {
+        // Each word writes the mark; that of the commit is the last one and stays.
+        if self.take.val() {
             self.lasts.write_bits.next = self.set.val();
         }
 
@@ -256,7 +251,7 @@ impl Logic for Queue {
             self.next_live.next = self.newest.val();
         }
         self.next_newest.next = self.newest.val();
-        if self.committed.q.val() {
+        if self.took.q.val() & (self.due.val() == self.commit.val()) {
             self.next_newest.next = self.fresh_now.val();
         }
         self.next_due.next = self.due.val();

@@ -42,7 +42,7 @@ pub struct Resets {
     pub resetting: Signal<Out, Bit>,
     /// Asserted in the last clock of a reset.
     pub completes: Signal<Out, Bit>,
-    /// The counter of ticks in a round restarts.
+    /// At a strobe: the counter of ticks in a round restarts.
     pub restarts_round: Signal<Out, Bit>,
     asked: Register<Bit>, // `ending`
     first: Register<Bit>,
@@ -76,8 +76,7 @@ impl Logic for Resets {
         self.stage_2.next = self.second.q.val();
         self.resetting.next = self.first.q.val() | self.second.q.val();
         self.completes.next = self.over.val();
-        self.restarts_round.next =
-            self.asked.q.val() & !self.first.q.val() & (!self.second.q.val() | self.strobe.val());
+        self.restarts_round.next = self.asked.q.val() & self.strobe.val() & !self.first.q.val();
     }
 }
 

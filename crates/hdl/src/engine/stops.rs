@@ -166,7 +166,9 @@ impl<const N: usize> Logic for Stops<N> {
         if !self.called.q.val() {
             if self.urgent.val() | (self.by_host.val() & !self.ripe.val()) {
                 self.axes.d.next = self.late.val();
-            } else if self.finds_now.val() & !self.found.q.val() {
+            } else if !self.found.q.val() {
+                // Whether this slot finds a cause is known too late to decide here: the axis of the
+                // slot that does so is the last one that is latched.
                 self.axes.d.next = self.axis_one_hot.val();
             }
         }

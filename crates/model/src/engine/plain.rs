@@ -53,7 +53,7 @@ impl Engine {
         let idle = self.rest == 2 && self.armed.is_none() && !busy;
         let nobody = inputs.put.is_some_and(|put| usize::from(put.axis) >= self.axis_models.len());
         self.time_slots
-            && !(inputs.reset || self.reset.ending)
+            && !(inputs.reset || self.reset.ending || self.misplaced)
             && (fault || !(inputs.stop || inputs.broken || nobody))
             && inputs.home.is_none()
             && !self.axis_models.iter().any(|axis_model| axis_model.homing.meets || axis_model.homing.slows)

@@ -30,9 +30,6 @@ impl Engine {
         if was.ending {
             self.supervisor.forget();
         }
-        if was.ending && was.stage == 0 {
-            self.supervisor.tick_of_round = 0;
-        }
         if was.is_resetting() {
             self.supervisor.enabled = false;
             for axis_model in &mut self.axis_models {
@@ -45,12 +42,14 @@ impl Engine {
     /// Executes the rules of a reset that apply at a strobe. `free` means that before the strobe
     /// the stop was settled and the pins were at rest.
     pub(super) fn strobe_reset(&mut self, was: Reset, requested: bool, free: bool) {
+        if was.ending && was.stage != 1 {
+            self.supervisor.tick_of_round = 0;
+        }
         match was.stage {
             _ if !was.ending => {}
             0 => self.reset.stage = u8::from(free),
             1 => self.reset.stage = 2,
             _ => {
-                self.supervisor.tick_of_round = 0;
                 self.empty();
                 for axis_model in &mut self.axis_models {
                     axis_model.limits = [Limit::default(); 2];

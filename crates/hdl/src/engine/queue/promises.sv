@@ -96,9 +96,9 @@ module promises (
     wire rests = ramp ? known & turned : over;
     wire [31:0] begun_then = begun_now + (fine & !ramp & follows);
     always @(posedge clock) begin
-        if (mine && take) takes <= 1;
-        if (mine && take && commit) begin
-            adds <= 1;
+        if (mine && take && put_word == due) takes <= 1;
+        if (mine && take && commit) adds <= 1;
+        if (mine && take) begin
             marks <= last ? marks | place : marks & ~place;
         end
         if (ends) begin
@@ -140,8 +140,8 @@ module promises (
     always_comb begin
         promise_5_halted_runs_nothing: assert (!halted || !{running, sound, moves, goes_on, too_fast, dry});
 
-        promise_6_words_in_order: assert (!mine || misplaced == (take && put_word != due));
-        promise_6_misplaced_is_taken: assert (!misplaced || take);
+        promise_6_words_in_order: assert (!was_mine || misplaced == was_wrong);
+        promise_6_misplaced_is_taken: assert (!misplaced || was_take);
         promise_6_never_overtaken: assert (waiting <= 7 && committed - begun <= 7);
         promise_6_in_order: assert (!mine || !in_time_slot || live == begun_now[2:0] && fresh == committed[2:0] + 3'd1);
         promise_6_full: assert (!mine || !in_time_slot || full == (waiting == 7));
@@ -166,11 +166,12 @@ module promises (
         promise_13_inactive: assert (!first_clock || {up, down, lost} == 0);
     end
 
-    reg was_unseen = 0, was_ends = 0;
+    reg was_unseen = 0, was_ends = 0, was_mine = 0, was_wrong = 0, was_take = 0;
     reg [18:0] was_control = 0;
     reg signed [31:0] was_behind = 0;
     always @(posedge clock) begin
         was_ends <= ends;
+        {was_mine, was_wrong, was_take} <= {mine, take && put_word != due, take};
         was_control <= control;
         if (samples) begin
             was_unseen <= given_up != written_off;
@@ -190,7 +191,6 @@ module promises (
     end endgenerate
 
     (* inside = "dut.word" *) wire [18:0] word;
-    (* inside = "dut.committed" *) wire dut_committed;
     (* inside = "dut.took" *) wire dut_took;
     (* inside = "dut.control.write_bits" *) wire [18:0] write_bits;
     (* inside = "dut.control.write_address" *) wire [2:0] write_at;
@@ -215,7 +215,7 @@ module promises (
         invariant_11: assert (!was_ends || first_clock || was_beat[12] && was_axis == who);
         invariant_5: assert (lasts == marks);
         invariant_6: assert (!mine || beat[12:1] == 0 || mark_read == lasts[begun_now[2:0]]);
-        invariant_7: assert ((mine && beat[12:1] != 0 ? dut_committed == adds : !adds) && (!adds || beat[12:8] != 0));
+        invariant_7: assert (!adds || takes && due == 7);
         invariant_8: assert (behind_then <= 3 - slack && behind_then >= slack - 3);
         invariant_9: assert (!adds || waiting < 7);
         invariant_10: assert (!asked || !was_unseen || given_up != written_off);

@@ -45,7 +45,7 @@ module promises (
         promise_13_only_at_rest: assert (!resetting || was_resetting || was_strobe && was_quiet);
         promise_13_stages: assert ({stage_2, stage_1} == stage && resetting == (stage != 0));
         promise_13_completes: assert (completes == (strobe && stage == 2 && !reset));
-        promise_13_round: assert (restarts_round == (asked && (stage == 0 || stage == 2 && strobe)));
+        promise_13_round: assert (restarts_round == (asked && strobe && stage != 1));
         promise_13_complete_is_over: assert (!was_completes || !ending && !resetting);
         promise_13_inactive: assert (!first_clock || !ending && !resetting);
     end

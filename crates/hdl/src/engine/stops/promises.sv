@@ -40,7 +40,7 @@ module promises (
     always_comb begin
         assume (!strobe || !time_slot_ends);
         assume (!halted || !runs);
-        assume (!completes || strobe);
+        assume (!completes || strobe && ending && stage_2);
     end
 
     // ---- What this tick has found so far. If several axes have found a cause, that of the first

@@ -6,7 +6,8 @@
 //                WATCHDOG, WARM: timeout of the watchdog and enable time of the drivers in rounds
 //                `DUT: the name of the exported module `watch`, built with these values
 //   assumptions  A tick is shorter than 2^24 - 1 clocks. `resetting` and `restarts_round` occur only
-//                with `ending` (proved in resets/promises.sv).
+//                with `ending`, `restarts_round` only at a strobe (proved in
+//                resets/promises.sv).
 //
 // This file counts the long times in ticks, while the module counts them in rounds. So each promise
 // about a time allows a difference of up to one round.
@@ -45,6 +46,7 @@ module promises (
     always_comb begin
         assume (clocks != LONG);
         assume (ending || !resetting && !restarts_round);
+        assume (strobe || !restarts_round);
     end
 
     // ---- The tick within the round, the ticks since the last `kick`, and the ticks since
